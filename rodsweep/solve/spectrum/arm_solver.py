@@ -1,4 +1,4 @@
-"""Krylov-Schur for nonuniform arms, on elements that end at jumps of a coefficient."""
+"""Krylov-Schur for nonuniform arms, on elements with boundaries at the jumps of every coefficient."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +13,10 @@ from .shift_invert import KRYLOV, ShiftInvertSolver, SolverContents
 
 
 class ArmSolver(ShiftInvertSolver):
-    """Krylov-Schur for the arms on one mesh."""
+    """Krylov-Schur for all nonuniform arms on one mesh."""
 
     matrices: Matrices
-    """Matrices of the last solved arm."""
+    """Matrices of the arm that was solved last."""
 
     def __init__(self, mesh: ArmMesh):
         self.pencil = ArmPencil(mesh)
@@ -41,7 +41,9 @@ class ArmSolver(ShiftInvertSolver):
         return SolverContents(finite_eigenvalues(rod, self.nodes), shift)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k) each, from vectors of the last solve, (unknowns, k)."""
+        """(y, theta) at all nodes, (nodes + 1, k) each, from eigenvectors of the last solved arm, (unknowns,
+        k).
+        """
         return fields_of(vectors, self.matrices.scale)
 
 
@@ -49,5 +51,5 @@ _kept = LruPool(ArmSolver, KRYLOV.arm_solvers_kept)
 
 
 def arm_solver(mesh: ArmMesh) -> ArmSolver:
-    """The solver for a mesh; kept for later points."""
+    """The Krylov-Schur solver for a mesh; it is kept and reused for later arms on this mesh."""
     return _kept.get(mesh)

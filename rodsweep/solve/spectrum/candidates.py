@@ -1,7 +1,7 @@
-"""One attempt at the leading eigenvalues of a rod, and its verdict.
+"""One attempt at the leading eigenvalues of a rod on one mesh, and its comparison with a count.
 
-A mesh gives eigenvalues, Newton's method on D refines them, and the winding number of D shows whether an
-eigenvalue is missing. `rodsweep.solve.spectrum.search` decides on the next attempt.
+The mesh gives approximate eigenvalues, Newton's method on D refines them, and the winding number of D shows
+whether an eigenvalue is missing. `rodsweep.solve.spectrum.search` decides on the next attempt.
 """
 
 from dataclasses import dataclass
@@ -23,30 +23,33 @@ from .problem import TransverseProblem
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CandidateSettings(CompiledSettings):
-    """Settings for the eigenvalues of a mesh, and for the lines used to count them."""
+    """Settings for the eigenvalues of a mesh, and for the vertical lines right of which eigenvalues are
+    counted.
+    """
 
     max_waves_per_node: float = 2.0
-    """Largest |q| of an eigenvalue that a mesh can represent, in units of the number of nodes."""
+    """Largest wave number |q| of an eigenvalue that a mesh can represent, in units of its number of nodes."""
     wide_gap: float = 0.2
-    """Relative gap between two real parts of a stable rod that is wide enough for the line of a count; a
-    count in a wider gap is cheaper."""
+    """Gap between the real parts of two successive eigenvalues of a stable rod, relative to |Re w| of the
+    left one, beyond which a wider gap is not preferred for the line of a count."""
     wide_gap_of_flutter: float = 0.05
-    """`wide_gap` of an unstable rod: smaller, because eigenvalues far to the left converge last and need a
-    finer mesh."""
+    """`wide_gap` of an unstable rod. It is smaller, because eigenvalues far to the left converge last and
+    need a finer mesh."""
     behind: float = 0.05
-    """Distance of the last line behind the last eigenvalue found, in units of its modulus."""
+    """Distance by which the last line tried lies left of the last eigenvalue found, in units of its |w|."""
     far_behind: float = 0.5
-    """Distance behind a followed leading eigenvalue of the first line for its count, in units of the modulus.
-    A distant line takes fewer nodes; `behind` follows, in case another eigenvalue lies between."""
+    """Distance by which the first line for counting a followed leading eigenvalue lies left of it, in units
+    of its |w|. A distant line needs fewer nodes; a line at `behind` follows in case another eigenvalue lies
+    between."""
     no_gap: float = 1e-6
-    """Relative gap below which two real parts count as equal."""
+    """Relative gap below which two real parts are treated as equal: no line is drawn between them."""
     lines_tried: int = 3
-    """Number of lines tried before the count is given up."""
+    """Maximum number of lines of one rod right of which eigenvalues are counted until a count succeeds."""
     below: float = 3.0
-    """Distance of the last wanted eigenvalue from the line of a proof without a count, in units of its
-    error."""
+    """Distance of the line of a proof without a count left of the last wanted eigenvalue, in units of the
+    error of this eigenvalue."""
     close_below: float = 1e-9
-    """Further distance, in units of the eigenvalue's modulus."""
+    """Distance added to that of `below`, in units of |w| of the last wanted eigenvalue."""
 
 
 CANDIDATES = CandidateSettings()
@@ -54,7 +57,7 @@ CANDIDATES = CandidateSettings()
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """Result of one attempt: k roots of D, sorted as defined in `rodsweep.model`.
+    """Outcome of one attempt on `mesh`: k roots of D, sorted as defined in `rodsweep.model`.
 
     vectors: eigenvectors on the mesh, (unknowns, k), or None. failure: error message of SLEPc or LAPACK, or
     empty.
@@ -66,7 +69,7 @@ class Candidates:
     failure: str = ""
 
     def worst(self, modes: int) -> float:
-        """Largest relative error estimate of the leading modes."""
+        """Largest relative error estimate among the first `modes` roots."""
         errors: Any = self.roots.error[:modes].tolist()
         w: Any = self.roots.w[:modes].tolist()
         return max(0.0, *map(truediv, errors, map(abs, w)))
@@ -74,27 +77,32 @@ class Candidates:
 
 @dataclass(frozen=True, slots=True)
 class CountComparison:
-    """Number of eigenvalues right of a line by the count, and number of found eigenvalues there."""
+    """Number of eigenvalues right of a line by a count, and the number `here` of found eigenvalues right of
+    this line.
+    """
 
     count: Count
     here: int
     clear: bool
-    """Whether every found eigenvalue is further from the line than twice its error."""
+    """Whether every found eigenvalue is farther from the line than twice its error."""
 
     @property
     def agrees(self) -> bool:
+        """Whether the count and the found eigenvalues give the same number, and every found eigenvalue is
+        clear of the line.
+        """
         return self.clear and self.count.number == self.here
 
 
 def candidates_on(
     problem: TransverseProblem, mesh: AnyMesh, wanted: int, vectors: bool, tight: bool
 ) -> Candidates:
-    """Eigenvalues of a mesh nearest the problem's shift, without spurious ones; at least `wanted` if enough
-    converge.
+    """The eigenvalues of a mesh nearest the shift of `problem`, refined to roots of D; spurious eigenvalues
+    are dropped.
 
-    tight: whether the mesh is solved to its last digit before the refinement on D. After an error inside
-    PETSc, SLEPc or LAPACK no eigenvalue is returned: on another mesh, with a different matrix, the solver may
-    succeed.
+    wanted: number of eigenvalues requested. vectors: whether eigenvectors are returned. tight: whether the
+    eigenvalues of the mesh converge to rounding error before the refinement on D. After an error inside
+    PETSc, SLEPc or LAPACK no eigenvalue is returned; the solver may succeed on another mesh.
     """
     raw: Complex = np.empty(0, complex)
     kept = None
@@ -112,8 +120,11 @@ def candidates_on(
 
 
 def compare_with_count(problem: TransverseProblem, found: Roots, modes: int) -> CountComparison:
-    """Counts the eigenvalues right of a line, and compares with those found. The line lies left of all wanted
-    and all unstable eigenvalues."""
+    """Number of eigenvalues right of a vertical line, by a proof or a count, compared with the eigenvalues
+    found.
+
+    The line lies left of the leading `modes` and of all unstable eigenvalues.
+    """
     w: Any = found.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = found.error.tolist()
     line = line_of_proof(w[modes - 1], errors[modes - 1])
@@ -129,20 +140,26 @@ def compare_with_count(problem: TransverseProblem, found: Roots, modes: int) -> 
 
 
 def line_of_proof(last: complex, error: float) -> float:
-    """The line <= 0 of a proof without a count, left of the last wanted eigenvalue and all unstable ones."""
+    """Real part <= 0 of the line of a proof without a count, left of the last wanted eigenvalue and all
+    unstable ones.
+
+    last, error: the last wanted eigenvalue and its absolute error.
+    """
     return min(last.real - CANDIDATES.below * error - CANDIDATES.close_below * abs(last), 0.0)
 
 
 def _right_of(line: float, w: list[complex], errors: list[float]) -> tuple[int, bool]:
-    """(how many lie right of a line, whether each is farther from the line than twice its error)."""
+    """(number of eigenvalues w right of a line, whether each is farther from the line than twice its
+    error)."""
     clear = all(abs(value.real - line) > 2 * error for value, error in zip(w, errors, strict=True))
     return sum(value.real > line for value in w), clear
 
 
 def lines_of_count(w: list[complex], modes: int) -> list[float]:
-    """Lines for the count, best first: in the gaps between real parts, the first wide gap foremost.
+    """Real parts of the lines for a count, best first: middles of gaps left of the first `modes` eigenvalues.
 
-    The last line lies behind all eigenvalues found, where the count may include further eigenvalues.
+    w: eigenvalues in descending order. Gaps wider than `wide_gap` are equally good, and the first of them
+    comes first. The last line lies left of all eigenvalues found.
     """
     wide = CANDIDATES.wide_gap_of_flutter if w[0].real > 0 else CANDIDATES.wide_gap
     target = min(w[modes - 1].real, 0.0)

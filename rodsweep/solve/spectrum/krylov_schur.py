@@ -1,4 +1,4 @@
-"""Krylov-Schur for a uniform rod on equal elements, with matrices affine in the coefficients."""
+"""Krylov-Schur for uniform rods on equal elements, with matrices affine in the coefficients of the rod."""
 
 import math
 
@@ -27,7 +27,7 @@ def _fill(A: NDArray, coefficients: NDArray, pieces: NDArray, shift: NDArray) ->
 
 
 class EigenSolver(ShiftInvertSolver):
-    """Krylov-Schur for one resolution."""
+    """Krylov-Schur for all uniform rods on one mesh of equal elements."""
 
     def __init__(self, resolution: Resolution):
         self.pencil: Pencil = assemble(resolution.elements, resolution.order)
@@ -57,13 +57,14 @@ class EigenSolver(ShiftInvertSolver):
         return SolverContents(finite_eigenvalues(rod, self.nodes), shift, pace)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k) each, from vectors of the last solve, (unknowns, k)."""
+        """(y, theta) at all nodes, (nodes + 1, k) each, from eigenvectors of the last solve, (unknowns,
+        k)."""
         return fields_of(vectors, self.pencil.scale(rod))
 
 
 def _as_filament(rod: Rod) -> tuple[Rod, float]:
-    """(equivalent rod, pace): the equivalent rod has the eigenvalues of `rod` times pace^2, and y of `rod`
-    over pace.
+    """(equivalent rod, pace). `rod` has the eigenvalues of the equivalent rod over pace^2, and its y times
+    `pace`.
 
     A partial beam (k2 = inf, gamma3 = 0) moves like the filament under the force F nu, with times scaled by
     nu^2. Near crushing the matrices of the beam itself are too badly scaled.
@@ -77,5 +78,5 @@ _kept = LruPool(EigenSolver, KRYLOV.uniform_solvers_kept)
 
 
 def eigen_solver(resolution: Resolution) -> EigenSolver:
-    """The solver for a resolution; kept for later points."""
+    """The Krylov-Schur solver for a resolution; it is kept and reused for later rods of this resolution."""
     return _kept.get(resolution)

@@ -1,7 +1,7 @@
-"""The transverse eigenvalue problem of one rod for the search of leading eigenvalues.
+"""The transverse eigenvalue problem of one rod, as the search for leading eigenvalues uses it.
 
 For a uniform rod of linear material, D has a closed form and the pencil is affine in the coefficients. For
-every other arm, D comes from propagators and the pencil is assembled anew.
+every other arm, D is computed from propagators and the pencil is assembled anew.
 """
 
 from abc import ABC, abstractmethod
@@ -34,10 +34,10 @@ from .shift_invert import KRYLOV
 
 
 class TransverseProblem(ABC):
-    """Discretization and determinant of one rod.
+    """Meshes, solver and determinant D of one rod.
 
-    shift: right of most spectra, in 1/tau2. bounded: whether an a-priori bound of the eigenvalues is known.
-    is_count_slow: whether a count costs more than some eigenproblems.
+    shift: target of Krylov-Schur, right of most spectra, in 1/tau2. bounded: whether an a-priori bound of the
+    eigenvalues exists. is_count_slow: whether one count costs more than several eigenproblems.
     """
 
     rod: Rod
@@ -45,19 +45,20 @@ class TransverseProblem(ABC):
     bounded: bool
     is_count_slow: ClassVar[bool]
     spare: int = 0
-    """Number of eigenvalues first requested beyond the modes, for a proof without a count."""
+    """Number of eigenvalues requested from the first mesh beyond the modes, to make a proof without a count
+    possible."""
 
     @abstractmethod
     def mesh_for(self, modes: int, accuracy: float) -> Any:
-        """The mesh expected to give a number of leading modes to a relative accuracy."""
+        """The coarsest mesh expected to give `modes` leading eigenvalues to the relative `accuracy`."""
 
     def finer(self, mesh: AnyMesh) -> AnyMesh:
-        """The next mesh after a mesh that is too coarse."""
+        """The next finer mesh after `mesh`."""
         return finer_mesh(self.rod, mesh)
 
     @abstractmethod
     def next_mesh_for(self, mesh: Any, waves: Array, accuracy: float) -> Any:
-        """The next mesh, chosen for the wave numbers of the leading modes found, (modes,)."""
+        """The mesh to try after `mesh`, chosen for the wave numbers of the leading modes found, (modes,)."""
 
     def solver(self, mesh: AnyMesh) -> EigenSolver | ArmSolver:
         """The Krylov-Schur solver for a mesh."""
@@ -65,27 +66,33 @@ class TransverseProblem(ABC):
 
     @abstractmethod
     def roots(self, raw: Complex, most_waves: float) -> Roots:
-        """Eigenvalues of a mesh, (n,), refined to roots of D; most_waves: largest |q| that the mesh
-        represents."""
+        """Roots of D refined from the eigenvalues `raw` of a mesh, (n,).
+
+        most_waves: largest wave number |q| that the mesh represents.
+        """
 
     @abstractmethod
     def count(self, line: float, found: Roots | KnownRoots | None = None) -> Count:
-        """Number of eigenvalues with Re w > line; found: roots that may make the count faster."""
+        """Proved number of eigenvalues with Re w > line. found: roots of D, which make the count of an arm
+        faster.
+        """
 
     def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
-        """(whether all eigenvalues right of a line are proved to be found, without a count; evaluations of
+        """(whether it is proved that `found` has all eigenvalues right of a line, number of evaluations of
         D).
+
+        The proof needs no count. It never succeeds for a uniform rod, whose count is fast.
         """
         return False, 0
 
     @cached_property
     def countable(self) -> bool:
-        """Whether a count is possible; False if it fails for every line at most 0."""
+        """Whether a count can succeed; False if the count fails for every line at real part <= 0."""
         return True
 
 
 class UniformProblem(TransverseProblem):
-    """The problem of a uniform rod of linear material."""
+    """The transverse eigenvalue problem of a uniform rod of linear material."""
 
     is_count_slow = False
 
@@ -100,12 +107,14 @@ class UniformProblem(TransverseProblem):
         return resolution_for(expected_wave_number(modes, self._wave), accuracy)
 
     def next_mesh_for(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
-        """The mesh for the wave numbers, (modes,), but at least the next finer mesh."""
+        """The mesh that resolves the largest of the wave numbers `waves`, (modes,), but at least the next
+        finer mesh.
+        """
         asked = resolution_for(float(waves.max()), accuracy)
         return max(asked, finer(mesh), key=lambda each: each.unknowns)
 
     def roots(self, raw: Complex, most_waves: float) -> Roots:
-        """Eigenvalues of a mesh, (n,), refined to roots of D."""
+        """Roots of D refined from the eigenvalues `raw` of a mesh, (n,)."""
         return roots(raw, self.rod.coefficients, self._amplification, most_waves)
 
     def count(self, line: float, found: Roots | KnownRoots | None = None) -> Count:
@@ -113,9 +122,9 @@ class UniformProblem(TransverseProblem):
 
 
 class ArmProblem(TransverseProblem):
-    """The problem of an arm that varies along its length.
+    """The transverse eigenvalue problem of an arm that varies along its length.
 
-    to_prove: number of leading modes whose list will be proved complete, 0 without a proof.
+    to_prove: number of leading modes to be proved complete; 0 without a proof.
     """
 
     is_count_slow = True
@@ -134,18 +143,19 @@ class ArmProblem(TransverseProblem):
         return arm_mesh(self.rod, modes, accuracy)
 
     def next_mesh_for(self, mesh: ArmMesh, waves: Array, accuracy: float) -> ArmMesh:
-        """The next finer mesh; the wave numbers, (modes,), are ignored."""
+        """The next finer mesh; the wave numbers `waves`, (modes,), are ignored."""
         return finer_arm_mesh(self.rod, mesh)
 
     def roots(self, raw: Complex, most_waves: float) -> Roots:
-        """Eigenvalues of a mesh, (n,), refined to roots of D."""
+        """Roots of D refined from the eigenvalues `raw` of a mesh, (n,)."""
         wanted, largest = self._of_proof(raw)
         return roots_of_arm(np.where(wanted, raw, np.inf), self._determinant, self._hull, most_waves, largest)
 
     def _of_proof(self, raw: Complex) -> tuple[NDArray[np.bool_], float]:
-        """(mask of the eigenvalues of a mesh, (n,), that the proof will need; the largest |w| of D for it).
+        """(mask of the eigenvalues `raw` that the proof will need, (n,); largest |w| at which the proof needs
+        D).
 
-        The size is 0 if unknown.
+        The largest |w| is 0 if it is unknown.
         """
         wanted = np.isfinite(raw)
         if not self._to_prove or not self.bounded or wanted.sum() < self._to_prove:
@@ -172,5 +182,5 @@ class ArmProblem(TransverseProblem):
 
 
 def problem_of(rod: Rod, to_prove: int = 0) -> TransverseProblem:
-    """The problem of a rod: uniform, or an arm; to_prove: see `ArmProblem`."""
+    """The transverse eigenvalue problem of a uniform rod or of an arm; to_prove: see `ArmProblem`."""
     return UniformProblem(rod) if rod.standard else ArmProblem(rod, to_prove)

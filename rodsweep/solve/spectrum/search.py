@@ -1,9 +1,9 @@
-"""Search for the leading eigenvalues of one rod: as few unknowns as the accuracy needs, no eigenvalue
-missing.
+"""Search for the leading eigenvalues of one rod: the fewest unknowns for the accuracy, and no missing
+eigenvalue.
 
-One attempt (`rodsweep.solve.spectrum.candidates`) solves on a mesh, about a shift, for a number of
-eigenvalues, and refines them on D. Mesh error, remaining error and count determine the next attempt. A point
-is ok once all three are sufficient.
+One attempt (`rodsweep.solve.spectrum.candidates`) solves for a number of eigenvalues nearest a shift, on one
+mesh, and refines them by Newton's method on D. The mesh error, the error of the roots of D and the count of
+eigenvalues determine the next attempt. The search ends when all three are sufficient.
 """
 
 from dataclasses import dataclass, replace
@@ -24,21 +24,27 @@ __all__ = ["Search", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
 
 @dataclass(frozen=True, slots=True)
 class JudgedCandidates:
-    """Candidates with a count, if requested, and the largest error in units of its limit."""
+    """Candidates, the comparison with a count of eigenvalues if one was requested, and the relative
+    shortfall.
+    """
 
     found: Candidates
     verdict: CountComparison | None
     short: float
-    """Largest error in units of its limit."""
+    """Largest error over its limit: below `SEARCH.error_share` the candidates are accepted."""
 
     @property
     def grade(self) -> tuple[bool, float]:
-        """Sort key, smaller is better: first a decided count, then accuracy."""
+        """Sort key of the quality of candidates, best first: those with a decided count precede, then the
+        smaller error.
+        """
         return self.verdict is not None and self.verdict.count.number is None, self.short
 
 
 def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    """The leading `request.modes` eigenvalues of a rod; a failure is a status, never an exception."""
+    """The leading `request.modes` eigenvalues of a rod. A failed solve gives a status; no exception is
+    raised.
+    """
 
     def failed(cause: str) -> Spectrum:
         forget_all()
@@ -50,21 +56,24 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
 
 def _from_equivalent(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    """Spectrum of a uniform rod of any law, from the equivalent linear rod; rates are rescaled."""
+    """Spectrum of a uniform rod of nonlinear material, from the equivalent linear rod with its eigenvalues
+    rescaled.
+    """
     linear, rate = rod.equivalent
     found = solve_spectrum(linear, request)
     return replace(found, eigenvalues=rate * found.eigenvalues, error_estimate=rate * found.error_estimate)
 
 
 def warm_up() -> None:
-    """Loads compiled code and creates solver objects, so that the first point takes no extra time."""
+    """Loads compiled code and creates the solver objects, so that the first rod takes no extra time."""
     Search(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), SpectrumRequest(2, 1e-4, certify=True)).outcome()
 
 
 class Search:
-    """State of the search for the leading eigenvalues of one rod: next attempt, best result, failures.
+    """Search for the leading eigenvalues of one rod: the next mesh, the best candidates so far, the failures.
 
-    wanted: number of eigenvalues first requested from the mesh; by default `request.modes`.
+    wanted: number of eigenvalues requested from the first mesh; `request.modes` and `problem.spare` by
+    default.
     """
 
     def __init__(self, rod: Rod, request: SpectrumRequest, wanted: int | None = None):
@@ -85,7 +94,7 @@ class Search:
         self.why = "no mesh within the limit resolves the requested modes"
 
     def outcome(self) -> Spectrum:
-        """Tries meshes until the result is good enough or improves no more."""
+        """The spectrum, from attempts on meshes until the candidates are accepted or improve no more."""
         for turn in range(SEARCH.max_meshes):
             if self.mesh.unknowns > RESOLUTION.most_unknowns or self.failures > SEARCH.max_failures:
                 break
@@ -101,7 +110,9 @@ class Search:
         return self.concluded()
 
     def judged(self, found: Candidates) -> JudgedCandidates | None:
-        """The candidates if complete; otherwise None, after a change of the next attempt."""
+        """The candidates if no eigenvalue is missing; otherwise None, after the mesh or `wanted` has been
+        raised.
+        """
         if len(found.roots.w) < self.modes:
             # Too few converged, or converged to no root, or SLEPc failed: a finer mesh.
             self.failures += bool(found.failure)
@@ -126,9 +137,10 @@ class Search:
         return JudgedCandidates(found, verdict, self.shortfall(found, verdict))
 
     def shortfall(self, found: Candidates, verdict: CountComparison | None) -> float:
-        """`JudgedCandidates.short`. The mesh need not resolve roots of D that the count proves complete.
+        """The largest error of candidates over its limit, as stored in `JudgedCandidates.short`.
 
-        The mesh must resolve vectors, and eigenvalues without a proof.
+        Eigenvectors, and eigenvalues without a proof, also need a mesh whose eigenvalues are close to the
+        roots of D.
         """
         error = found.worst(self.modes) / self.request.accuracy
         if verdict is not None and verdict.agrees and not self.with_vectors:
@@ -138,8 +150,8 @@ class Search:
         return max(error, coarseness / (self.request.accuracy if self.with_vectors else allowed))
 
     def request_missing(self, number: int, here: int) -> None:
-        """Requests more eigenvalues or a finer mesh: the winding number counts `number`, and `here` are
-        found.
+        """Requests more eigenvalues or a finer mesh, because the count gives `number` eigenvalues right of a
+        line and `here` eigenvalues were found there.
         """
         if number <= here:  # spurious eigenvalues, or a line within the errors
             self.mesh = self.problem.finer(self.mesh)
@@ -151,20 +163,25 @@ class Search:
         self.request_more(more)
 
     def needs_beyond_axis(self, found: Candidates) -> bool:
-        """Whether eigenvalues beyond the axis are needed for a count, or for a list that nothing proves."""
+        """Whether eigenvalues with Re w <= 0 must be found too, for a count or, without a proof, for the list
+        of modes.
+        """
         if not (self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all()):
             return False
         return len(found.roots.w) < SEARCH.enough_unproved or self.problem.countable
 
     def request_beyond_axis(self, number: int) -> None:
-        """Requests more eigenvalues than the `number` found, which all grow: a count needs those beyond."""
+        """Requests more eigenvalues, because all `number` found ones grow and a count needs decaying ones
+        too.
+        """
         self.unresolved = True
         if number < self.wanted:
             self.mesh = self.problem.finer(self.mesh)
         self.request_more(max(self.wanted, 2 * number + SEARCH.spare_modes))
 
     def request_more(self, wanted: int) -> None:
-        """Requests a larger number of eigenvalues, on a mesh that holds as many."""
+        """Requests `wanted` eigenvalues, and refines the mesh until it has enough unknowns for this
+        number."""
         while (
             wanted > self.mesh.unknowns // SEARCH.unknowns_a_mode
             and self.mesh.unknowns <= RESOLUTION.most_unknowns
@@ -173,7 +190,8 @@ class Search:
         self.wanted = wanted
 
     def keep(self, judged: JudgedCandidates) -> None:
-        """Keeps the candidates if better than all before; counts attempts without progress."""
+        """Stores the candidates if they are the best so far; counts attempts in succession without
+        progress."""
         best = self.best
         better = best is None or judged.grade < (best.grade[0], SEARCH.progress * best.short)
         self.stalled = 0 if better else self.stalled + 1
@@ -181,7 +199,7 @@ class Search:
             self.best = judged
 
     def concluded(self) -> Spectrum:
-        """The best result, or the reason for having none."""
+        """The spectrum of the best candidates, or a failed spectrum whose status says why there are none."""
         if self.best is not None:
             return _result(self.best, self.problem, self.request)
         if self.lost is not None:
@@ -195,7 +213,7 @@ class Search:
 
 
 def _result(best: JudgedCandidates, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:
-    """The outcome with its numbers and the extent of their proof."""
+    """The spectrum of the best candidates, with its status and whether it is proved complete."""
     found = best.found.roots
     verdict = best.verdict
     accurate = best.short <= SEARCH.stalled_error_share

@@ -1,7 +1,8 @@
-"""Eigenvalues of arms followed along a path, and proved complete at every point.
+"""Eigenvalues of arms followed along a path, and proved complete at every point of the path.
 
-As `rodsweep.solve.spectrum.path.following`, with D from the interpolated propagators of a family. The proof
-is that of `rodsweep.determinant.arm.completeness` and needs nothing but the eigenvalues of the point itself.
+The method is that of `rodsweep.solve.spectrum.path.following`, with D from the interpolated propagators of a
+family of arms. The proof at a point is that of `rodsweep.determinant.arm.completeness`, and uses only the
+eigenvalues at this point.
 """
 
 import math
@@ -35,12 +36,13 @@ from .following import (
 from .prediction import Track, guess_at, guess_two, mates_of
 
 Level = tuple[float, Array, Array]
-"""(W, propagators, derivatives of the propagators by p), arrays of shape (elements, terms, 16)."""
+"""(bound W of |w|, propagators valid for |w| <= W, their derivatives by p); both arrays: (elements, terms,
+16)."""
 
 
 @compiled
 def corrected_of_arm(w: complex, level: Level) -> CorrectedEigenvalue:
-    """The eigenvalue of an arm after one Newton step from w; a real eigenvalue stays real."""
+    """One Newton step on D from w, for an arm given by its propagators `level`; a real w stays real."""
     D, D_w, D_p, _, noise = chain_along(w, level[0], level[1], level[2])
     return newton_step(w, D, D_w, D_p, ARM_VALUE.root_noise * noise)
 
@@ -49,11 +51,10 @@ def corrected_of_arm(w: complex, level: Level) -> CorrectedEigenvalue:
 def _settled(
     first: CorrectedEigenvalue, crowding: float, exact: bool, level: Level
 ) -> tuple[CorrectedEigenvalue, float]:
-    """(last Newton step, error) of an arm's eigenvalue: steps until `settled_error` is finite; inf without
-    convergence.
+    """(last Newton step, error) of an arm's eigenvalue, after steps until `settled_error` is finite.
 
-    first: result of the first step. crowding, exact: as in `settled_error`. level: (W, propagators) of the
-    arm.
+    first: result of the first step. crowding, exact: as in `settled_error`. level: propagators of the arm.
+    The error is inf without convergence.
     """
     here = first
     for _ in range(FOLLOWING.max_corrections):
@@ -66,7 +67,7 @@ def _settled(
 
 @compiled
 def two_roots_of_arm(middle: complex, level: Level) -> tuple[complex, complex]:
-    """The two roots near a real `middle`, from the quadratic Taylor polynomial of D."""
+    """The two roots of D near a real `middle`, from the quadratic Taylor polynomial of D about `middle`."""
     D, D_w, S, _ = chain_value(middle, level[0], level[1])
     h = DETERMINANT.second_step * abs(middle)
     after = chain_value(middle + h, level[0], level[1])
@@ -77,9 +78,9 @@ def two_roots_of_arm(middle: complex, level: Level) -> tuple[complex, complex]:
 
 @compiled
 def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, level: Level) -> bool:
-    """Corrects the guesses for all eigenvalues of point i, at p, and writes the roots to the track.
+    """Refines the guesses for all eigenvalues of point i, at p, and writes the eigenvalues to the track.
 
-    True if all converged and every pair stayed a pair.
+    guess: (m,). True if all converged, no two coincide, and every complex pair stayed complex.
     """
     w = track.w[i]
     error = track.error[i]
@@ -109,10 +110,11 @@ def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, lev
 
 @compiled
 def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level) -> int:
-    """Number of leading eigenvalues of point i that are proved to be all eigenvalues right of a line <= 0; 0
+    """Number of leading eigenvalues of point i that are proved to be all eigenvalues right of a line; 0
     without a proof.
 
-    The line lies left of the wanted `modes`, so that the proof includes all unstable eigenvalues.
+    The line lies at Re w <= 0, left of the leading `modes`, so that the proof includes all unstable
+    eigenvalues.
     """
     w = track.w[i]
     error = track.error[i]
@@ -136,10 +138,10 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level
 def follow_arms(
     track: Track, family: ArmFamily, hulls: PathHulls, p: Array, modes: int, known: NDArray
 ) -> int:
-    """Follows eigenvalues from the first point on and fills the track; returns the number of points reached.
+    """Follows eigenvalues of arms along the points p, (points,), and returns the number of points reached.
 
-    track: w and order of the first point are set; p: (points,), path variable of each point, inside the
-    family. hulls: regions of all arms of the family. known: (points,), filled with `all_right_of_line`.
+    track: filled from the first point on, whose w and order are given. family: contains all p. hulls: regions
+    that contain the eigenvalues, for all arms of the family. known: (points,), filled by `all_right_of_line`.
     """
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)

@@ -1,11 +1,12 @@
-"""Spectra of arms at neighbouring points along a parameter: followed, and proved complete at each point.
+"""Spectra of arms at neighbouring values of one parameter: eigenvalues are followed, and proved complete at
+each arm.
 
-Krylov-Schur solves the first point for more modes than wanted: known modes beyond the line make the proof
-easy. The propagators of all arms are interpolated from a few arms (`rodsweep.determinant.arm.family`), on an
-interval short enough for smooth polynomials.
+Krylov-Schur solves the first arm for more modes than wanted, because eigenvalues known left of the line make
+the proof easy. The propagators of all arms are interpolated from those of a few
+(`rodsweep.determinant.arm.family`), on an interval short enough for smooth polynomials.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -26,43 +27,16 @@ from ..candidates import line_of_proof, lines_of_count
 from ..search import Search
 from ..spectrum import FollowedPoints, SpectrumRequest
 from .arm_following import follow_arms
+from .arm_stretch_settings import ARM_STRETCH
 from .carried_count import judge_points, leading
 from .prediction import Track, part_of_track, track_from
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ArmStretchSettings:
-    """Settings for arms along a path: followed modes, families of arms, and their hulls."""
-
-    further_modes: tuple[int, ...] = (3, 9)
-    """Numbers of modes followed beyond the wanted ones; the larger if too few points are proved."""
-    proved_enough: float = 0.5
-    """Fraction of points proved complete below which more modes are followed, if they prove a point."""
-    headroom: float = 2.0
-    """Largest |w| of the propagators, in units of the largest |w| of the first point."""
-    reused_headroom: float = 1.25
-    """`headroom` of propagators of an earlier interval."""
-    points_growth: int = 2
-    """Largest number of points for which a family is tried, in units of those reached by the last."""
-    fewest_points: int = 4
-    """Minimum number of points of a family of arms."""
-    accuracy: float = 1e-8
-    """Relative accuracy of eigenvalues along a path."""
-    modes_beyond_growing: int = 2
-    """Modes beyond the growing ones that a search for crossings asks for."""
-    steps_from_nearest: tuple[int, ...] = (1, 4)
-    """Numbers of steps tried from the nearest point of the path to a point between."""
-    hull_arms: int = 7
-    """Number of arms of an interval from which the hulls of all arms between are interpolated."""
-
-
-ARM_STRETCH = ArmStretchSettings()
-
-
 class ArmInterval(NamedTuple):
-    """Points of a path, (n,), followed with one family of arms; track and `known` as in `follow_arms`.
+    """Points p of a path, (n,), whose eigenvalues were followed with one family of arms.
 
-    arms: number of points inside the family, of which `p` are followed. further: modes beyond the wanted.
+    track, known: as in `follow_arms`. arms: number of given points inside the family, of which the first n
+    were reached. further: number of modes followed beyond the wanted modes.
     """
 
     p: Array
@@ -74,12 +48,13 @@ class ArmInterval(NamedTuple):
     further: int
 
     def proved(self, modes: int) -> int:
-        """Number of points at which `modes` leading modes are proved complete."""
+        """Number of points at which at least `modes` leading modes are proved complete."""
         return int((self.known >= modes).sum())
 
 
 def followed_arms(path: Path, p: Array, request: SpectrumRequest) -> FollowedPoints | None:
-    """Spectra at the points p, (n,), up to the last one reached from the first; None if none is reached."""
+    """Spectra of the arms at p, (n,), from the first up to the last point reached; None if none is
+    reached."""
     found = interval_of(path, p, request)
     if found is None:
         return None
@@ -93,10 +68,10 @@ def followed_arms(path: Path, p: Array, request: SpectrumRequest) -> FollowedPoi
 def interval_of(
     path: Path, p: Array, request: SpectrumRequest, before: ArmInterval | None = None
 ) -> ArmInterval | None:
-    """The points of p, (n,), that are reached with one family of arms; None if following fails at the first.
+    """The first points of p, (n,), that are reached with one family of arms; None if the first point fails.
 
-    If too few points are proved, more eigenvalues are followed. before: the previous interval of the path,
-    whose family serves again where it contains enough of the points.
+    If too few points are proved complete, more eigenvalues are followed. before: the previous interval of the
+    path, whose family is used again if it contains enough of the points.
     """
     best: ArmInterval | None = None
     for further in (
@@ -114,20 +89,22 @@ def interval_of(
 
 
 def _too_few(found: ArmInterval) -> bool:
-    """Whether more modes grow somewhere than the followed modes could prove to be all growing modes."""
+    """Whether too few modes are followed to prove all growing modes complete at every point."""
     growing = (found.track.w.real > 0).sum(axis=1).max()
     return bool(growing + ARM_STRETCH.modes_beyond_growing > found.track.w.shape[1])
 
 
 def _is_better(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
-    """Whether `found` has more proved points, or as many and enough modes where `other` has too few."""
+    """Whether `found` has more proved points than `other`, or equally many where `other` follows too few
+    modes.
+    """
     here = found.proved(modes)
     there = other.proved(modes)
     return here > there or (here == there and _too_few(other))
 
 
 def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, further: int) -> bool:
-    """Whether `further` known modes would prove the middle one of the points that are not proved."""
+    """Whether following `further` modes would prove the middle one of the points without a proof."""
     left = np.flatnonzero(found.known < request.modes)
     p = float(found.p[left[len(left) // 2]])
     roots = _roots(path, p, request, further)
@@ -144,7 +121,7 @@ def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, furth
 def _followed(
     path: Path, p: Array, request: SpectrumRequest, further: int, before: ArmInterval | None
 ) -> ArmInterval | None:
-    """`interval_of` with `further` modes in addition to the wanted modes."""
+    """`interval_of` with exactly `further` modes followed beyond the wanted modes."""
     first = _carried(before, float(p[0]), request, further)
     if first is None:
         first = first_eigenvalues(path, float(p[0]), request, further)
@@ -179,7 +156,7 @@ def _followed(
 
 
 def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmFamily, PathHulls] | None:
-    """The family of the arms at points p, (n,), in order, and their hulls; None if no family exists.
+    """(family of the arms at all p, (n,), their hulls); None if the arms do not vary smoothly or D overflows.
 
     first: eigenvalues at the first point, (m,), leading first.
     """
@@ -204,7 +181,9 @@ def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmF
 
 
 def _carried(before: ArmInterval | None, p: float, request: SpectrumRequest, further: int) -> Complex | None:
-    """Eigenvalues, (m,), at the end p of the previous interval; None unless all its points are proved."""
+    """Eigenvalues, (m,), at p, the last point of the previous interval; None unless all its points are proved
+    complete.
+    """
     if before is None or before.further != further or before.p[-1] != p:
         return None
     if before.proved(request.modes) < len(before.p):
@@ -213,13 +192,17 @@ def _carried(before: ArmInterval | None, p: float, request: SpectrumRequest, fur
 
 
 def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: int) -> Complex | None:
-    """Eigenvalues to follow from p on, (m,), pairs unsplit; None if the solve fails."""
+    """Eigenvalues at p from which following starts, (m,), with whole conjugate pairs; None if the solve
+    fails.
+    """
     found = _roots(path, p, request, further)
     return None if found is None else found.w[has_conjugate(found.w)]
 
 
 def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Roots | None:
-    """The leading eigenvalues at p, not proved, `further` ones in addition to the wanted modes."""
+    """The leading eigenvalues at p, without a proof: the wanted modes and `further` more; None if the solve
+    fails.
+    """
     try:
         modes = request.modes + further
         search = Search(path.at(p), replace(request, modes=modes, certify=False), wanted=modes)
@@ -232,10 +215,10 @@ def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Root
 
 
 def counted(path: Path, found: ArmInterval, p: float, modes: int, here: Track) -> int:
-    """Number of eigenvalues at p that a count confirms to be all eigenvalues right of a line; 0 if
-    unconfirmed.
+    """Number of eigenvalues at p that a count confirms to be all eigenvalues right of a line; 0 if no count
+    does.
 
-    found: an interval that contains p. here: track of this point alone.
+    found: an interval that contains p. here: a track with the eigenvalues at p only.
     """
     w, error = leading(here, here.w.shape[1])
     if w[0, -1].real > 0:  # there are further growing modes, which the count would find as well

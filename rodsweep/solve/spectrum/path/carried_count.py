@@ -1,8 +1,8 @@
-"""A count of eigenvalues carried along a path, as far as a proof on a moving line reaches.
+"""A count of eigenvalues carried along a path, as far as a proof with a moving line succeeds.
 
-At one point the first `known` followed eigenvalues are proved to be all right of a line. If no eigenvalue
-crosses a line that moves in an open gap to another point (`rodsweep.determinant.moving_line`), the
-eigenvalues right of the line are all at every point between.
+At the first point the leading `known` followed eigenvalues are proved to be all eigenvalues right of a line.
+If no eigenvalue crosses a line that moves in a gap between followed eigenvalues to another point
+(`rodsweep.determinant.moving_line`), the number right of the line is the same at every point between.
 """
 
 from dataclasses import dataclass
@@ -21,16 +21,18 @@ from .prediction import Track
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CarriedCountSettings(CompiledSettings):
-    """Settings for counts carried from point to point."""
+    """Settings for a count that is carried from point to point of a path."""
 
     rectangles: int = 60
-    """Number of rectangles after which a proof is given up, besides `rectangles_per_point`."""
+    """Maximum number of rectangles of one proof, besides `rectangles_per_point`."""
     rectangles_per_point: int = 20
-    """Further rectangles for each point: a count at a point costs as much as twenty."""
+    """Increase of this maximum with each point that the proof covers: a new count at a point costs as much as
+    twenty rectangles."""
     wide_enough: float = 0.2
-    """Relative half width above which all gaps are equally good; the last wide gap is taken."""
+    """Half-width of a gap, relative to the distance of its middle from the imaginary axis, above which a
+    wider gap is not preferred. Of several such gaps the one farthest left is taken."""
     narrowest_gap: float = 1e-6
-    """Relative half width below which a gap is not used."""
+    """Relative half-width below which no line is drawn in a gap."""
 
 
 CARRIED_COUNT = CarriedCountSettings()
@@ -38,7 +40,10 @@ CARRIED_COUNT = CarriedCountSettings()
 
 @compiled
 def line_in(track: Track, i: int, gap: int) -> tuple[float, float]:
-    """(middle of the gap behind the first `gap` eigenvalues of point i, half its relative width)."""
+    """(real part of the line in the middle of a gap at point i, relative half-width of the gap).
+
+    gap: number of eigenvalues right of the gap.
+    """
     right = track.w[i, track.order[i, gap - 1]].real
     left = track.w[i, track.order[i, gap]].real
     line = (right + left) / 2
@@ -49,7 +54,10 @@ def line_in(track: Track, i: int, gap: int) -> tuple[float, float]:
 
 @compiled
 def best_gap(track: Track, i: int, modes: int) -> int:
-    """The gap for a count at point i, behind at least `modes` eigenvalues and left of the axis; 0 if none."""
+    """Number of eigenvalues right of the widest gap at point i; 0 if no gap is wide enough.
+
+    The gap lies left of the leading `modes` and of the imaginary axis.
+    """
     best = 0
     widest = CARRIED_COUNT.narrowest_gap
     for gap in range(modes, track.w.shape[1]):
@@ -62,8 +70,11 @@ def best_gap(track: Track, i: int, modes: int) -> int:
 
 @compiled
 def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[float, float], p: Array) -> bool:
-    """Whether at every point between the ends exactly the first `gap` eigenvalues lie clearly right of the
-    line.
+    """Whether exactly the leading `gap` eigenvalues lie right of a moving line at every point between two
+    points.
+
+    ends: indices of the two points; lines: real part of the line there. Eigenvalues must be farther from the
+    line than twice their error.
     """
     i, j = ends
     for s in range(i, j + 1):
@@ -79,7 +90,11 @@ def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[floa
 
 @compiled
 def _gap_between(track: Track, ends: tuple[int, int], modes: int, known: int, p: Array) -> int:
-    """The widest gap among the first `known` that stays open between two points; 0 without an open gap."""
+    """Number of eigenvalues right of the widest gap that stays open between the points `ends`; 0 without such
+    a gap.
+
+    The number is at least `modes` and at most `known`.
+    """
     best = 0
     widest = CARRIED_COUNT.narrowest_gap
     for gap in range(modes, min(known, track.w.shape[1] - 1) + 1):
@@ -101,10 +116,10 @@ def _end(track: Track, i: int, gap: int, p: Array, coefficients: Array) -> Inter
 def carry_count(
     track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int, known: NDArray
 ) -> int:
-    """Index of the last point to which the count of the first point can be carried.
+    """Index of the last point to which the count at the first point can be carried.
 
-    coefficients: (points, 4). p: (points,). known: number of leading eigenvalues that are all right of a
-    line, (points,); given at the first point, filled here.
+    coefficients: (points, 4). p: (points,). known: number of leading eigenvalues that are all eigenvalues
+    right of a line, (points,); given at the first point, filled up to the last.
     """
     i = 0
     last = len(p) - 1
@@ -133,11 +148,11 @@ def carry_count(
 
 @compiled
 def judge_points(track: Track, known: NDArray, modes: int, accuracy: float) -> tuple[NDArray, NDArray]:
-    """(whether each point is certified with accurate leading modes, number of unstable modes), (points,)
+    """(whether each point is certified and its leading `modes` accurate, number of unstable modes), (points,)
     each.
 
-    A point fails if an eigenvalue may lie on the imaginary axis, or if digits are lost beside a double
-    eigenvalue.
+    known: number of leading eigenvalues proved complete at each point, (points,). A point fails if an
+    eigenvalue may lie on the imaginary axis, or if a nearly double eigenvalue has lost digits.
     """
     n = len(known)
     good = np.empty(n, np.bool_)
@@ -158,7 +173,7 @@ def judge_points(track: Track, known: NDArray, modes: int, accuracy: float) -> t
 
 @compiled
 def leading(track: Track, modes: int) -> tuple[Complex, Array]:
-    """The leading `modes` eigenvalues and their errors, (points, modes) each."""
+    """The leading `modes` eigenvalues and their errors at every point of a track, (points, modes) each."""
     n = track.w.shape[0]
     w = np.empty((n, modes), np.complex128)
     error = np.empty((n, modes))

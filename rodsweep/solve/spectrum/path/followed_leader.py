@@ -1,6 +1,7 @@
-"""The leading eigenvalue of a rod from the leading eigenvalue of a neighbouring rod, without a mesh.
+"""The leading eigenvalue of a rod, followed from a neighbouring rod without a mesh.
 
-Newton's method on D follows the eigenvalue; the winding number proves that it still leads.
+Newton's method on D refines the eigenvalue of the neighbour, and a count of eigenvalues proves that the
+refined eigenvalue leads.
 """
 
 from collections.abc import Iterator
@@ -26,9 +27,9 @@ from .prediction import KnownRoots
 
 
 class Leader(NamedTuple):
-    """The leading eigenvalue w, in 1/tau2, with Im w >= 0, and its error.
+    """The leading eigenvalue w of a rod, in 1/tau2, with Im w >= 0, and its absolute error.
 
-    known: eigenvalues of the rod with Im >= 0, (n,), the leading one first.
+    known: all followed eigenvalues of the rod with Im w >= 0, (n,), the leading one first.
     """
 
     w: complex
@@ -37,11 +38,11 @@ class Leader(NamedTuple):
 
 
 def followed_leader(rod: Rod, near: Complex, accuracy: float) -> Leader | None:
-    """The leading eigenvalue of a rod with its error, followed from a neighbouring rod; None unless proved to
-    lead.
+    """The leading eigenvalue of a rod, followed from a neighbouring rod; None unless it is proved to lead.
 
-    near: eigenvalues of the neighbouring rod with Im >= 0, (n,), the leading one first. For an arm that
-    varies along its length the further eigenvalues help the proof. accuracy: relative.
+    near: eigenvalues of the neighbouring rod with Im w >= 0, (n,), the leading one first. An arm that varies
+    along its length needs several for the proof, a uniform rod only the first. accuracy: largest relative
+    error.
     """
     if rod.standard:
         return _of_uniform(rod, complex(near[0]), accuracy)
@@ -56,7 +57,8 @@ def followed_leader(rod: Rod, near: Complex, accuracy: float) -> Leader | None:
 
 
 def _of_uniform(rod: Rod, near: complex, accuracy: float) -> Leader | None:
-    """`followed_leader` for a uniform rod of linear material, from the leading eigenvalue alone."""
+    """`followed_leader` for a uniform rod of linear material, from the neighbour's leading eigenvalue
+    `near`."""
     w = refined(near, rod.coefficients)
     error, _, _ = root_error(w, rod.coefficients)
     if not _is_of_its_kind(w, error, near, accuracy):
@@ -67,7 +69,9 @@ def _of_uniform(rod: Rod, near: complex, accuracy: float) -> Leader | None:
 
 
 def _of_arm(rod: Rod, near: Complex, accuracy: float) -> Leader | None:
-    """`followed_leader` for an arm that varies along its length."""
+    """`followed_leader` for an arm that varies along its length, from the neighbour's eigenvalues `near`,
+    (n,).
+    """
     hull = hull_of(rod)
     if not isfinite(hull.a) or not np.isfinite(near).all():
         return None
@@ -97,10 +101,11 @@ def _of_arm(rod: Rod, near: Complex, accuracy: float) -> Leader | None:
 
 
 def _is_of_its_kind(w: complex, error: float, near: complex, accuracy: float) -> bool:
-    """Whether an eigenvalue is accurate, and real or complex as its neighbour `near`."""
+    """Whether w is accurate, and real or complex like the neighbour's eigenvalue `near`."""
     return error <= accuracy * abs(w) and w.imag >= 0 and (w.imag == 0) == (near.imag == 0)
 
 
 def _lines(w: complex) -> Iterator[float]:
-    """Lines left of a leading eigenvalue for its count, the cheapest first."""
+    """Real parts of two lines left of a leading eigenvalue w, for its count; the cheaper count comes
+    first."""
     return (w.real - far * abs(w) for far in (CANDIDATES.far_behind, CANDIDATES.behind))

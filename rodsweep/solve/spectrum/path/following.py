@@ -1,7 +1,7 @@
-"""Eigenvalues followed along the points of a path: predicted, then corrected by Newton's method on D.
+"""Eigenvalues followed along the points of a path: predicted, then refined by Newton's method on D.
 
-Each result is a root of D within its error, and no two are the same root. Whether they are all eigenvalues,
-and whether two have exchanged, is left to the count.
+Each followed eigenvalue is a root of D within its error, and no two are the same root. Following does not
+prove that no eigenvalue is missing, nor that two have not been exchanged; the count does.
 """
 
 import math
@@ -25,24 +25,27 @@ from .prediction import Track, guess_at, guess_two, mates_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FollowingSettings(CompiledSettings):
-    """Settings for the corrections of followed eigenvalues."""
+    """Settings of Newton's method for followed eigenvalues."""
 
     max_corrections: int = 8
     """Maximum number of Newton steps for one eigenvalue."""
     accuracy: float = 1e-9
-    """Relative accuracy of eigenvalues that do not lead, and only show where to count."""
+    """Relative accuracy of eigenvalues beyond the leading modes, which only show where to draw the line of a
+    count."""
     safe_curvature: float = 4.0
-    """Safety factor on |D''/(2 D')|, the modulus of the sum of 1/(w - w_j) over all other roots, computed
-    from the known roots only."""
+    """Safety factor on |D''/(2 D')|, which is the modulus of the sum of 1/(w - w_j) over all other roots w_j,
+    but is computed from the followed roots only."""
     rounding_step: float = 4.0
-    """A step below this multiple of the rounding error ends the corrections."""
+    """Newton step, in units of the rounding error of the eigenvalue, at which the iteration ends."""
 
 
 FOLLOWING = FollowingSettings()
 
 
 class CorrectedEigenvalue(NamedTuple):
-    """An eigenvalue after one Newton step: w, slope dw/dp, length of the step, rounding error `blur`."""
+    """An eigenvalue w after one Newton step, its slope dw/dp, the length of the step, and the rounding error
+    `blur` of w.
+    """
 
     w: complex
     slope: complex
@@ -52,14 +55,19 @@ class CorrectedEigenvalue(NamedTuple):
 
 @compiled
 def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -> CorrectedEigenvalue:
-    """The eigenvalue after one Newton step from w; a real eigenvalue stays real."""
+    """One Newton step on D from w, for a uniform rod. direction: d(F, nu, c2, gamma3)/dp. A real w stays
+    real.
+    """
     D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
     return newton_step(w, D, D_w, D_p, DETERMINANT.typical_noise * noise)
 
 
 @compiled
 def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, rounding: float) -> CorrectedEigenvalue:
-    """Newton step from D, the derivatives by w and p, and the rounding error; real w stays real."""
+    """One Newton step from w, given D and its derivatives by w and p; a real w stays real.
+
+    rounding: rounding error of D, on the same scale as D. All results are inf or 0 if D_w vanishes.
+    """
     size = abs(D_w)
     if not size > 0:
         return CorrectedEigenvalue(w, 0j, math.inf, math.inf)
@@ -73,7 +81,9 @@ def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, rounding: fl
 
 @compiled
 def crowding_of(w: Complex, k: int) -> float:
-    """Upper estimate of |D''/(2 D')| at root k, from its distances to the other known roots, (m,)."""
+    """Upper estimate of |D''/(2 D')| at root w[k], from its distances to 0 and to the other followed roots w,
+    (m,).
+    """
     total = 1 / abs(w[k])
     for j in range(len(w)):
         if j != k:
@@ -83,11 +93,11 @@ def crowding_of(w: Complex, k: int) -> float:
 
 @compiled
 def settled_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> float:
-    """Error of an eigenvalue after a Newton step, once the remainder crowding step^2 is small enough; inf
-    before.
+    """Absolute error of an eigenvalue after a Newton step; inf until the remainder crowding step^2 is small
+    enough.
 
-    crowding: upper estimate of |D''/(2 D')| at the eigenvalue, from its distance to other roots. exact:
-    whether the remainder must be below rounding, instead of `FOLLOWING.accuracy`.
+    crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact: whether the remainder must be below the
+    rounding error, instead of `FOLLOWING.accuracy`.
     """
     left = crowding * here.step * here.step
     allowed = max(here.blur, ROUND_OFF * abs(here.w)) if exact else FOLLOWING.accuracy * abs(here.w)
@@ -98,9 +108,10 @@ def settled_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> fl
 
 @compiled
 def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalue) -> bool:
-    """Writes eigenvalue k of point i, and its conjugate as number `mate` if it has one.
+    """Writes eigenvalue k of point i to the track, and its conjugate to index `mate` unless `mate` is
+    negative.
 
-    False for a pair that has become real. The error of eigenvalue k is in the track already.
+    False if a complex pair has become real. The error of eigenvalue k must be in the track already.
     """
     w = track.w[i]
     slope = track.slope[i]
@@ -120,10 +131,11 @@ def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalu
 def _settled(
     first: CorrectedEigenvalue, crowding: float, exact: bool, rod: Coefficients, direction: Coefficients
 ) -> tuple[CorrectedEigenvalue, float]:
-    """(last Newton step, error) of an eigenvalue: steps until `settled_error` is finite; the error is inf
-    without convergence.
+    """(last Newton step, error) of an eigenvalue of a uniform rod, after steps until `settled_error` is
+    finite.
 
-    first: result of the first step. crowding, exact: as in `settled_error`.
+    first: result of the first step. crowding, exact: as in `settled_error`. The error is inf without
+    convergence.
     """
     here = first
     for _ in range(FOLLOWING.max_corrections):
@@ -136,7 +148,7 @@ def _settled(
 
 @compiled
 def distinct_roots(w: Complex, error: Array) -> bool:
-    """Whether all, (m,), eigenvalues and errors are finite and no two eigenvalues may be the same root."""
+    """Whether all eigenvalues w and errors, (m,), are finite and no two eigenvalues can be the same root."""
     for k in range(len(w)):
         if not (abs(w[k]) < math.inf and error[k] < math.inf):
             return False
@@ -150,8 +162,9 @@ def distinct_roots(w: Complex, error: Array) -> bool:
 def _correct_all(
     track: Track, i: int, guess: Complex, modes: int, rod: Coefficients, direction: Coefficients
 ) -> bool:
-    """Corrects the guesses for point i and writes the roots to the track. True if all converged and every
-    pair stayed a pair.
+    """Refines the guesses for all eigenvalues of point i, (m,), and writes the eigenvalues to the track.
+
+    True if all converged, no two coincide, and every complex pair stayed complex.
     """
     w = track.w[i]
     error = track.error[i]
@@ -182,10 +195,11 @@ def _correct_all(
 
 @compiled
 def follow(track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int) -> int:
-    """Number of points, from the first, to which the eigenvalues can be followed; fills the track so far.
+    """Follows eigenvalues of uniform rods along the points p, (points,), and returns the number of points
+    reached.
 
-    track: with w and order at the first point. coefficients: (points, 4); p: path variables, (points,).
-    direction: d(F, nu, c2, gamma3)/dp. The leading `modes` eigenvalues get all digits.
+    track: filled from the first point on, whose w and order are given. coefficients: (points, 4). direction:
+    d(F, nu, c2, gamma3)/dp. The leading `modes` eigenvalues converge to rounding error.
     """
     guess = track.w[0].copy()
     decided = np.empty(len(guess), np.int64)

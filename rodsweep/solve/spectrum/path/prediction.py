@@ -1,9 +1,9 @@
 """Prediction of eigenvalues at the next point of a path, from values and slopes at the last two points.
 
-Cubic Hermite polynomials extrapolate single real eigenvalues. Two real eigenvalues that meet, or have just
-met, are not smooth functions of the rod, but half their sum and the square of half their difference are
-smooth, as for a pair; these are extrapolated. Near the meeting point, the quadratic approximation of D about
-their mean has to decide between two real eigenvalues and a pair.
+A cubic Hermite polynomial extrapolates each single real eigenvalue. Two real eigenvalues that meet and become
+a complex pair are not smooth functions of p. Half their sum and the square of half their difference are
+smooth, before and after the meeting, so these two numbers are extrapolated. Near the meeting, the quadratic
+Taylor polynomial of D about half the sum decides whether the two are real or complex.
 """
 
 import cmath
@@ -20,23 +20,23 @@ from ....model.compiled.settings import CompiledSettings
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EigenvaluePredictionSettings(CompiledSettings):
-    """Settings for predicted eigenvalues that meet."""
+    """Settings for the prediction of two eigenvalues that meet."""
 
     closing: float = 4.0
-    """Two real eigenvalues are extrapolated together if their present rates give a meeting within this many
-    steps, before or after."""
+    """Two real eigenvalues are extrapolated as a pair if their slopes let them meet within this many steps of
+    the path, ahead or behind."""
     meeting: float = 0.25
-    """If the squared difference shrinks below this fraction of its last value, D decides on real or
-    complex."""
+    """Fraction of the squared half difference at the last point. If the prediction falls below it, D decides
+    whether the two eigenvalues are real or complex."""
 
 
 EIGENVALUE_PREDICTION = EigenvaluePredictionSettings()
 
 
 class Track(NamedTuple):
-    """Followed eigenvalues w, their slopes dw/dp and errors, (points, m) each.
+    """Followed eigenvalues w, their slopes dw/dp and absolute errors, (points, m) each.
 
-    order: indices of the eigenvalues by descending real part, then frequency, (points, m).
+    order: at each point the indices of the eigenvalues by descending real part, then frequency, (points, m).
     """
 
     w: Complex
@@ -46,14 +46,16 @@ class Track(NamedTuple):
 
 
 class KnownRoots(NamedTuple):
-    """Some roots of D of one rod, (k,), in any order, with the error of each, (k,)."""
+    """Some roots w of the determinant D of one rod, (k,), in any order, and their absolute errors, (k,)."""
 
     w: Complex
     error: Array
 
 
 def track_from(first: Complex, points: int) -> Track:
-    """A track with the eigenvalues of its first point, (m,), the leading ones first."""
+    """A track of `points` points of which only the first is filled, with the eigenvalues `first`, (m,),
+    leading first.
+    """
     shape = (points, len(first))
     order = np.zeros(shape, np.int64)
     order[0] = np.arange(len(first))
@@ -63,14 +65,16 @@ def track_from(first: Complex, points: int) -> Track:
 
 
 def part_of_track(track: Track, start: int, stop: int) -> Track:
-    """The track from point start up to point stop."""
+    """The points `start` up to, but without, `stop` of a track."""
     here = slice(start, stop)
     return Track(track.w[here], track.slope[here], track.error[here], track.order[here])
 
 
 @compiled
 def mates_of(w: Complex, mate: NDArray) -> None:
-    """Index of the complex conjugate of each eigenvalue, into `mate`, (m,); -1 for real eigenvalues."""
+    """Writes the index of the complex conjugate of each eigenvalue into `mate`, (m,); -1 for real
+    eigenvalues.
+    """
     for k in range(len(w)):
         mate[k] = -1
         if w[k].imag != 0:
@@ -81,7 +85,9 @@ def mates_of(w: Complex, mate: NDArray) -> None:
 
 @compiled
 def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
-    """Also makes mates of real eigenvalues that meet within some steps, the earliest meeting first."""
+    """Makes real eigenvalues that are about to meet each other's mates in `mate`, (m,), the earliest meeting
+    first.
+    """
     while True:
         soonest = EIGENVALUE_PREDICTION.closing
         a = -1
@@ -105,9 +111,9 @@ def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
 def extrapolated(
     values: tuple[float, float], slopes: tuple[float, float], steps: tuple[float, float]
 ) -> float:
-    """Cubic Hermite extrapolation from two points, by values and slopes there, to a third point.
+    """Cubic Hermite extrapolation to a third point, from the values and slopes at two points.
 
-    steps: from the first to the second point, and from there to the third.
+    steps: distance from the first to the second point, and from the second to the third.
     """
     h, ahead = steps
     t = ahead / h
@@ -119,7 +125,7 @@ def extrapolated(
 
 @compiled
 def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, float, float, float]:
-    """(half the sum of two eigenvalues, squared half of the difference, slopes of these two numbers)."""
+    """(half the sum of eigenvalues k and j, squared half difference, slopes of these two numbers)."""
     half = (w[k] - w[j]) / 2
     slope_of_half = (slope[k] - slope[j]) / 2
     middle = (w[k] + w[j]).real / 2
@@ -131,10 +137,11 @@ def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, 
 def _two_ahead(
     track: Track, i: int, two: tuple[int, int], steps: tuple[float, float]
 ) -> tuple[complex, complex, bool]:
-    """Guesses for two eigenvalues extrapolated together; the larger real part or frequency comes first.
+    """(guess, guess, undecided) for two eigenvalues at point i; the larger real part or frequency comes
+    first.
 
-    If D has to decide between a real and a complex pair, both guesses are the middle and the last value is
-    True.
+    undecided: whether D has to decide between two real eigenvalues and a complex pair. Both guesses are then
+    half the sum. steps: as in `extrapolated`.
     """
     k, j = two
     # Where two real eigenvalues meet and become a pair, each has a square root in p; middle and squared half
@@ -156,7 +163,10 @@ def _two_ahead(
 
 @compiled
 def guess_two(w: Complex, two: tuple[int, int], roots: tuple[complex, complex], guess: Complex) -> None:
-    """Sets the guesses for two of the eigenvalues w, both (m,), in their order: real part, then frequency."""
+    """Writes `roots` as the guesses for two eigenvalues of w, in the order of w: real part, then frequency.
+
+    two: indices of the two in w and `guess`, (m,) each.
+    """
     k, j = two
     one, other = roots
     if (one - other).real < 0 or (one - other).imag < 0:
@@ -167,10 +177,11 @@ def guess_two(w: Complex, two: tuple[int, int], roots: tuple[complex, complex], 
 
 @compiled
 def guess_at(track: Track, i: int, p: Array, guess: Complex, decided: NDArray) -> None:
-    """Guesses for point i >= 1, a rod with the coefficients, into `guess`, (m,); p: (points,).
+    """Writes the predicted eigenvalues of point i >= 1 into `guess`, (m,). p: path variable of every point,
+    (points,).
 
-    decided: shape (m,), filled with -1; for two eigenvalues of which D has to decide whether they are real,
-    the index of the partner, and both guesses are the middle.
+    decided: (m,), filled with -1. Where D has to decide whether two eigenvalues are real, it gets the index
+    of the second at the first, and both guesses are half their sum.
     """
     w = track.w[i - 1]
     slope = track.slope[i - 1]

@@ -1,9 +1,9 @@
-"""Spectra of neighbouring points along one parameter: eigenvalues are followed, and one count serves all
-points.
+"""Spectra of rods at neighbouring values of one parameter: eigenvalues are followed, and one count serves
+many rods.
 
-Krylov-Schur solves the first point for some modes more than requested, and solves again where following stops
-or a count disagrees. Points without proof or with lost digits are solved singly. The outcome depends on the
-points of the stretch alone.
+Krylov-Schur solves the first rod for a few modes more than requested, and solves again where following stops
+or a count disagrees. Rods without proof or with lost digits are solved one by one. The outcome depends only
+on the rods of the stretch.
 """
 
 import time
@@ -31,10 +31,11 @@ from .prediction import Track, part_of_track, track_from
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StretchSettings:
-    """Settings for eigenvalues followed along a stretch."""
+    """Settings for eigenvalues followed along a stretch of rods."""
 
     further_modes: int = 2
-    """Number of modes followed beyond the requested modes; the count uses the gaps between them."""
+    """Number of modes followed beyond the requested modes; the line of a count lies in a gap between
+    these."""
 
 
 STRETCH = StretchSettings()
@@ -42,7 +43,9 @@ STRETCH = StretchSettings()
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """Rods along a path, at values of its parameter, (n,)."""
+    """Rods that differ in one parameter: `path` names the parameter, `values` has its value in each rod,
+    (n,).
+    """
 
     path: Path
     values: Array
@@ -51,17 +54,17 @@ class Stretch:
         return len(self.values)
 
     def rod(self, i: int) -> Rod:
-        """The i-th rod."""
+        """Rod number i."""
         return self.path.rod.changed(**{self.path.name: float(self.values[i])})
 
     @property
     def coordinates(self) -> Array:
-        """Path variable of every rod, (n,)."""
+        """Path variable p of every rod, (n,)."""
         return 1 / self.values if self.path.inverse else self.values
 
     @property
     def coefficients(self) -> Array:
-        """(F, nu, c2, gamma3) of every rod, shape (n, 4), bit by bit as `Rod.coefficients`."""
+        """(F, nu, c2, gamma3) of every rod, (n, 4), equal to `Rod.coefficients` in every bit."""
         columns = coefficients_of({**self.path.rod.values, self.path.name: self.values})
         table = np.empty((len(self), len(columns)))
         for place, column in enumerate(columns):
@@ -70,7 +73,9 @@ class Stretch:
 
 
 def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
-    """The leading `request.modes` eigenvalues of every rod, all certified; failures are statuses."""
+    """The leading `request.modes` eigenvalues of every rod, all certified. A failed rod gets a status;
+    nothing is raised.
+    """
     began = time.perf_counter()
     n = len(stretch)
     modes = request.modes
@@ -98,7 +103,7 @@ def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
 
 
 def _unsolved(n: int, modes: int) -> dict[str, Any]:
-    """Fields of a `Spectrum` of n rods, to be filled."""
+    """Arrays for the fields of a `Spectrum` of n rods, filled with the values of an unsolved rod."""
     whole = np.zeros(n, np.int64)
     return {
         "eigenvalues": np.full((n, modes), np.nan + 0j),
@@ -113,7 +118,9 @@ def _unsolved(n: int, modes: int) -> dict[str, Any]:
 
 
 def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> FollowedPoints | None:
-    """Follows and counts the points from `start` on, as far as possible; None if the first point fails."""
+    """Eigenvalues followed from rod `start` on, with their counts, as far as possible; None if the first rod
+    fails.
+    """
     rod = stretch.path.rod
     varies = stretch.path.name == "taper"
     if rod.uniform and not (rod.standard or varies):
@@ -138,9 +145,10 @@ def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Followe
 
 
 def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> NDArray[np.int64]:
-    """Numbers of leading eigenvalues that are proved complete at the first points of a track, (points,).
+    """Number of leading eigenvalues proved complete at each point of a track, up to the last point with a
+    proof, (points,).
 
-    complete: the number at the first point. Where it cannot be carried on, a count gives the next number.
+    complete: this number at the first point. Where no proof carries it on, a new count gives the next number.
     """
     n = len(track.w)
     coefficients = stretch.coefficients[:n]
@@ -163,7 +171,9 @@ def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> N
 
 
 def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
-    """(eigenvalues to follow, pairs unsplit; number of leading eigenvalues proved complete), or None."""
+    """(eigenvalues to follow, (m,), with whole conjugate pairs; number of them proved complete); None after a
+    failure.
+    """
     try:
         modes = request.modes + STRETCH.further_modes
         search = Search(rod, replace(request, modes=modes - 1, certify=True), wanted=modes)
@@ -185,7 +195,7 @@ def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | No
 
 
 def warm_up() -> None:
-    """Loads compiled code and creates solver objects, so that the first point takes no extra time."""
+    """Loads compiled code and creates the solver objects, so that the first stretch takes no extra time."""
     warm_up_search()
     path = Path(Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4), "F")
     solve_stretch(Stretch(path, np.linspace(15.0, 45.0, 12)), SpectrumRequest(2, 1e-4, certify=True))
