@@ -25,20 +25,22 @@ from .parameter_path import changes, determinant_along
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MovingLineSettings(CompiledSettings):
-    """Settings for the rectangles that carry a count along a path."""
+    """Settings for the rectangles that prove that no eigenvalue crosses a moving line."""
 
     first_half_height: float = 0.35
-    """Half-height of the first rectangle, in units of the line's distance from the imaginary axis."""
+    """Half-height, in y, of the first rectangle tried, in units of the line's distance from the imaginary
+    axis."""
     half_height_growth: float = 1.6
-    """Ratio of the half-height of the next rectangle to the half-height of a proved rectangle."""
+    """Ratio of the half-height of the next rectangle to that of the rectangle just proved."""
     largest_half_height: float = 0.6
-    """Largest half-height, in units of |w| at the lower edge, because discs must avoid w = 0."""
+    """Largest half-height of a rectangle, in units of |w| at its lower edge, because its discs must not
+    contain w = 0."""
     overlap: float = 1e-7
     """Relative excess of the half-widths of every rectangle, so that rounding leaves no gap between
     rectangles."""
     smallest_share: float = 1e-6
-    """Smallest width in p, over the interval's width, and smallest half-height, over the line's distance. The
-    proof fails if a smaller rectangle is needed."""
+    """Smallest width of a rectangle in p, over the width of the interval, and smallest half-height, over the
+    line's distance from the imaginary axis. If a smaller rectangle is needed, the proof fails."""
     ranges: ClassVar = {"half_height_growth": (1.0, math.inf), "largest_half_height": (0.0, 1.0)}
 
 
@@ -46,7 +48,9 @@ MOVING_LINE = MovingLineSettings()
 
 
 class IntervalEnd(NamedTuple):
-    """One end of an interval of a path: p, the coefficients of the rod, and the line's real part."""
+    """One end of an interval of a path: p, the coefficients of the rod at p, and the real part of the line
+    there.
+    """
 
     p: float
     coefficients: Coefficients
@@ -54,10 +58,11 @@ class IntervalEnd(NamedTuple):
 
 
 class Strip(NamedTuple):
-    """A part of the strip beside the line, unbounded upwards, that is not yet proved to be free of zeros.
+    """A part of the strip (y, p) that is not yet proved free of zeros of D: everything above y for an
+    interval of p.
 
-    start, stop: ends, as fractions of the interval of p. y: lower edge. half_y: half-height of the rectangle
-    to try next.
+    start, stop: ends of the interval, as fractions of the whole interval of p. half_y: half-height of the
+    next rectangle to try.
     """
 
     start: float
@@ -68,7 +73,9 @@ class Strip(NamedTuple):
 
 @compiled
 def end_between(share: float, first: IntervalEnd, last: IntervalEnd) -> IntervalEnd:
-    """Linear interpolation between two ends, without cancellation; share: from 0 (first) to 1 (last)."""
+    """The interval end interpolated linearly between `first` (share 0) and `last` (share 1), without
+    cancellation.
+    """
     a = 1 - share
     b = share
     F, nu, c2, gamma3 = first.coefficients
@@ -85,8 +92,9 @@ def free_of_zeros(
 ) -> tuple[bool, float, float]:
     """(whether D is proved to have no zero on the rectangle about l(p) + i y, cost in y, cost in p).
 
-    half: half-widths in y and p. tilt: dl/dp. Costs as in `covering.examine_box`. Raises ValueError for
-    half-widths that are not positive.
+    half: half-widths of the rectangle in y and p. tilt: dl/dp. Splitting the variable with the higher cost
+    helps most; the costs are those of `covering.examine_box`. Raises ValueError for a half-width that is not
+    positive.
     """
     half_y, half_p = half
     if not (half_y > 0 and half_p > 0):  # the bounds below would hold for negative ones, and prove nothing
@@ -115,10 +123,11 @@ def free_of_zeros(
 def none_crosses(
     first: IntervalEnd, last: IntervalEnd, direction: Coefficients, most: int
 ) -> tuple[bool, int]:
-    """(whether it is proved that no eigenvalue crosses the line between two ends, rectangles examined).
+    """(whether no eigenvalue is proved to cross the moving line between two interval ends, rectangles
+    examined).
 
-    direction: d(F, nu, c2, gamma3)/dp. most: maximum number of rectangles. The order of the ends is
-    arbitrary. The proof fails for equal ends, and for a line that is not left of the imaginary axis.
+    direction: d(F, nu, c2, gamma3)/dp. most: maximum number of rectangles. The ends may be given in either
+    order. The proof fails for equal ends, and for a line that is not left of the imaginary axis.
     """
     if first.p > last.p:
         first, last = last, first

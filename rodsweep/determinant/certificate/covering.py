@@ -1,7 +1,7 @@
-"""All crossings of the imaginary axis along a path of rods, with a proof of completeness.
+"""All crossings of the imaginary axis along a path of uniform rods, with a proof of completeness.
 
 Along a path p -> rod a pair crosses where D(i eta; p) = 0, two real equations in (eta, p). The a-priori
-bounds leave a finite part of the (eta, p) plane (`first_boxes`), which is divided into boxes until each box
+bounds leave a finite region of the (eta, p) plane (`first_boxes`), which is divided into boxes until each box
 is
 
 * empty: with the centre c and half-widths (h_w, h_p) of the box, f = D exp(-L dw - K dp) is at most M in the
@@ -35,24 +35,25 @@ from .discs import DISCS, BidiscCentre, Pair, bound_on_bidisc, centre_at
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoxProofSettings(CompiledSettings):
-    """Settings for the proofs about one box, and for their number."""
+    """Settings for the proofs about one box of the (eta, p) plane, and for the number of boxes."""
 
     largest_radius_share: float = 0.45
-    """Largest trial share t: half-width of a box over radius of the bidisc."""
+    """First trial ratio t of the half-width of a box to the radius of the bidisc on which D is bounded."""
     next_radius_share: float = 0.6
-    """Ratio of the next trial share t to the present share."""
+    """Factor between one trial ratio t and the next."""
     max_radius_shares: int = 30
-    """Maximum number of trial shares t, down to 2e-7."""
+    """Maximum number of trial ratios t, of which the last is 2e-7."""
     smallest_box: float = 1e-9
-    """Half-widths in units of eta and p below which a box is left open."""
+    """Half-widths of a box, in units of eta and |p|, below which an undecided box is left open instead of
+    divided."""
     max_boxes: int = 1_000_000
-    """Maximum number of boxes to examine; all others are left open."""
+    """Maximum number of boxes to examine; undecided boxes beyond it are left open."""
     same_zero: float = 1.5
-    """Distance from the centre of a regular box, in half-widths, within which a known zero is the box's
-    zero."""
+    """Distance of a zero from the centre of a regular box, in half-widths, within which a zero found before
+    is the one zero of this box."""
     beside: float = 0.01
-    """Distance of a zero from the edge of a box, in half-widths, from which a neighbouring box finds the
-    zero."""
+    """Distance of a zero outside a regular box from its edge, in half-widths, beyond which the zero is left
+    to the neighbouring box that contains it."""
     ranges: ClassVar = {
         "largest_radius_share": (0.0, 1.0),
         "next_radius_share": (0.0, 1.0),
@@ -65,11 +66,12 @@ BOX_PROOF = BoxProofSettings()
 EMPTY = 0
 REGULAR = 1
 UNDECIDED = 2
-"""Result of examining a box: no zero, at most one zero in the doubled box, or no proof of either."""
+"""Outcomes of examining a box: EMPTY, no zero of D; REGULAR, at most one zero in the doubled box; UNDECIDED,
+no proof of either."""
 
 
 class Box(NamedTuple):
-    """A rectangle of the (eta, p) plane."""
+    """A rectangle of the (eta, p) plane: frequency eta on the imaginary axis, path variable p."""
 
     eta_from: float
     eta_to: float
@@ -79,7 +81,7 @@ class Box(NamedTuple):
 
 @compiled
 def distance_bound(value: complex, a: complex, b: complex) -> float:
-    """A lower bound of |value + x a + y b| over real x, y in [-1, 1]; 0 if no positive bound is found."""
+    """A lower bound of |value + x a + y b| over all real x, y in [-1, 1]; 0 if no positive bound is found."""
     best = 0.0
     # The set is a parallelogram; a separating line is parallel to a side, or across the value.
     for normal in (value, 1j * a, 1j * b):
@@ -92,7 +94,9 @@ def distance_bound(value: complex, a: complex, b: complex) -> float:
 
 @compiled
 def mean_rates(centre: BidiscCentre) -> Pair:
-    """(L, K): d sqrt(z)/dw and d sqrt(z)/dp, averaged with the sizes of the two exponentials as weights."""
+    """(L, K): growth rates d sqrt(z)/dw and d sqrt(z)/dp, averaged over the two exponentials of D by their
+    sizes.
+    """
     root_plus = cmath.sqrt(centre.plus)
     root_minus = cmath.sqrt(centre.minus)
     # Removing the mean growth of the exponentials leaves a function that hardly changes over the box.
@@ -108,9 +112,11 @@ def mean_rates(centre: BidiscCentre) -> Pair:
 def remainder_fits(
     centre: BidiscCentre, rates: Pair, half: tuple[float, float], room: float, power: int
 ) -> bool:
-    """Whether the Taylor remainder M t^2/(1 - t)^power of D over a box is proved below `room`.
+    """Whether the Taylor remainder M t^2/(1 - t)^power of D exp(-L dw - K dp) over a box is proved to be
+    below `room`.
 
-    t is a trial ratio of the box to the bidisc on which M bounds D. half: half-widths of the box.
+    t: trial ratio of the box to the bidisc on which M bounds the function. rates: (L, K). half: half-widths
+    of the box.
     """
     t = BOX_PROOF.largest_radius_share
     last = math.inf
@@ -131,9 +137,11 @@ def remainder_fits(
 def examine_box(
     w: complex, coefficients: Coefficients, direction: Coefficients, half: tuple[float, float]
 ) -> tuple[int, float, float]:
-    """(EMPTY, REGULAR or UNDECIDED, cost in eta, cost in p) of the box about w with half-widths `half`.
+    """(EMPTY, REGULAR or UNDECIDED, cost in eta, cost in p) of the box about w = i eta with half-widths
+    `half`.
 
-    Costs are changes of the exponents over an undecided box in each variable; 0 for other boxes.
+    Cost: change of the exponents of D across an undecided box in this variable, by which the variable to
+    divide is chosen; 0 for other boxes.
     """
     D, D_w, D_p, S, noise = determinant_along(w, coefficients, direction)
     centre = centre_at(w, coefficients, changes(coefficients, direction), S)
@@ -164,7 +172,7 @@ def examine_box(
 
 @compiled
 def box_costs(centre: BidiscCentre, half: tuple[float, float]) -> tuple[float, float]:
-    """Changes of the exponents over a box in eta and in p; half: half-widths of the box."""
+    """Changes of the exponents of D across a box in eta and in p; half: half-widths of the box."""
     F, nu, c2, gamma3 = centre.coefficients
     size = abs(centre.w)
     root_plus = math.sqrt(max(abs(centre.plus), 1.0))
@@ -183,7 +191,10 @@ def box_costs(centre: BidiscCentre, half: tuple[float, float]) -> tuple[float, f
 def cover(
     first: Array, origin: Coefficients, direction: Coefficients
 ) -> tuple[list[LocatedZero], list[Box], int]:
-    """(zeros of D(i eta; p), open boxes, number of examined boxes) in the boxes `first`, shape (n, 4)."""
+    """(zeros of D(i eta; p), boxes left open, number of examined boxes) in the boxes `first`, (n, 4).
+
+    origin, direction: coefficients at p = 0 and their derivative by p.
+    """
     stack = [Box(first[i, 0], first[i, 1], first[i, 2], first[i, 3]) for i in range(len(first))]
     # numba infers the type of an empty list from its element.
     zeros = [FAILED for _ in range(0)]

@@ -1,6 +1,7 @@
-"""Upper bounds of |D(w, p) exp(-L (w - c) - K (p - p_c))| over a bidisc, for Cauchy's estimate.
+"""Upper bounds of |D(w, p) exp(-L (w - c) - K (p - p_c))| over a bidisc about (c, p_c), for Cauchy's
+estimate.
 
-p is the variable of a path of rods (`parameter_path`); the disc of p has radius 0 for a single rod.
+p is the path variable (`parameter_path`); for a single rod the disc of p has radius 0.
 """
 
 import cmath
@@ -18,17 +19,18 @@ from ..value import branches
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiscSettings(CompiledSettings):
-    """Settings for bounds on discs and bidiscs."""
+    """Settings for upper bounds of D over discs in w and bidiscs in (w, p)."""
 
     rounding: float = 4.0
-    """Bound of the rounding error of D, in units of its noise; 20 000 unfavourable values had at most 0.7."""
+    """Bound of the rounding error of D, in units of its `noise`; the worst of 20 000 unfavourable values had
+    0.7."""
     clearance: float = 0.9
-    """Largest allowed proved change, in units of |D|."""
+    """Largest change of D, in units of |D|, that a proof may allow for: below 1, so that D cannot vanish."""
     away_from_zero: float = 0.5
-    """Largest relative change x of z over a disc at which sqrt(z) is expanded; the remainder, like x^2/(1 -
-    x), is small up to here."""
+    """Largest relative change x of z over a disc at which sqrt(z) is expanded about its centre. The
+    remainder, like x^2/(1 - x), is small up to here."""
     largest_change: float = 0.98
-    """Largest relative change of a factor of P^2 over a disc for which a bound is computed."""
+    """Largest relative change of each of the two factors of P^2 over a disc; a larger disc has no bound."""
     ranges: ClassVar = {
         "clearance": (0.0, 1.0),
         "away_from_zero": (0.0, 1.0),
@@ -40,15 +42,16 @@ DISCS = DiscSettings()
 
 
 Pair = tuple[complex, complex]
-"""A derivative with respect to w and a derivative with respect to p."""
+"""(derivative by w, derivative by p)."""
 Radii = tuple[float, float]
-"""Radii of a bidisc in w and in p."""
+"""(radius in w, radius in p) of a bidisc; also a pair of real bounds."""
 
 
 class BidiscCentre(NamedTuple):
-    """The centre of a bidisc in (w, p), with the exponents of D there.
+    """The centre (w, p) of a bidisc, with the exponents of D there.
 
-    w; the rod and its change; the scale S; P, z+ and z-; slopes (dz/dw, dz/dp) of z+ and of z-.
+    coefficients: of the rod at p. changes: their derivatives by p. S: scale of D. P, plus, minus: P, z+ and
+    z-. slopes_plus, slopes_minus: (dz/dw, dz/dp) of z+ and of z-.
     """
 
     w: complex
@@ -66,7 +69,8 @@ class BidiscCentre(NamedTuple):
 def centre_at(
     w: complex, coefficients: Coefficients, change: CoefficientDerivatives, S: float
 ) -> BidiscCentre:
-    """The centre of a bidisc at w, for the rod `coefficients` with derivatives `change` along the path."""
+    """The centre of a bidisc at w, for the rod `coefficients`; change: derivatives by p. S: scale of D at
+    w."""
     at = branches(w, coefficients)
     along_plus, along_minus = root_changes(w, at, change)
     drag = coefficients.c2 + coefficients.gamma3
@@ -77,18 +81,21 @@ def centre_at(
 
 @compiled
 def bend_of_root(root: complex, bend: float, x: float) -> float:
-    """Bound of the nonlinear part of sqrt(z). x: total change of z over |z|. bend: nonlinear change of z."""
+    """Bound of the nonlinear part of the change of sqrt(z) = `root`.
+
+    x: bound of the total change of z over |z|. bend: bound of the nonlinear part of the change of z.
+    """
     return bend / (2 * abs(root)) + abs(root) * x * x / (8 * (1 - x))
 
 
 @compiled
 def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: float, S: float) -> Radii:
-    """Bounds of |E(z)| and |dE/dz| over a bidisc, both times |exp(-L dw - K dp)| exp(-S).
+    """Bounds of |E(z)| and |dE/dz| over a bidisc about z, both times |exp(-L dw - K dp)| exp(-S).
 
-    slopes: (dz/dw, dz/dp). rates: (L, K). bend: bound of the nonlinear change of z. The smaller of two bounds
-    of the exponents +-sqrt(z) - L dw - K dp applies: a bound from |sqrt(z)| alone, and a bound from the
-    Taylor polynomial of sqrt(z) if the disc is away from z = 0. Then |E| <= exp(Re sqrt z)/2 and
-    |dE/dz| <= cosh(Re sqrt z)/24; closed forms give smaller bounds for large z.
+    slopes: (dz/dw, dz/dp). rates: (L, K). bend: bound of the nonlinear change of z. Each exponent +-sqrt(z) -
+    L dw - K dp has two bounds, of which the smaller applies: one from |sqrt(z)| alone, one from the Taylor
+    polynomial of sqrt(z) if the disc is away from z = 0. Then |E| <= exp(Re sqrt z)/2 and |dE/dz| <= cosh(Re
+    sqrt z)/24; closed forms give smaller bounds for large z.
     """
     root = cmath.sqrt(z)
     drift = abs(rates[0]) * radii[0] + abs(rates[1]) * radii[1]
@@ -122,7 +129,7 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
 
 @compiled
 def bound_together(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
-    """`bound_on_bidisc` for nearly equal exponents, from |E(z+) - E(z-)| <= 4 |P| max |dE/dz|."""
+    """`bound_on_bidisc` for nearly equal z+ and z-, from |E(z+) - E(z-)| <= 4 |P| max |dE/dz|."""
     w = centre.w
     S = centre.S
     F, nu, c2, gamma3 = centre.coefficients
@@ -145,7 +152,7 @@ def bound_together(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
 
 @compiled
 def bound_on_bidisc(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
-    """Bound of |D exp(-L dw - K dp)| exp(-S) over the bidisc about (w, p)."""
+    """An upper bound of |D exp(-L dw - K dp)| exp(-S) over the bidisc about `centre`; rates: (L, K)."""
     F, nu, c2, _ = centre.coefficients
     apart = bound_apart(centre, rates, radii)
     if F * (nu + F * c2) < 0:  # both exponentials grow at similar rates; separate bounds do not cancel
@@ -155,7 +162,7 @@ def bound_on_bidisc(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
 
 @compiled
 def bound_apart(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
-    """`bound_on_bidisc` for distinct exponents, from separate bounds of E(z+) and E(z-); inf if the bidisc is
+    """`bound_on_bidisc` for distinct z+ and z-, from separate bounds of E(z+) and E(z-); inf if the bidisc is
     too large.
 
     Over the bidisc, w changes by a factor 1 + e1 and g nu + c2 gamma3 w by a factor 1 + e2, with bounds of

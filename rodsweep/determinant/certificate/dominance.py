@@ -1,4 +1,4 @@
-"""Discs in which one exponential of D dominates: D has no zero there, and the phase of D is known.
+"""Discs of w in which one exponential of D dominates: D has no zero there, and the phase of D is known.
 
 With sqrt(z+) the root of larger real part, D (`rodsweep.determinant.value`) is
 
@@ -6,9 +6,9 @@ With sqrt(z+) the root of larger real part, D (`rodsweep.determinant.value`) is
     A e = 1 + (w z+'/(4 z+)) (exp(-sqrt z+) - 2) + (w/2) z-' E(z-).
 
 Over a disc |dw| <= rho with |e| < 1 and Re sqrt(z+) > Re sqrt(z-) the phase of D is arg A + arg(1 + e). The
-term arg(1 + e) stays within a right angle and is needed only at both ends of a chain of such discs. All
-bounds are relative to exp(L dw), L = z+'/(2 sqrt z+), as in `rodsweep.determinant.certificate.discs`. Far
-from the eigenvalues, which lie near the negative real axis, the radius may be a quarter of |w|.
+term arg(1 + e) stays within a right angle and is needed only at the two ends of a chain of such discs. All
+bounds are relative to exp(L dw), L = z+'/(2 sqrt z+), as in `rodsweep.determinant.certificate.discs`.
+Eigenvalues lie near the negative real axis; far from there the radius may be a quarter of |w|.
 """
 
 import cmath
@@ -25,18 +25,21 @@ from .discs import DISCS, bend_of_root, terms_on_bidisc
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DominanceSettings(CompiledSettings):
-    """Settings for discs in which one exponential dominates."""
+    """Settings for discs in which one exponential of D dominates."""
 
     first_radius: float = 0.25
-    """Radius of the first trial disc, in units of the distance to the nearest branch point."""
+    """Radius of the first trial disc, in units of the distance of its edge point from the nearest branch
+    point of z+-."""
     halvings: int = 2
-    """Number of further trial discs, each half as large."""
+    """Maximum number of halvings of a trial disc before dominance counts as not proved."""
     overlap: float = 1e-3
-    """Relative excess of a disc's radius over half its step, so that rounding leaves no gap between discs."""
+    """Relative excess of a disc's radius over half the step that it covers, so that rounding leaves no gap
+    between discs."""
     end_rounding: float = 1e-15
-    """Relative distance from the end of a stretch that is rounding error: some units in the last place."""
+    """Relative distance from the end of a segment that is rounding error: a few units in the last place."""
     largest_factor_change: float = 0.5
-    """Largest relative change of each factor of A over a disc; keeps every phase within a right angle."""
+    """Largest relative change of each factor of A over a disc; the phase of each factor then stays within a
+    right angle."""
     ranges: ClassVar = {"first_radius": (0.0, 1.0), "largest_factor_change": (0.0, 1.0)}
 
 
@@ -44,7 +47,7 @@ DOMINANCE = DominanceSettings()
 
 
 class Exponent(NamedTuple):
-    """z+ or z- at a point w, with slope dz/dw and root sqrt z."""
+    """z+ or z- at a point w, with slope dz/dw and root sqrt(z)."""
 
     z: complex
     slope: complex
@@ -53,7 +56,7 @@ class Exponent(NamedTuple):
 
 @compiled
 def _ordered(w: complex, coefficients: Coefficients) -> tuple[complex, Exponent, Exponent]:
-    """(P, dominant exponent, recessive exponent) at w."""
+    """(P, dominant exponent, recessive exponent) at w; the dominant one has the larger Re sqrt(z)."""
     P, P_w, _, plus, minus = branches(w, coefficients)
     drag = coefficients.c2 + coefficients.gamma3
     of_plus = Exponent(plus, drag + 2 * P_w, cmath.sqrt(plus))
@@ -65,9 +68,10 @@ def _ordered(w: complex, coefficients: Coefficients) -> tuple[complex, Exponent,
 
 @compiled
 def _bend_and_turn(w: complex, rho: float, P: complex, coefficients: Coefficients) -> tuple[float, float]:
-    """Bounds over the disc of (nonlinear part of z+-, change of z+-'); inf if the disc is too large.
+    """Bounds over the disc |dw| <= rho of (nonlinear part of z+-, change of dz+-/dw); inf if the disc is too
+    large.
 
-    z = T w - F g +- 2 P, so only P has a nonlinear part, which 2 - sqrt(1 - e) majorises.
+    z+- = T w - F g +- 2 P, so only P has a nonlinear part, which 2 - sqrt(1 - e) majorises.
     """
     F, nu, c2, gamma3 = coefficients
     X = c2 * gamma3
@@ -86,8 +90,8 @@ def _bend_and_turn(w: complex, rho: float, P: complex, coefficients: Coefficient
 
 @compiled
 def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
-    """Whether |e| < 1 in D = A (1 + e) is proved on the disc of radius rho about w: one exponential then
-    dominates D.
+    """Whether one exponential is proved to dominate D = A (1 + e), |e| < 1, on the disc of radius rho about
+    w.
     """
     P, (z, slope, root), (z_other, slope_other, root_other) = _ordered(w, coefficients)
     if P == 0 or root.real <= root_other.real:
@@ -127,14 +131,16 @@ def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
 
 @compiled
 def dominant_factors(w: complex, coefficients: Coefficients) -> tuple[complex, complex]:
-    """(w z'/z, sqrt z) of the dominant exponential at w: factor and exponent of A in D = A (1 + e)."""
+    """(w z'/z, sqrt z) of the dominant exponential A of D at w, up to the factor 1/4: factor and exponent of
+    A.
+    """
     _, dominant, _ = _ordered(w, coefficients)
     return w * dominant.slope / dominant.z, dominant.root
 
 
 @compiled
 def _phase_beside(w: complex, factors: tuple[complex, complex], coefficients: Coefficients) -> float:
-    """arg(1 + e) = arg(D/A) at w; factors: `dominant_factors` at w."""
+    """arg(1 + e) = arg(D/A) at w, the phase of D beside the phase of A. factors: `dominant_factors` at w."""
     D, _, _, _ = scaled_determinant(w, coefficients)
     factor, root = factors
     return cmath.phase(D / (factor * cmath.exp(complex(0.0, root.imag))))
@@ -144,7 +150,11 @@ def _phase_beside(w: complex, factors: tuple[complex, complex], coefficients: Co
 def dominated_stretch(
     start: complex, direction: complex, length: float, coefficients: Coefficients
 ) -> tuple[float, float, int]:
-    """(length of the stretch from `start` with proved dominance, change of arg D over it, disc count)."""
+    """(length of the segment from `start` on which dominance is proved, change of arg D over it, number of
+    discs).
+
+    direction: unit vector of the segment. length: its greatest length.
+    """
     F, nu, c2, gamma3 = coefficients
     X = c2 * gamma3
     gn = (nu + F * c2) * nu

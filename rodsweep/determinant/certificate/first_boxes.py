@@ -1,7 +1,8 @@
-"""The first boxes of a covering: the part of the (eta, p) plane outside which nothing crosses.
+"""The first boxes of a covering of the (eta, p) plane, outside which the a-priori bounds exclude every
+crossing.
 
-The a-priori bounds (`box`) hold on an interval of the path. Intervals are so short that no coefficient
-changes much over one of them.
+The a-priori bounds (`box`) hold on an interval of the path. Intervals of p are so short that no coefficient
+changes much over an interval.
 """
 
 import math
@@ -16,28 +17,31 @@ from .box import BOX, quiet_radius, squared_amplification_over
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoveringSettings:
-    """Settings for the first boxes of a covering."""
+    """Settings for the first boxes of a covering of the (eta, p) plane."""
 
     slabs: int = 8
-    """Minimum number of initial intervals of p."""
+    """Minimum number of intervals of p into which the path is divided."""
     first_ratio: float = 4.0
-    """Ratio of the upper to the lower end of the initial boxes in eta."""
+    """Largest ratio of the upper to the lower end of a first box in eta."""
     nu_step: float = 0.5
-    """Largest decrease of nu over an initial interval, in units of nu."""
+    """Largest decrease of nu over an interval of p, in units of nu at its start."""
     least_step: float = 1e-6
-    """Length of an initial interval near p = 0, where drags and compliances double, in units of the first
-    length."""
+    """Shortest interval, in units of the longest, near p = 0, where each interval doubles a drag or
+    compliance p."""
     last_step: float = 1e-3
-    """Length of a last interval, in units of its predecessor, that is joined to its predecessor."""
+    """Length of a remaining last interval, in units of its predecessor, below which it is merged with its
+    predecessor."""
     padding: float = 1e-6
-    """Added to the upper bound of eta, in 1/tau2: the bound is 0 at F = 0."""
+    """Length added to the upper bound of eta, in 1/tau2, because the bound is 0 at F = 0."""
 
 
 COVERING = CoveringSettings()
 
 
 def slabs(path: Path, start: float, stop: float) -> list[tuple[float, float]]:
-    """Intervals of p from start to stop; in each, nu at most halves, a drag or compliance at most doubles."""
+    """Intervals (start, end) of p; over each interval nu at most halves, and a drag or compliance at most
+    doubles.
+    """
     edges = [start]
     width = (stop - start) / COVERING.slabs
     while edges[-1] < stop:
@@ -55,7 +59,10 @@ def slabs(path: Path, start: float, stop: float) -> list[tuple[float, float]]:
 
 
 def first_boxes(path: Path, start: float, stop: float) -> Array | None:
-    """Boxes that contain every crossing with p from start to stop, shape (n, 4); None without a bound."""
+    """Boxes (eta_from, eta_to, p_from, p_to) that contain every crossing with p from start to stop, (n, 4).
+
+    None without an a-priori bound.
+    """
     boxes = []
     for a, b in slabs(path, start, stop):
         top = (1 + BOX.margin) * squared_amplification_over(path, a, b) + COVERING.padding

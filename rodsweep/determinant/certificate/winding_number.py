@@ -1,13 +1,13 @@
-"""Proved number of transverse eigenvalues right of a vertical line, without mesh or shift.
+"""Proved number of transverse eigenvalues of a uniform rod right of a vertical line, without mesh or shift.
 
 All eigenvalues with Re w >= -depth lie in the box of `rodsweep.determinant.certificate.box`, so their number
 is the winding number of the entire function D around the box. D is real on the real axis, so the upper half
 of the box suffices: count = (change of arg D along the upper half)/pi.
 
 The change of phase is proved. Where one exponential of D dominates, long steps are possible
-(`rodsweep.determinant.certificate.dominance`); elsewhere the proof goes from node to node. Within the
+(`rodsweep.determinant.certificate.dominance`); elsewhere the proof steps from node to node. Within the
 `reach` of a node D has no zero, and its phase, without a linear part, changes by less than pi/2. A step is
-accepted only if one end lies within the reach of the other. If the reach is 0, the rounding error of D
+accepted only if one end lies within the reach of the other end. If the reach is 0, the rounding error of D
 cannot separate a zero of D from the line, and the count fails.
 """
 
@@ -27,29 +27,31 @@ from .reach import node_at
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CountSettings(CompiledSettings):
-    """Settings for the contour of a count."""
+    """Settings for the contour around which the winding number of D is computed."""
 
     width_factor: float = 4.0
-    """Factor on the width of the box: one exponential dominates far from the eigenvalues, so a wider box is
-    cheaper."""
+    """Factor on the width of the box. A wider box is cheaper, because one exponential dominates D far from
+    the eigenvalues."""
     width_added: float = 50.0
-    """Width added to the box, in 1/tau2, for the same reason."""
+    """Length added to the width of the box, in 1/tau2, for the same reason."""
     least_height: float = 0.5
     """Smallest height of the box, in units of the line's distance from the imaginary axis."""
     not_an_integer: float = 1e-3
-    """Distance of a winding number from the nearest integer beyond which the count fails."""
+    """Distance of the computed winding number from the nearest integer beyond which the count fails."""
     patience: float = 0.25
-    """Length, in units of |w|, to walk from node to node before trying a disc of dominance again; doubled
-    after every failure."""
+    """Length, in units of |w|, of a walk from node to node before dominance is tried again; doubled after
+    each failure."""
     longest_step: float = 1.9
-    """Longest step tried in units of the reach of a node; beyond 1 the reach of the next node must cover the
-    step."""
+    """Longest step tried from a node, in units of its reach. Beyond 1 the reach of the next node must cover
+    the step."""
     within_reach: float = 0.999
-    """Step in units of the reach of a node that lies within it whatever the rounding."""
+    """Step from a node, in units of its reach, that is certainly within the reach despite rounding."""
     smallest_reach: float = 1e-13
-    """Reach in units of |w| below which the line counts as running through a zero of D."""
+    """Reach of a node, in units of |w|, below which the contour is taken to meet a zero of D, and the count
+    fails."""
     max_edge_nodes: int = 20_000
-    """Maximum nodes on one edge; the paper's rods need about 30 on all edges."""
+    """Maximum number of nodes on one edge of the box; the paper's rods need about 30 on all edges
+    together."""
     ranges: ClassVar = {"within_reach": (0.0, 1.0)}
 
 
@@ -58,7 +60,10 @@ COUNT = CountSettings()
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """Number of eigenvalues right of a line; None for a failed count, whose reason is `why_not`."""
+    """Number of eigenvalues right of a vertical line, and number of nodes on the contour.
+
+    number: None for a failed count, whose reason is `why_not`.
+    """
 
     number: int | None
     nodes: int
@@ -67,7 +72,8 @@ class Count:
 
 @compiled
 def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
-    """(change of arg D along the segment, number of nodes), alternating between both proofs.
+    """(change of arg D along the segment from start to end, number of nodes), by dominance or from node to
+    node.
 
     The number of nodes is negative after a failure.
     """
@@ -100,7 +106,7 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
 
 @compiled
 def stepped_change(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
-    """(change of arg D along the segment, number of nodes), from node to node.
+    """(change of arg D along the segment from start to end, number of nodes), from node to node.
 
     The number of nodes is negative after a failure.
     """
@@ -136,8 +142,8 @@ def contour_change(
 ) -> tuple[float, int]:
     """(change of arg D, number of nodes) along the upper half of the box.
 
-    The path goes from the real axis up to the corner, left to the line, down to the height `foot`. The number
-    of nodes is negative after a failure.
+    The contour goes from the real axis up to `corner`, left to Re w = line, and down to the height `foot`.
+    The number of nodes is negative after a failure.
     """
     top = complex(line, corner.imag)
     right, nodes = phase_change(complex(corner.real, 0.0), corner, coefficients)
@@ -154,9 +160,10 @@ def contour_change(
 
 
 def count_right_of(line: float, rod: Rod) -> Count:
-    """Proved number of transverse eigenvalues of `rod` with Re w > line, for any real line.
+    """Proved number of transverse eigenvalues of a uniform rod with Re w > line, for any real `line`, in
+    1/tau2.
 
-    Raises no error: a failed proof is a Count without a number, with the reason.
+    No exception is raised: a failed proof is a Count without a number, with the reason.
     """
     real, imag = eigenvalue_box(rod, max(-line, 0.0))
     if not math.isfinite(imag) or not math.isfinite(real):

@@ -1,9 +1,10 @@
-"""Refinement of a mesh's eigenvalues to roots of D by Newton's method.
+"""Refinement of a mesh's eigenvalues to roots of D by Newton's method, for uniform rods.
 
 The mesh has to be only as fine as Newton's method needs. The accuracy of an eigenvalue is then the accuracy
 of D, at the cost of a few evaluations of D. Two eigenvalues closer than the errors of the mesh are first
-moved to the roots of the Taylor polynomial of D of second order about their middle. The polynomial decides
-whether the two are real or a complex pair; Newton's method from the wrong kind would not converge.
+moved to the roots of the quadratic Taylor polynomial of D about their middle. The polynomial decides whether
+the two are real or complex: Newton's method from two real guesses would not converge to a complex pair, nor
+the reverse.
 """
 
 import cmath
@@ -23,12 +24,14 @@ from .settings import ROOTS
 
 
 class Roots(NamedTuple):
-    """Eigenvalues of a mesh refined to roots of D, sorted by descending real part, then frequency.
+    """Eigenvalues of a mesh refined to roots w of D, sorted by descending real part, then frequency; all
+    arrays are (k,).
 
-    chosen: index of each root in the list of the mesh. w: complex roots. error: error estimates.
-    displacement: error of the mesh, in units of |w| or of the length over which D changes, whichever is
-    larger. wave: largest |q|. on_the_axis: whether the root is imaginary within its error. All are (k,).
-    ahead: number of eigenvalues of the mesh inside the box, right of all roots, that approximate no root.
+    chosen: index of each root in the list of the mesh. error: absolute error estimates. displacement:
+    distance of the mesh's eigenvalue from the root, in units of |w| or of the length over which D changes,
+    whichever is larger. wave: largest |q|, in 1/L. on_the_axis: whether the root is imaginary within its
+    error. ahead: number of eigenvalues of the mesh inside the a-priori box and right of all roots that
+    approximate no root.
     """
 
     chosen: NDArray[np.int64]
@@ -42,9 +45,10 @@ class Roots(NamedTuple):
 
 @compiled
 def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
-    """(distance to the nearest root of D, length, wave number): `newton_correction` for double roots too.
+    """(distance from w to the nearest root of D, length, wave number), as `newton_correction`, but also near
+    double roots.
 
-    With the larger e of |D| and its rounding error, the Newton correction e/|D'| is valid if |D'|^2 is large
+    e is |D| or, if larger, its rounding error. The Newton correction e/|D'| is valid if |D'|^2 is large
     against e |D''|. Closer to a double root, at the distance |D'/D''| from the middle of both roots, the
     roots cannot be separated within sqrt(2 e/|D''|) of the middle.
     """
@@ -62,9 +66,9 @@ def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, fl
 
 @compiled
 def two_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, complex]:
-    """The two roots of the Taylor polynomial of D of second order about `middle`.
+    """The two roots of the quadratic Taylor polynomial of D about `middle`, for a uniform rod.
 
-    For a real `middle` both roots are real or complex conjugates.
+    For a real `middle` the two are both real, or complex conjugates.
     """
     D, D1, S, _ = scaled_determinant(middle, coefficients)
     if middle.imag == 0:
@@ -75,7 +79,9 @@ def two_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, com
 
 @compiled
 def roots_of_parabola(middle: complex, D: complex, D1: complex, D2: complex) -> tuple[complex, complex]:
-    """The two roots of the Taylor polynomial about `middle` with value D, slope D1 and curvature D2."""
+    """The two roots of the quadratic polynomial about `middle` with value D, first derivative D1 and second
+    D2.
+    """
     if D2 == 0:
         return middle, middle
     root = cmath.sqrt(D1 * D1 - 2 * D * D2)
@@ -84,10 +90,10 @@ def roots_of_parabola(middle: complex, D: complex, D1: complex, D2: complex) -> 
 
 @compiled
 def _separate(w: Complex, error: Array, coefficients: Coefficients) -> Array:
-    """Moves pairs of eigenvalues closer than their errors to two roots, in place.
+    """Moves every two eigenvalues closer than their errors to two roots of D, in place.
 
-    Returns half the distance from the other one of the pair, (n,), inf where an eigenvalue is not moved.
-    w: eigenvalues, (n,). error: (n,).
+    w, error: (n,). Returns half the distance of each moved eigenvalue from its partner, (n,); inf for the
+    unmoved.
     """
     reach = np.full(len(w), math.inf)
     for i in range(len(w)):
@@ -120,7 +126,8 @@ def _descending(w: Complex) -> NDArray:
 
 @compiled
 def sort_descending(w: Complex, order: NDArray) -> None:
-    """Sorts the indices `order` of w, shape (n,), in place, by descending real part, then frequency.
+    """Sorts the indices `order` of w, (n,), in place, by descending real part of w, then descending
+    frequency.
 
     Insertion sort: fast for lists that are almost sorted.
     """
@@ -139,12 +146,11 @@ def sort_descending(w: Complex, order: NDArray) -> None:
 
 @compiled
 def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_waves: float) -> Roots:
-    """Roots of D, refined from those eigenvalues of a mesh that approximate a root.
+    """Roots of D refined from the eigenvalues `raw` of a mesh, complex, (n,), that approximate a root of D.
 
-    raw: eigenvalues of a mesh, complex, shape (n,). amplification: square root of
-    `rodsweep.determinant.certificate.box.squared_amplification`. most_waves: largest |q| that the mesh
-    resolves. Rounding makes infinite eigenvalues finite; these lie outside the box, beyond the mesh or far
-    from every root.
+    amplification: square root of `rodsweep.determinant.certificate.box.squared_amplification`. most_waves:
+    largest wave number |q| that the mesh resolves. Infinite eigenvalues, which rounding makes finite, are
+    dropped: they lie outside the a-priori box, have too large a |q|, or are far from every root.
     """
     error: Array = np.empty(len(raw))
     length: Array = np.empty(len(raw))
@@ -185,7 +191,7 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
 def _refined_all(
     first: Complex, error: Array, wave: Array, near: NDArray[np.bool_], coefficients: Coefficients
 ) -> tuple[Complex, NDArray[np.bool_]]:
-    """(w, mask): eigenvalues after refinement, and which of them are roots; both (k,).
+    """(w, mask): eigenvalues refined to roots of D, and whether each is a root; both (k,).
 
     first: eigenvalues of the mesh, (k,). near: which of these approximate a root. error, wave, both (k,), are
     updated in place.
@@ -212,7 +218,8 @@ def _refined_all(
 
 @compiled
 def _raise_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coefficients) -> None:
-    """Raises the errors of two eigenvalues at the same root to the distance of the next root, 2 |D'/D''|.
+    """Raises the errors of two eigenvalues that are one root to the distance 2 |D'/D''| of the next root, in
+    place.
 
     w, error: (n,).
     """
