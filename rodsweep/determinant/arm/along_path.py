@@ -1,10 +1,10 @@
-"""D of arms along a path of one parameter: eigenvalues with slopes, and double eigenvalues.
+"""D of the arms of a path as a function of the path variable p: eigenvalues with slopes, and double
+eigenvalues.
 
-D depends on the parameter through all coefficients along the arm. Where a family of arms
-(`rodsweep.determinant.arm.family`) contains the arm, D and its derivative by the parameter come from it.
-Elsewhere derivatives with respect to the parameter are central differences between determinants of
-neighbouring arms. These need not be accurate: Newton's method and predictors use them, and the residual D
-decides convergence.
+D depends on p through all coefficients along the arm. Where a family of arms
+(`rodsweep.determinant.arm.family`) contains the arm at p, D and its derivative by p come from the family.
+Elsewhere derivatives by p are central differences between determinants of neighbouring arms. The differences
+need not be accurate: only Newton's method and predictors use them, and the residual D decides convergence.
 """
 
 import math
@@ -22,24 +22,27 @@ from .newton import refined_root
 
 CENTRAL_DIFFERENCE = ((1, 0.5), (-1, -0.5))
 FORWARD_DIFFERENCE = ((0, -1.5), (1, 2.0), (2, -0.5))
-"""Central and forward difference of second order: (offset in steps, weight times step) of each value."""
+"""CENTRAL_DIFFERENCE and FORWARD_DIFFERENCE, of second order: (offset in steps, weight times step) of each
+value."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmDoubleSettings:
-    """Settings for double eigenvalues of arms along a path and for differences by the parameter."""
+    """Settings for double eigenvalues of arms along a path, and for differences by the path variable."""
 
     noise: float = 5.0
-    """Rounding error of D at a double eigenvalue, in units of its noise: 4.7 at most at 44 double eigenvalues
-    of stepped arms, against 19 digits."""
+    """Rounding error of D at a double eigenvalue, in units of its `noise`: at most 4.7 at 44 double
+    eigenvalues of stepped arms, compared with 19 digits."""
     compared_levels: tuple[int, ...] = (1, 4, 16)
-    """Elements for these multiples of |w| are compared to estimate rounding errors at a double eigenvalue."""
+    """Multiples of |w|. D on the elements for each multiple is compared to estimate its rounding error at a
+    double eigenvalue."""
     spread_factor: float = 3.0
-    """Safety factor on the spread of four values."""
+    """Safety factor on the largest difference between these values of D."""
     max_shortenings: int = 20
-    """Maximum number of divisions of a difference step, down to 1e-12 of the first step."""
+    """Maximum number of times that a difference step is divided by `shortening`, down to 1e-12 of the first
+    step."""
     shortening: float = 4.0
-    """Divisor of a difference step that reaches beyond the valid arms."""
+    """Divisor of a difference step whose neighbour is not a valid arm."""
 
 
 ARM_DOUBLES = ArmDoubleSettings()
@@ -48,7 +51,8 @@ ARM_DOUBLES = ArmDoubleSettings()
 class ArmAlongPath:
     """D of the arms of one path, as a function of the path variable p.
 
-    family: the family of arms that contains p; None to compute D from the arm at p itself.
+    family: function that returns the family of arms that contains p, or None to compute D from the arm at p
+    itself.
     """
 
     def __init__(self, path: Path, family: Callable[[float], ArmFamily | None] = lambda p: None):
@@ -56,7 +60,7 @@ class ArmAlongPath:
         self.family = family
 
     def determinant(self, p: float) -> ArmDeterminant:
-        """D of the arm at p."""
+        """The determinant D of the arm at p."""
         return arm_determinant(self.path.at(p))
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
@@ -74,7 +78,7 @@ class ArmAlongPath:
         return w, -self.derivative(w, p, value.S) / value.D_w, error
 
     def derivative(self, w: complex, p: float, S: float) -> complex:
-        """dD/dp exp(-S) at w and p."""
+        """dD/dp exp(-S) at w and p, by a difference between neighbouring arms."""
         stencil, h = self._stencil(p, math.inf)
         slope = 0j
         for offset, weight in stencil:
@@ -83,9 +87,9 @@ class ArmAlongPath:
         return slope / h
 
     def double(self, x: float, p: float, reach: float) -> LocatedZero:
-        """The double real eigenvalue D = D_w = 0 near (x, p).
+        """The double real eigenvalue D = D_w = 0 near the guess (x, p), by Newton's method.
 
-        FAILED if p moves by more than twice `reach`, if the sign of x changes, or without convergence.
+        `FAILED` if p moves by more than twice `reach`, if the sign of x changes, or without convergence.
         """
         start = x
         first = p
@@ -125,10 +129,11 @@ class ArmAlongPath:
         return FAILED
 
     def _spread(self, x: float, p: float, S: float) -> float:
-        """Rounding error of D exp(-S) at real w = x: the spread between different elements, times a safety
-        factor.
+        """Estimated rounding error of D exp(-S) at real w = x: the spread of D over different elements, times
+        a factor.
 
-        Minors that are large in the middle of an arm have rounding errors that the noise of D does not show.
+        Minors that are large in the middle of an arm have rounding errors that the `noise` of D does not
+        contain.
         """
         arm = self.determinant(p)
         values = [
@@ -139,20 +144,20 @@ class ArmAlongPath:
         return ARM_DOUBLES.spread_factor * (max(D) - min(D))
 
     def _value(self, x: float, p: float) -> DeterminantValue:
-        """D and D_w at real w = x."""
+        """D and D_w at real w = x, for the arm at p."""
         family = self.family(p)
         if family is not None and abs(x) < family.W:
             return value_in(family, complex(x, 0.0), p)
         return self.determinant(p).value(complex(x, 0.0))
 
     def _real(self, x: float, p: float, S: float) -> tuple[float, float]:
-        """(D, D_w) exp(-S) at real w = x."""
+        """D exp(-S) and D_w exp(-S), real, at real w = x, for the arm at p."""
         value = self._value(x, p)
         scale = math.exp(value.S - S)
         return value.D.real * scale, value.D_w.real * scale
 
     def _stencil(self, p: float, largest: float) -> tuple[tuple[tuple[int, float], ...], float]:
-        """(stencil, step) of a difference with respect to p, with a step of at most `largest`.
+        """(stencil, step) of a difference by p, with a step of at most `largest`.
 
         The step is shortened until both neighbours are valid arms: not crushed, no negative compliance or
         drag. The stencil is one-sided at a compliance or a drag of 0.
