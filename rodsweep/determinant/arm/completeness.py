@@ -1,18 +1,18 @@
-"""Proof that no eigenvalue of an arm is missing among known ones, from D at a few real points.
+"""Proof that no eigenvalue of an arm is missing from a list of known ones, from D at a few real points.
 
 D is entire of order 1/2 with D(0) = 1, so that D'/D(x) = sum 1/(x - w_n) over all eigenvalues. With points
 x_1 < ... < x_k right of the hull of the spectrum and c_j = prod_(i != j) 1/(x_i - x_j),
 
     phi(v) = prod_j 1/(x_j - v) = sum_j c_j/(x_j - v),   sum_n phi(w_n) = sum_j c_j D'/D(x_j).
 
-What the known eigenvalues leave of this sum is R = sum phi over the unknown ones. The points lie so far to
-the right that sum_j arg(x_j - v) is at most pi/2 everywhere in the hull: every term of R has a real part of
-at least 0. An unknown eigenvalue right of a line would contribute the least Re phi there at least, twice as
-much if it is one of a pair. If R is less, there is none.
+Subtracting phi at the known eigenvalues leaves R = sum phi over the unknown eigenvalues. The points lie so
+far to the right that sum_j arg(x_j - v) is at most pi/2 everywhere in the hull, so every term of R has a real
+part >= 0. An unknown eigenvalue right of a line would contribute at least the smallest Re phi there, and
+twice as much if it is one of a pair. If R is smaller, no eigenvalue right of the line is unknown.
 
-The far eigenvalues, infinitely many, contribute like |w_n|^-k: a few known ones beyond the line suffice. The
-proof rests on the hull, on the known ones being eigenvalues within their errors, and on the rounding error of
-D and the error of its elements, which are estimates.
+The infinitely many eigenvalues far to the left contribute only like |w_n|^-k, so it suffices to know a few
+eigenvalues left of the line. The proof relies on the hull, on the known eigenvalues being eigenvalues within
+their errors, and on estimates of the rounding error of D and of the error of its elements.
 """
 
 import math
@@ -32,37 +32,37 @@ from .value import chain_value
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CompletenessSettings(CompiledSettings):
-    """Settings for proofs of completeness, and for the points of w at which D'/D is summed."""
+    """Settings for proofs of completeness, and for the points x_j at which D'/D is summed."""
 
     spare: int = 2
-    """Further eigenvalues of an arm whose list is proved complete: of 100 random arms 59 then need a count,
-    which costs more than they do, and 73 without them."""
+    """Number of eigenvalues requested beyond the modes to prove: with two, 59 of 100 random arms still need a
+    count, without 73. A count costs more than two eigenvalues."""
     powers: tuple[int, ...] = (3, 6)
-    """Numbers k of points that are tried: few, which are closer, before many, which suffice for a wide
-    hull."""
+    """Numbers k of points x_j of successive trials. Fewer points lie closer to the hull; more points suffice
+    for a wider hull."""
     farthest: tuple[float, ...] = (1.5, 6.0)
-    """Largest distance of the last of k points from 0 for each of `powers`, in units of the largest known
-    |w|: from farther away, unknown eigenvalues contribute like known ones. Most proofs that fail lie beyond,
-    and most that succeed do not."""
+    """Largest x_k, for each number of `powers`, in units of the largest known |w|. Most proofs with a larger
+    x_k fail, because unknown eigenvalues contribute like known ones; most that succeed have a smaller x_k."""
     first_point: float = 0.35
-    """Least distance of the first point from 0, in units of the depth of the line."""
+    """Smallest x_1, in units of the distance of the line from the imaginary axis."""
     least_point: float = 1e-6
-    """Least distance of the first point from 0, in 1/tau2, for a line and a hull near 0."""
+    """Smallest x_1, in 1/tau2, for a line and a hull near 0."""
     spread: float = 1.0
-    """Distance of the last point from the first, in units of the first one's from 0."""
+    """x_k - x_1, in units of x_1."""
     wider: float = 1.3
-    """Factor by which the points are moved outwards until every term of R is positive."""
+    """Factor on all points x_j, applied until every term of R has a real part >= 0."""
     slabs: int = 24
-    """Vertical strips of the region right of the line, in each of which Re phi has a bound of its own."""
+    """Number of vertical strips of the hull right of the line, each with its own bound of Re phi."""
     allowed: float = 0.7
-    """Largest |R| with its rounding error in units of what an unknown eigenvalue would contribute."""
+    """Largest |R| of a proof, rounding error included, over the least contribution of an unknown
+    eigenvalue."""
     rounding_of_slope: float = 10.0
-    """Rounding error of D'/D, relative, in units of the relative noise of D: 0.08 at most between two levels
+    """Relative rounding error of D'/D, in units of the relative `noise` of D: at most 0.08 between two sets
     of elements, over 45 random arms."""
     ranges: ClassVar = {"wider": (1.0, math.inf), "allowed": (0.0, 1.0)}
 
     def tried(self) -> list[tuple[int, float]]:
-        """(k, largest distance of the last point) of each trial, in order."""
+        """(k, largest x_k in units of the largest known |w|) of each trial, in order."""
         return list(zip(self.powers, self.farthest, strict=True))
 
 
@@ -70,8 +70,7 @@ COMPLETENESS = CompletenessSettings()
 
 
 class Remainder(NamedTuple):
-    """Remainder R of the sum of phi over all eigenvalues, after the known ones are subtracted (see the
-    module).
+    """Remainder R of the sum of phi over all eigenvalues, less the known ones (see the module).
 
     blur: rounding error of R. least: smallest contribution to R of an unknown eigenvalue right of the line.
     """
@@ -84,10 +83,11 @@ class Remainder(NamedTuple):
 def none_is_missing(
     line: float, known: Complex, error: Array, determinant: ArmDeterminant, hull: Hull
 ) -> tuple[bool, int]:
-    """(whether every eigenvalue with Re w >= line is proved to be known, number of evaluations of D).
+    """(whether every eigenvalue with Re w >= line is proved to be among the known ones, number of evaluations
+    of D).
 
-    known, error: known eigenvalues, (n,), and the error of each, (n,). Of each conjugate pair both must be
-    known.
+    known, error: known eigenvalues, (n,), and their absolute errors, (n,). Known eigenvalues without their
+    conjugate are ignored.
     """
     if not math.isfinite(hull.a) or not line <= 0:
         return False, 0
@@ -108,24 +108,27 @@ def none_is_missing(
 
 
 def has_conjugate(known: Complex) -> Array:
-    """Mask, (n,), of the known eigenvalues that are real, or whose conjugate is known too."""
+    """Mask, (n,), of known eigenvalues that are real or whose conjugate is known too."""
     conjugates = set(known.conj().tolist())
     return np.array([w in conjugates for w in known.tolist()], dtype=bool)
 
 
 def largest_w_of_proof(line: float, hull: Hull, known: Complex) -> float:
-    """The largest |w| of the first proof that is tried, from eigenvalues, (n,); inf if none is tried."""
+    """Largest |w| at which the first trial of `none_is_missing` evaluates D; inf if no trial is possible.
+
+    known: eigenvalues, (n,), or approximations.
+    """
     largest = float(np.abs(known).max())
     tried = ((_last(right_of_hull(line, hull.a, hull.c, k)), most) for k, most in COMPLETENESS.tried())
     return next((last for last, most in tried if last <= most * largest), math.inf)
 
 
 def cheapest_proof(line: float, hull: Hull, known: Complex, modes: int) -> tuple[int, float]:
-    """(number of leading eigenvalues to know, at least `modes`; largest |w| at which D is evaluated) of the
-    cheapest proof.
+    """(number of leading eigenvalues that the cheapest proof must know, largest |w| at which this proof
+    evaluates D).
 
-    known: eigenvalues, (n,), leading first. Proofs with smaller |w| need fewer elements. The number is 0 if
-    no proof is possible.
+    known: approximate eigenvalues, (n,), leading first. The cheapest proof has the smallest |w|, and so the
+    fewest elements. The number is at least `modes`, or 0 if no proof is possible.
     """
     best = 0, math.inf
     sizes = np.maximum.accumulate(np.abs(known)).tolist()
@@ -140,14 +143,15 @@ def cheapest_proof(line: float, hull: Hull, known: Complex, modes: int) -> tuple
 
 
 def _last(points: Array) -> float:
-    """The last of the points of a proof, (k,); inf without points."""
+    """The last point x_k of a proof, (k,); inf without points."""
     return float(points[-1]) if len(points) else math.inf
 
 
 @compiled
 def proves_completeness(found: Remainder) -> bool:
-    """Whether no unknown eigenvalue lies right of the line. R far below 0 would mean that a known eigenvalue
-    is not a root of D.
+    """Whether R excludes an unknown eigenvalue right of the line.
+
+    It does not if R is far below 0: a known eigenvalue is then no root of D.
     """
     allowed = COMPLETENESS.allowed * found.least
     return found.R + found.blur < allowed and -allowed < found.R
@@ -155,8 +159,9 @@ def proves_completeness(found: Remainder) -> bool:
 
 @compiled
 def right_of_hull(line: float, a: float, c: float, k: int) -> Array:
-    """k points, (k,), for which the term of R of every w in the hull right of the line is positive; empty if
-    no such points exist.
+    """Points x_1 < ... < x_k, (k,), so far right that every term of R has a real part >= 0; may be empty.
+
+    a, c: constants of the hull.
     """
     # As close to the hull as allowed: from farther away all eigenvalues contribute alike.
     x = max(COMPLETENESS.first_point * abs(line), a * a, COMPLETENESS.least_point)
@@ -172,7 +177,7 @@ def right_of_hull(line: float, a: float, c: float, k: int) -> Array:
 
 @compiled
 def _turn_of_hull(points: Array, a: float, c: float) -> float:
-    """An upper bound of sum_j arg(x_j - v) over the hull."""
+    """An upper bound of sum_j arg(x_j - v) over all v in the hull."""
     b = 1 - c
     total = 0.0
     for x in points:
@@ -190,11 +195,11 @@ def _turn_of_hull(points: Array, a: float, c: float) -> float:
 def remainder_of_sum(
     line: float, known: Complex, error: Array, hull: Hull, points: Array, level: tuple[float, Array]
 ) -> Remainder:
-    """The remainder R of the sum over all eigenvalues, its rounding error, and the least contribution right
-    of the line.
+    """The remainder R, its rounding error, and the smallest contribution of an unknown eigenvalue right of
+    the line.
 
-    known, error: known eigenvalues, (n,), closed under conjugation, and the error of each, (n,). points:
-    (k,). level: (W, propagators) for |w| up to the last point.
+    known, error: known eigenvalues, (n,), closed under conjugation, and their errors, (n,). points: x_j,
+    (k,). level: (W, propagators), W at least the last point.
     """
     k = len(points)
     R = 0.0
@@ -223,7 +228,7 @@ def remainder_of_sum(
 
 @compiled
 def _least_right_of(line: float, points: Array, a: float, c: float) -> float:
-    """A lower bound of Re phi at real points of the hull right of the line, and of 2 Re phi at others."""
+    """A lower bound of Re phi at real points of the hull right of the line, and of 2 Re phi elsewhere."""
     b = 1 - c
     right = max(a * a / (4 * b), line)
     least = 1.0
