@@ -1,8 +1,8 @@
-"""Eigenvalues of an arm beside the imaginary axis, by Newton's method from points on the axis.
+"""Eigenvalues of an arm close to the imaginary axis, by Newton's method from points on the axis.
 
-Beside the axis, D exp(-Phi) with the dominant wave Phi changes slowly but for the zeros close to it. Newton's
-method on this function, without the zeros found before, therefore says at each point of the axis whether a
-further zero is close. Nothing proves that all are found.
+With the dominant wave Phi, D exp(-Phi) varies slowly on the axis but for its zeros close by. Newton's method
+on this function, with the zeros found before divided out, therefore shows at each point of the axis whether a
+further zero is close. It is not proved that all are found.
 """
 
 import math
@@ -23,20 +23,21 @@ from .settings import ARM_COUNT
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BesideAxisSettings(CompiledSettings):
-    """Settings for the points on the axis and for Newton's method from them."""
+    """Settings for the starting points on the imaginary axis, and for Newton's method from them."""
 
     lowest: float = 0.01
-    """Height of the first point, in 1/tau2: crossings of the arms of the surveys lie above 1."""
+    """Im w of the first starting point, in 1/tau2; crossings of all arms of the surveys lie above 1."""
     ratio: float = 1.25
-    """Ratio of the heights of two points."""
+    """Ratio of Im w of one starting point to that of its predecessor."""
     close: float = 0.5
-    """Largest first step, and largest distance of a zero from its point, in units of the height."""
+    """Largest first Newton step, and largest distance of an eigenvalue from its starting point, in units of
+    Im w of the starting point."""
     max_steps: int = 12
-    """Maximum number of Newton steps from one point."""
+    """Maximum number of Newton steps from one starting point."""
     converged: float = 1e-9
-    """Relative length of the last step; Newton's method on D refines the eigenvalue further."""
+    """Relative length of the last Newton step; Newton's method on D refines the eigenvalue later."""
     most: int = 64
-    """Maximum number of eigenvalues."""
+    """Maximum number of eigenvalues, the known ones included."""
     ranges: ClassVar = {"ratio": (1.0, math.inf), "close": (0.0, 1.0)}
 
 
@@ -44,9 +45,10 @@ BESIDE_AXIS = BesideAxisSettings()
 
 
 def modes_beside_axis(determinant: ArmDeterminant, top: float, known: Complex) -> Complex:
-    """Eigenvalues beside the axis with heights up to `top`, (n,), one of each pair, the known ones first.
+    """Eigenvalues close to the imaginary axis with Im w up to `top`, one of each pair, (n,), the known ones
+    first.
 
-    Raises FloatingPointError if no elements resolve the arm there.
+    known: eigenvalues found before, (m,). Raises FloatingPointError if no elements resolve the arm there.
     """
     found = known[: BESIDE_AXIS.most]
     height = BESIDE_AXIS.lowest
@@ -62,9 +64,8 @@ def modes_beside_axis(determinant: ArmDeterminant, top: float, known: Complex) -
 
 @compiled
 def _modes_from(heights: Array, known: Complex, level: Level, samples: ArmSamples) -> Complex:
-    """The known eigenvalues, (n,), followed by further ones found by Newton's method from i times each
-    height, (k,).
-    """
+    """The known eigenvalues, (n,), and those that Newton's method finds from i times each of `heights`,
+    (k,)."""
     found = np.empty(BESIDE_AXIS.most, np.complex128)
     n = len(known)
     found[:n] = known
@@ -80,8 +81,8 @@ def _modes_from(heights: Array, known: Complex, level: Level, samples: ArmSample
 
 @compiled
 def _mode_near(start: complex, known: Complex, level: Level, samples: ArmSamples) -> complex:
-    """The eigenvalue near a starting point that is not among the known eigenvalues, (n,); nan if no such
-    eigenvalue is close.
+    """The eigenvalue close to `start` that is not among the known ones, (n,); nan if no such eigenvalue is
+    close.
     """
     w = start
     for _ in range(BESIDE_AXIS.max_steps):
