@@ -2,11 +2,11 @@
 
 The number is the change of arg D along the upper half of a box that contains all these eigenvalues, divided
 by pi, as in `rodsweep.determinant.certificate.winding_number`. The phase between two nodes follows from the
-tangents log D(w) + L (v - w), L = D'/D, at both nodes, if each tangent is wrong by less than pi/2 where
-the tangents meet.
+tangents log D(w) + L (v - w), L = D'/D, at both nodes, if the error of each tangent is below pi/2 where the
+two meet.
 
 Known eigenvalues close to the line are divided out: D above stands for D(w)/prod (w - w_n), whose zeros are
-far from the line. Those of them right of the line are added to the count.
+far from the line. The known eigenvalues right of the line are then added to the count.
 """
 
 import cmath
@@ -27,10 +27,11 @@ from .phase_node import PhaseNode, phase_node, tangent
 from .settings import ARM_COUNT
 
 NONE_KNOWN: Complex = np.empty(0, complex)
+"""No known eigenvalues, (0,)."""
 
 
 class PhaseLost(ArithmeticError):
-    """The change of phase could not be determined; nodes: number of nodes used."""
+    """The change of arg D along the contour could not be determined; nodes: number of nodes used."""
 
     def __init__(self, nodes: int):
         super().__init__("an eigenvalue lies too close to the line, or the box is too large")
@@ -38,10 +39,11 @@ class PhaseLost(ArithmeticError):
 
 
 class BoxWalk(NamedTuple):
-    """A walk along the sides of a box: the side, the distance t from its start, the change of arg D so far.
+    """State of a walk along the contour of a count: on side number `side`, at the distance t from its start.
 
-    here: the last of `nodes` nodes. growth: change of the reach per distance. ahead: distance of the next
-    node, 0 if not chosen. needed: |w| for which elements are needed; inf where the phase is lost.
+    total: change of arg D so far. here: the last of `nodes` nodes. growth: change of the reach per distance.
+    ahead: distance of the next node, 0 if not chosen yet. needed: |w| for which propagators are needed to go
+    on; 0 at the end, inf if the phase is lost.
     """
 
     side: int
@@ -61,10 +63,10 @@ def count_right_of(
     known: Complex = NONE_KNOWN,
     error: Array | float = 0.0,
 ) -> Count:
-    """The number of transverse eigenvalues with Re w > line, for any real line.
+    """Number of transverse eigenvalues of an arm with Re w > line, for any real `line`, in 1/tau2.
 
-    known, error: some eigenvalues, (n,), and the error of each, (n,); known eigenvalues make the count
-    faster. Raises no error: a failed count is a Count without a number, with the reason.
+    known, error: some eigenvalues, (n,), and their errors, (n,), which make the count faster. No exception is
+    raised: a failed count is a Count without a number, with the reason.
     """
     if not math.isfinite(hull.a):
         return Count(None, 0, "no a-priori bound on the eigenvalues applies")
@@ -87,7 +89,9 @@ def count_right_of(
 
 
 def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
-    """Whether eigenvalues right of a line at most 0 can be counted: a bound is known, and D resolved."""
+    """Whether eigenvalues right of a line at Re w <= 0 can be counted: the hull is bounded, and elements
+    resolve D.
+    """
     if not math.isfinite(hull.a):
         return False
     try:
@@ -98,21 +102,23 @@ def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
 
 
 def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: Hull) -> float:
-    """The largest |w| at which a count right of a line evaluates D."""
+    """The largest |w| at which a count right of the line evaluates D."""
     corner = _corner(line, hull)
     return abs(corner) + ARM_COUNT.first_radius * determinant.length(corner)
 
 
 def _corner(line: float, hull: Hull) -> complex:
-    """The corner of the box about all eigenvalues right of the line, with the largest |w|."""
+    """The corner in the upper half plane, with the largest |w|, of the box about all eigenvalues right of the
+    line.
+    """
     real, imag = hull.box(max(-line, 0.0))
     return complex(COUNT.width_factor * real + COUNT.width_added, max(imag, COUNT.least_height * abs(line)))
 
 
 def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: Complex) -> tuple[float, int]:
-    """(change of arg D, without the known eigenvalues, along half the box; nodes used).
+    """(change of arg D, without the known eigenvalues, along the upper half of the box; number of nodes).
 
-    Raises `PhaseLost` if the nodes do not connect.
+    Raises `PhaseLost` if a node's reach is too small, or too many nodes are needed.
     """
     corner = _corner(line, hull)
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
@@ -143,10 +149,11 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
     samples: tuple[ArmSamples, ArmSamples],
     level: Level,
 ) -> BoxWalk:
-    """Continues a walk along the box over all nodes for which the present elements suffice.
+    """Continues a walk along the box until its end, or until propagators for a larger or smaller |w| are
+    needed.
 
-    box: (corners, largest |w| for which elements are known to exist). level: (W, propagators) of the present
-    elements. samples: of the arm, for the lengths over which D changes and for the dominant wave.
+    box: (corners, largest |w| for which propagators are known to exist). level: (W, propagators) in use.
+    samples: of the arm, for the lengths over which D changes and for the dominant wave.
     """
     corners, largest = box
     side, t, total, nodes, here, growth, ahead, _ = walk
@@ -184,14 +191,16 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
 
 @compiled
 def _stride(reach: float, growth: float) -> float:
-    """Distance at which the reaches of two nodes just overlap, if they grow by `growth` per distance."""
+    """Distance of the next node at which the reaches of both nodes just overlap, if the reach grows by
+    `growth` per distance.
+    """
     overlap = ARM_COUNT.overlap
     return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), ARM_COUNT.largest_growth))
 
 
 @compiled
 def _nearer(reach: float, growth: float, ahead: float) -> float:
-    """A shorter distance of the next node than `ahead`; repeated calls end within the reach of the present
+    """A smaller distance of the next node than `ahead`; repeated calls end within the reach of the present
     node.
     """
     nearer = min(_stride(reach, growth), ARM_COUNT.closer * ahead)
@@ -200,7 +209,7 @@ def _nearer(reach: float, growth: float, ahead: float) -> float:
 
 @compiled
 def _turn(here: PhaseNode, there: PhaseNode, samples: ArmSamples) -> float:
-    """The change of arg D between two nodes whose reaches overlap."""
+    """The change of arg D between two nodes whose reaches overlap, from their tangents and values of D."""
     share = here.reach / (here.reach + there.reach)
     between = here.w + share * (there.w - here.w)
     # The tangents at both nodes predict the turn. D gives the remainder, which is below half a turn because
