@@ -1,10 +1,10 @@
-"""Points of a count with a tangent of log D each, and the distance within which the tangent holds.
+"""Nodes on the contour of a count, each with a tangent of log D and the distance within which it holds.
 
-The phase of D between two nodes follows from the tangents log D(w) + L (v - w), L = D'/D, at both, if each is
-wrong by less than pi/2 where they meet.
+The phase of D between two nodes follows from the tangents log D(w) + L (v - w), L = D'/D, at both nodes, if
+the error of each tangent is below pi/2 where the two meet.
 
-Outside the hull of the spectrum this condition is proved from D'/D alone. D is entire of order 1/2, so that
-D = prod (1 - w/w_n), and with the distance d of w from the hull and the unit normal n towards w
+Outside the hull of the spectrum this condition is proved from D'/D alone. D is entire of order 1/2, so that D
+= prod (1 - w/w_n), and with the distance d of w from the hull and the unit normal n towards w
 
     Re(n L) = sum <n, w - w_n>/|w - w_n|^2 >= d S,   S = sum 1/|w - w_n|^2,
     |log D(v) - log D(w) - L (v - w)| <= S r^2/2/(1 - r/d)^2,   r = |v - w|.
@@ -35,11 +35,11 @@ from .settings import ARM_COUNT
 
 
 class PhaseNode(NamedTuple):
-    """A point w on the contour with a tangent h of log D, and the distance within which h is valid.
+    """A point w on the contour with a tangent h of log D, and the distance from w within which h holds.
 
-    direction, L: of D, and D'/D, both after division by the known eigenvalues. wave: (Phi, dPhi/dw) if h
-    contains the dominant wave, else 0. reach: distance within which h is valid. radius: radius of the best
-    circle, 0 without a circle.
+    direction, L: D/|D| and D'/D, both after division of D by the known eigenvalues. wave: (Phi, dPhi/dw) if h
+    contains the dominant wave, else 0. reach: this distance. radius: radius of the circle that gave the
+    reach, 0 without a circle.
     """
 
     w: complex
@@ -52,7 +52,7 @@ class PhaseNode(NamedTuple):
 
 @compiled
 def tangent(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
-    """The tangent h of log D at a node, evaluated at v (see the module)."""
+    """The tangent h(v) of log D at a node, less log D(w) (see the module)."""
     Phi, slope = node.wave
     ahead = (node.L - slope) * (v - node.w)
     return ahead + dominant_wave(v, samples) - Phi if Phi != 0 else ahead
@@ -62,10 +62,10 @@ def tangent(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
 def phase_node(
     w: complex, known: Complex, trial: tuple[float, float], hull: Hull, arm: tuple[ArmSamples, Level]
 ) -> PhaseNode:
-    """The node about w, inside or outside the hull.
+    """The node at w, inside or outside the hull.
 
-    known: known eigenvalues, (n,). trial: (length over which D changes, largest radius). arm: samples of the
-    arm, and the propagators for |v| <= W on the largest circle about w.
+    known: eigenvalues to divide out of D, (n,). trial: (length over which D changes, largest radius of a
+    circle). arm: samples of the arm, and the propagators for |v| <= W on the largest circle about w.
     """
     value = chain_value(w, arm[1][0], arm[1][1])
     if not abs(value.D) > ARM_COUNT.rounding * value.noise:
@@ -93,7 +93,7 @@ def _node_inside(
     trial: tuple[float, float],
     arm: tuple[ArmSamples, Level],
 ) -> PhaseNode:
-    """The node at w inside the hull, with the circle on which the bound of |f| gives the largest reach.
+    """The node at w inside the hull, with the circle whose bound of |f| gives the largest reach.
 
     value: D at the node. Further arguments as in `phase_node`.
     """
@@ -135,14 +135,16 @@ def _node_inside(
 
 @compiled
 def _reach_of_circle(rho: float, M: float, room: float) -> float:
-    """Distance within which f changes by less than `room`, in units of |D|, if |f| is at most M at rho."""
+    """Distance from w within which f changes by less than room |D|, if |f| <= M |D| on the circle of radius
+    rho.
+    """
     q = room / M
     return rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q > 0 else 0.0
 
 
 @compiled
 def _log_of_known(v: complex, known: Complex) -> float:
-    """log prod |v - w_n| over known eigenvalues."""
+    """log prod |v - w_n| over the known eigenvalues w_n, (n,)."""
     total = 0.0
     for n in range(len(known)):
         total += math.log(max(abs(v - known[n]), EXPONENTS.least_divisor))
