@@ -123,11 +123,11 @@ def free_of_zeros(
 def none_crosses(
     first: IntervalEnd, last: IntervalEnd, direction: Coefficients, most: int
 ) -> tuple[bool, int]:
-    """(whether no eigenvalue is proved to cross the moving line between two interval ends, rectangles
-    examined).
+    """(whether it is proved that no eigenvalue crosses the moving line, number of rectangles examined).
 
-    direction: d(F, nu, c2, gamma3)/dp. most: maximum number of rectangles. The ends may be given in either
-    order. The proof fails for equal ends, and for a line that is not left of the imaginary axis.
+    first, last: ends of the interval, in either order. direction: d(F, nu, c2, gamma3)/dp. most: maximum
+    number of rectangles. The proof fails for equal ends, and for a line that is not left of the imaginary
+    axis.
     """
     if first.p > last.p:
         first, last = last, first
