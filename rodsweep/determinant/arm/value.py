@@ -41,7 +41,7 @@ class ArmValueSettings(CompiledSettings):
 ARM_VALUE = ArmValueSettings()
 
 RE, IM, RE_SLOPE, IM_SLOPE = range(4)
-"""Rows of powers and of propagators: real and imaginary parts of the value and of its derivative."""
+"""Row indices of powers and propagators: real and imaginary part of the value and of its derivative."""
 
 
 @compiled

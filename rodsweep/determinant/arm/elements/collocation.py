@@ -53,7 +53,9 @@ from .settings import ARM_ELEMENTS, MINORS
 
 
 class IntegrationMatrices(NamedTuple):
-    """Integrals on [0, 1] from 0 to each Gauss point, (STAGES, STAGES), and Gauss weights, (STAGES,)."""
+    """Matrix of the integrals on [0, 1] from 0 to each Gauss point, (STAGES, STAGES), and Gauss weights,
+    (STAGES,).
+    """
 
     integrals: Array
     weights: Array
@@ -61,10 +63,10 @@ class IntegrationMatrices(NamedTuple):
 
 @compiled
 def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: IntegrationMatrices) -> Array:
-    """Terms of w/W of the elements of n arms, (n, elements, terms, ENTRIES); no terms where MAX_TERMS are too
-    few.
+    """Coefficients of the propagators in powers of w/W, (n, elements, terms, ENTRIES); no terms if MAX_TERMS
+    are too few.
 
-    F: forces, (n,). local: `LocalCoefficients`, (6, n, elements, STAGES). lengths: (elements,).
+    F: forces of n arms, (n,). local: `LocalCoefficients`, (6, n, elements, STAGES). lengths: (elements,).
     """
     n, elements = local.shape[1:3]
     batches = -(-elements // ARM_ELEMENTS.lanes)
@@ -86,10 +88,11 @@ def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: I
 
 @compiled
 def fill_terms(F: Array, W: float, coefficients: Array, method: IntegrationMatrices, terms: Array) -> int:
-    """Fills the terms of the elements of n arms; returns how many are needed, MAX_TERMS + 1 for more.
+    """Fills the coefficients of propagators, `terms`; returns the number of terms needed, MAX_TERMS + 1 if
+    too many.
 
-    F: forces, (n,). coefficients: `LocalCoefficients` times the lengths of the elements, (n, batches, 6,
-    STAGES, LANES). terms: of w/W, (n, batches * LANES, MAX_TERMS, ENTRIES), all 0.
+    F: forces of n arms, (n,). coefficients: `LocalCoefficients` times the lengths of the elements, (n,
+    batches, 6, STAGES, LANES). terms: of w/W, (n, batches * LANES, MAX_TERMS, ENTRIES), all 0 at first.
     """
     most = 1
     values = np.empty((MINORS, ARM_ELEMENTS.stages, ARM_ELEMENTS.width))
