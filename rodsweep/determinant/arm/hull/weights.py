@@ -1,4 +1,6 @@
-"""Norms for the regions of `rodsweep.determinant.arm.hull.hull`, from constant or smooth weights alpha."""
+"""Bounds for the hull of `rodsweep.determinant.arm.hull.hull`, from constant or smoothly varying weights
+alpha.
+"""
 
 from math import exp, inf, log, sqrt
 
@@ -12,8 +14,8 @@ from .region import HULL
 
 @compiled
 def least_squared_norm(alphas: Array, local: Array, push: float) -> float:
-    """The smallest a^2, over the constant weights alpha to try, (n,): the squared norm of the matrix along
-    all arms.
+    """The smallest a^2, over the constant weights alpha, (n,): a is the largest norm of the hull's matrix
+    along all arms.
 
     The matrix is given in `rodsweep.determinant.arm.hull.hull`. local: coefficients at all points, (6,
     points). push: the largest F^2 c3/gamma2.
@@ -35,7 +37,11 @@ def least_squared_norm(alphas: Array, local: Array, push: float) -> float:
 
 @compiled
 def constant_weights(local: Array) -> Array:
-    """Constant alpha that are tried, (HULL.weights + 1,): between the extremes of g/nu along arms, and 1."""
+    """Constant weights alpha to try, (HULL.weights + 1,): from the smallest to the largest |g/nu| along the
+    arms, and 1.
+
+    local: coefficients, (6, n, pieces, points).
+    """
     ratio = np.abs(local[5] / local[0])
     start = log(max(ratio.min(), HULL.least_ratio))
     stop = log(max(ratio.max(), 2 * HULL.least_ratio))
@@ -47,8 +53,8 @@ def constant_weights(local: Array) -> Array:
 
 @compiled
 def varying_weight_norms(F: Array, lengths: Array, local: Array, derivative: Array) -> Array:
-    """The largest a^2 along all arms for each of the weights alpha(u) = g/(nu + middle |F| sqrt(c2 c3
-    gamma3/gamma2)) with a factor of `HULL.middles`.
+    """a^2 of each weight alpha(u) = g/(nu + f |F| sqrt(c2 c3 gamma3/gamma2)), f from `HULL.middles`: the
+    largest squared norm of the hull's matrix along all arms, (middles,).
 
     F: (n,). lengths: (pieces,). local: coefficients, (6, n, pieces, points). derivative: (points, points),
     from `ChebyshevMatrices`.
@@ -77,8 +83,8 @@ def varying_weight_norms(F: Array, lengths: Array, local: Array, derivative: Arr
 
 @compiled
 def clamp_integrals(alphas: Array, F: Array, lengths: Array, local: Array, integral: Array) -> Array:
-    """The largest 4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du over the arms, for each constant
-    alpha, (alphas,).
+    """4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du, largest of all arms, for each constant alpha,
+    (alphas,).
 
     c bounds the term with theta by the clamp theta(0) = 0, without rotational drag
     (`rodsweep.determinant.arm.hull.hull`). local: coefficients, (6, n, pieces, points). integral: from
