@@ -1,6 +1,6 @@
 """One nonlinear rod on one mesh as an explicit system for time stepping: dz/dt = f(z) and its exact Jacobian.
 
-The unknown is z = C^(1/2) S, in units of the square root of an energy density: S is the stress of a linear
+The unknown is z = C^(1/2) S, in units of the square root of an energy density. S is the stress of a linear
 rod minus the stress of the straight rod, at all nodes except the tip, where S = 0. z1 at every node comes
 first, then z2, then z3. |z|^2/2 is an energy density of the linear rod, the mass matrix is the identity, and
 large k1 or k2 cost no digits. The form needs c1, c2, gamma3 > 0; `StressForm` includes the limits.
@@ -20,11 +20,11 @@ from .stress.rates import rate_jacobians, rates
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BeamSettings:
-    """Derivatives of the tip."""
+    """Settings for the velocity of the tip."""
 
     tip_step: float = 1e-30
-    """Imaginary step of the complex-step derivative in `tip_motion`, in tau2; its square underflows, so it
-    has no error."""
+    """Imaginary step, in tau2, of the complex-step derivative in `tip_motion`. Its square underflows, so it
+    causes no error."""
 
 
 BEAM = BeamSettings()
@@ -32,9 +32,9 @@ BEAM = BeamSettings()
 
 @dataclass(frozen=True, eq=False)
 class Beam(RodOnMesh):
-    """One rod with finite k1, k2 and gamma3 > 0 on one mesh.
+    """One rod with finite k1, k2 and gamma3 > 0 on one mesh, as an explicit system.
 
-    z has shape (unknowns,) and the unit of sqrt(energy density), sqrt(k3)/L.
+    z has the shape (unknowns,) and the unit of the square root of an energy density, sqrt(k3)/L.
     """
 
     @property
@@ -48,7 +48,7 @@ class Beam(RodOnMesh):
 
     @cached_property
     def crushed(self) -> Array:
-        """The z1 at which h1 = 0, at all nodes except the tip, (nodes,).
+        """Values of z1 at which the stretch h1 is 0, at all nodes except the tip, (nodes,).
 
         At a jump h1 vanishes on one side first if the law is linear, and on both sides at once otherwise.
         """
@@ -64,22 +64,24 @@ class Beam(RodOnMesh):
         return scaled / self._along(scaled)
 
     def scaled(self, S: Array) -> Array:
-        """The state z of stresses S at all nodes, (3, ..., nodes + 1)."""
+        """States z of stresses S at all nodes, (3, ..., nodes + 1)."""
         return self.layout.state(S * self._along(S), S)
 
     def unknown(self, strains: Array) -> Array:
-        """The state z of strains (h1, h2, Pi) at all nodes, (3, nodes + 1); values at the tip are ignored."""
+        """The state z of strains (h1, h2, Pi) at all nodes, (3, nodes + 1); strains at the tip are
+        ignored."""
         return self.layout.state((strains - self.nodal.rest) / self.roots, strains)
 
     def rate(self, z: Array) -> Array:
-        """dz/dt in 1/tau2 for states z, both (..., unknowns)."""
+        """dz/dt of states z, both (..., unknowns), with time in tau2."""
         out = np.empty(z.shape)
         flat = z.reshape(-1, self.unknowns), out.reshape(-1, self.unknowns)
         rates(*flat, self.roots, self.nodal, self.mesh.matrices)
         return out
 
     def jacobian(self, z: Array) -> Array:
-        """d(dz/dt)/dz, (..., unknowns, unknowns), for states z, (..., unknowns)."""
+        """Jacobians d(dz/dt)/dz, (..., unknowns, unknowns), of states z, (..., unknowns), with time in
+        tau2."""
         size = self.unknowns
         out = np.empty((*z.shape, size))
         states = z.reshape(-1, size)
@@ -88,7 +90,7 @@ class Beam(RodOnMesh):
         return out.swapaxes(-1, -2)
 
     def tip_motion(self, z: Array, direction: Array) -> tuple[Array, Array]:
-        """The tip's (x, y, theta) and their d/dt for dz/dt = direction, (3, ...) each.
+        """(x, y, theta) of the tip and its time derivative for dz/dt = direction, (3, ...) each.
 
         z, direction: (..., unknowns). A small imaginary step gives the velocity without cancellation.
         """
@@ -98,7 +100,7 @@ class Beam(RodOnMesh):
         return moved.real, moved.imag / BEAM.tip_step
 
     def tip_velocity(self, z: Array, direction: Array) -> Array:
-        """d/dt of the tip's (x, y, theta) for dz/dt = direction, shape (3, ...)."""
+        """Time derivative of (x, y, theta) of the tip for dz/dt = direction, (3, ...)."""
         return self.tip_motion(z, direction)[1]
 
     def _along(self, field: Values) -> Array:

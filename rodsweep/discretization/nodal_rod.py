@@ -16,13 +16,14 @@ Integers = NDArray[np.int64]
 
 
 class NodalRod(NamedTuple):
-    """A rod with d components at all nodes of a mesh, tip included: the argument of compiled functions.
+    """A rod with d stress components at all nodes of a mesh, tip included: the argument of compiled
+    functions.
 
-    tip_stress: Sigma(1), (d,). rest: E0, the strain of the straight rod; rest, compliance and drag have the
-    shape (d, nodes + 1). mobility: 1/drag, but 0 for components of V that are unknowns. second:
-    -D^T W mobility D, (d, nodes + 1, nodes + 1). kept: indices of the components of V that are unknowns. law:
-    number of the constitutive law, see `rodsweep.model.material.response`. jumps: nodes at which the
-    material jumps, increasing, (k,). sides: both sides of these nodes, (k, 2, 7), see
+    tip_stress: Sigma(1), (d,). rest: E0, the strain of the straight rod under its force; rest, compliance and
+    drag are (d, nodes + 1). mobility: 1/drag, but 0 for the components of V that are unknowns. second: -D^T W
+    mobility D, (d, nodes + 1, nodes + 1). kept: indices of the components of V that are unknowns. law: number
+    of the constitutive law, see `rodsweep.model.material.response`. jumps: nodes at which the material jumps,
+    increasing, (k,). sides: the material on both sides of these nodes, (k, 2, 7), see
     `rodsweep.model.material.jump`.
     """
 
@@ -39,9 +40,7 @@ class NodalRod(NamedTuple):
 
 
 class Jumps(NamedTuple):
-    """Nodes at which the material jumps, and both sides of each: the fields `jumps` and `sides` of a
-    `NodalRod`.
-    """
+    """Nodes at which the material jumps, (k,), and the material on both sides of each, (k, 2, 7)."""
 
     nodes: Integers
     sides: Array
@@ -50,11 +49,12 @@ class Jumps(NamedTuple):
 NO_JUMPS = Jumps(np.zeros(0, np.int64), np.zeros((0, 2, len(COLUMNS))))
 """The jumps of a rod whose material is continuous: none."""
 NO_SIDE_CHANGE = np.zeros((0, 2, 3))
-"""Changes on the sides of jumps, (0, 2, 3), for a rod without jumps or of linear material."""
+"""Derivatives of the material beside jumps, for a rod without jumps or of linear material: none, (0, 2,
+3)."""
 
 
 class NodalChange(NamedTuple):
-    """The derivative of the fields of a `NodalRod` with respect to a parameter; same shapes."""
+    """The derivative of the fields of a `NodalRod` by the path variable of a parameter; same shapes."""
 
     tip_stress: Array
     rest: Array
@@ -76,7 +76,8 @@ def nodal_rod(
 
 
 def nodal_change(change: Material, grid: Mesh, sides: Array = NO_SIDE_CHANGE) -> NodalChange:
-    """The `NodalChange` of the derivative of a material on a mesh; sides: (k, 2, 3), as in `NodalChange`."""
+    """The `NodalChange` from the derivative of a material on a mesh; sides: (k, 2, 3), as in
+    `NodalChange`."""
     fields = change.rest, change.compliance, change.drag
     rest, compliance, drag = (_at_nodes(field, grid.nodes + 1) for field in fields)
     return NodalChange(change.tip_stress, rest, compliance, drag, sides)
@@ -86,14 +87,14 @@ def nodal_change(change: Material, grid: Mesh, sides: Array = NO_SIDE_CHANGE) ->
 def _resistance_of(
     drag: bytes, shape: tuple[int, ...], grid: Mesh, kept: tuple[int, ...]
 ) -> tuple[Array, Array, Array, Integers]:
-    """`_resistance`, cached by the bytes of the drag, because rods of a chain over F have equal drags."""
+    """`_resistance`, cached by the bytes of the drag, because rods that differ in F only have equal drags."""
     # Bytes are hashable keys of the cache, and hold the array itself.
     values = np.frombuffer(drag).reshape(shape)
     return _resistance(values if len(shape) > 1 else values[:, None], grid, kept)
 
 
 def _resistance(drag: Array, grid: Mesh, kept: tuple[int, ...]) -> tuple[Array, Array, Array, Integers]:
-    """drag, mobility, second and kept of a `NodalRod`."""
+    """The fields drag, mobility, second and kept of a `NodalRod`; drag: (d, 1) or (d, nodes + 1)."""
     drag = _at_nodes(drag, grid.nodes + 1)
     mobility = np.zeros(drag.shape)
     eliminated = [a for a in range(len(drag)) if a not in kept]
@@ -104,7 +105,7 @@ def _resistance(drag: Array, grid: Mesh, kept: tuple[int, ...]) -> tuple[Array, 
 
 
 def _at_nodes(field: Array, size: int) -> Array:
-    """A constant of each component, (d,), or a field, (d, size), as a field (d, size)."""
+    """A field (d, size), from a field of this shape or from one constant for each component, (d,)."""
     out = np.empty((len(field), size))
     out[:] = field.reshape(len(field), -1)
     return out

@@ -1,4 +1,5 @@
-"""Indices of the unknowns of the elements of a straight rod, inside the elements and between them."""
+"""Indices of the unknowns of equal elements of a straight rod: those inside an element and those at its
+ends."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,7 +15,7 @@ Indices = NDArray[np.int_]
 
 @dataclass(frozen=True, eq=False)
 class ElementNumbering:
-    """Indices of the elements' unknowns.
+    """Indices of the unknowns of every element in the state, for static condensation.
 
     An element has `local` unknowns. unknowns: indices in the state, (elements, local); stresses at the tip
     are not unknowns, and have the index behind the state. inside, ends: local indices of interior unknowns
@@ -31,7 +32,9 @@ class ElementNumbering:
 
 @lru_cache(maxsize=ELEMENTS.meshes_kept)
 def element_numbering(elements: int, order: int, components: tuple[int, ...]) -> ElementNumbering:
-    """Numbering of a mesh of equal elements of some order, for some components of stresses and velocities."""
+    """Numbering of `elements` equal elements of an order, for the given components of stresses and
+    velocities.
+    """
     last = elements * order
     nodes = np.arange(elements)[:, None] * order + np.arange(order + 1)
     unknown = COMPONENTS * (2 * last + 1)

@@ -1,4 +1,4 @@
-"""The matrices of the mixed form about the straight rod, element by element.
+"""The matrices of the mixed form about the straight uniform rod, element by element.
 
 The equal elements of a uniform rod have equal matrices. A system with the matrix A - s M is solved by static
 condensation: the interior nodes of the elements are eliminated, with one factorisation for all elements; then
@@ -36,7 +36,7 @@ axis."""
 
 @dataclass(frozen=True, eq=False)
 class StraightElements:
-    """A and M of a `MixedForm` about its straight rod, for some components, element by element.
+    """A and M of a `MixedForm` about its straight rod, for the given components, as matrices of one element.
 
     Vectors are states of the form, (unknowns,); other components are ignored.
     """
@@ -46,7 +46,8 @@ class StraightElements:
 
     @cached_property
     def numbering(self) -> ElementNumbering:
-        """Indices of the elements' unknowns. Raises ValueError for several elements of an even order."""
+        """Indices of the unknowns of every element. Raises ValueError for several elements of an even
+        order."""
         mesh = self.form.mesh
         if mesh.elements > 1 and mesh.order % 2 == 0:
             raise ValueError(f"several elements need an odd order, not {mesh.order}")
@@ -54,7 +55,7 @@ class StraightElements:
 
     @cached_property
     def A(self) -> Array:
-        """Element contribution to A, shape (local, local)."""
+        """Contribution of every element to A, (local, local)."""
         each = np.eye(COMPONENTS)
         block = np.ix_(self.components, self.components)
         material = self.form.rod.material
@@ -76,40 +77,40 @@ class StraightElements:
 
     @cached_property
     def M(self) -> Array:
-        """Element contribution to the diagonal of M, shape (local,)."""
+        """Contribution of every element to the diagonal of M, (local,)."""
         stresses = np.outer(self.form.rod.material.compliance[list(self.components)], self._reference[1])
         return np.concatenate([stresses, 0 * stresses]).ravel()
 
     @property
     def _reference(self) -> tuple[Array, Array]:
-        """(W D, W) of an element, shapes (nodes, nodes) and (nodes,)."""
+        """(W D, W) of an element on the rod, (nodes, nodes) and (nodes,)."""
         WD, w = _weighted_derivative(self.form.mesh.order)
         return WD, w / (2 * self.form.mesh.elements)
 
     def times_A(self, x: Values) -> Values:
-        """A x, shape (unknowns,)."""
+        """Product A x, (unknowns,)."""
         return self.assembled(self.gathered(x) @ self.A.T)
 
     def times_M(self, x: Values) -> Values:
-        """M x, shape (unknowns,)."""
+        """Product M x, (unknowns,)."""
         return self.assembled(self.gathered(x) * self.M)
 
     def size_of_product(self, p: Values, q: Values) -> float:
-        """|p| |A| |q|, with moduli of all entries: the scale of the rounding error of p A q."""
+        """|p| |A| |q|, with the moduli of all entries: p A q has a rounding error relative to this number."""
         return float(np.sum(np.abs(self.gathered(p)) * (np.abs(self.gathered(q)) @ np.abs(self.A).T)))
 
     def gathered(self, x: Values) -> Values:
-        """Entries of a vector by element, shape (elements, local)."""
+        """Entries of a vector x, (unknowns,), for each element, (elements, local)."""
         return np.append(x, 0)[self.numbering.unknowns]
 
     def assembled(self, parts: Values) -> Values:
-        """The sum of element contributions, (elements, local), as a vector (unknowns,)."""
+        """Sum of the contributions of all elements, (elements, local), as a vector (unknowns,)."""
         x = np.zeros(self.form.unknowns + 1, parts.dtype)
         np.add.at(x, self.numbering.unknowns, parts)
         return x[:-1]
 
     def factors(self, shift: complex) -> "ElementFactors":
-        """Factorisation of A - shift M."""
+        """LU factorisation of A - shift M by static condensation."""
         numbering = self.numbering
         K = self.A - np.diag(shift * self.M).astype(complex)
         condensed = K[np.ix_(numbering.ends, numbering.ends)]
@@ -126,14 +127,14 @@ class StraightElements:
 
 
 LU = tuple[Complex, NDArray[np.int32]]
-"""LU factorisation of LAPACK: factors and pivots."""
+"""LU factorisation by LAPACK: (factors, pivots)."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _InteriorElimination:
-    """Elimination of the interior unknowns i of an element, with unknowns e at its ends.
+    """Elimination of the interior unknowns i of an element from its matrix K, with unknowns e at its ends.
 
-    factors: factorisation of K_ii. leaving: K_ie, (inside, ends). entering: K_ei, (ends, inside). right:
+    factors: LU factorisation of K_ii. leaving: K_ie, (inside, ends). entering: K_ei, (ends, inside). right:
     K_ii^-1 K_ie, (inside, ends). left: K_ii^-H K_ei^H, (inside, ends).
     """
 
@@ -145,7 +146,7 @@ class _InteriorElimination:
 
     @classmethod
     def of(cls, K: Complex, numbering: ElementNumbering) -> Self:
-        """Elimination of the interior unknowns from the element matrix K, (local, local)."""
+        """The elimination of the interior unknowns from an element matrix K, (local, local)."""
         inside = numbering.inside
         ends = numbering.ends
         factors = factorised(K[np.ix_(inside, inside)])
@@ -156,13 +157,17 @@ class _InteriorElimination:
         return cls(factors=factors, leaving=leaving, entering=entering, right=right, left=left)
 
     def coupling(self, adjoint: bool) -> tuple[Complex, Complex]:
-        """Coupling of interior and ends: (K_ei, K_ii^-1 K_ie), or for `adjoint` the two matrices of K^H."""
+        """(K_ei, K_ii^-1 K_ie), the coupling of interior and ends; for `adjoint`, the two matrices of K^H."""
         return (self.leaving.conj().T, self.left) if adjoint else (self.entering, self.right)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ElementFactors:
-    """Factorisation of K = A - shift M: K is the element matrix, `inside` is None for a single element."""
+    """Factorisation of A - shift M by static condensation.
+
+    K: matrix of one element. inside: elimination of its interior, None for a single element. between: LU
+    factorisation of the matrix of the nodes between elements.
+    """
 
     elements: StraightElements
     K: Complex
@@ -170,9 +175,10 @@ class ElementFactors:
     between: LU
 
     def solve(self, b: Values, adjoint: bool = False) -> Complex:
-        """The solution x of K x = b, or of K^H x = b; both (unknowns,).
+        """The solution x of (A - shift M) x = b, or of its adjoint system if `adjoint`; both (unknowns,).
 
-        The elimination of the interior has no pivots from outside, so a step of iterative refinement follows.
+        The elimination of the interior chooses no pivots at the ends of elements, so one step of iterative
+        refinement follows.
         """
         elements = self.elements
         x = self._eliminated(b, adjoint)
@@ -203,19 +209,23 @@ class ElementFactors:
 
 
 def factorised(K: Complex) -> LU:
-    """LU factorisation of K, (n, n), with partial pivoting; a singular matrix gives inf or nan solutions."""
+    """LU factorisation of K, (n, n), with partial pivoting; solutions with a singular K are inf or nan."""
     factors, pivots, _ = zgetrf(K)
     return factors, pivots
 
 
 def solved_with(factors: LU, right: Values, adjoint: bool = False) -> Complex:
-    """The solution x of K x = right, or of K^H x = right; right: (n,) or (n, m)."""
+    """The solution x of K x = right, or of K^H x = right if `adjoint`, from the factors of K; right: (n,) or
+    (n, m).
+    """
     x, _ = zgetrs(*factors, right, trans=2 if adjoint else 0)
     return x
 
 
 @lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _weighted_derivative(order: int) -> tuple[Array, Array]:
-    """(W D, W) on [-1, 1], (order + 1, order + 1) and (order + 1,); W D does not depend on the length."""
+    """(W D, W) on the element [-1, 1], (order + 1, order + 1) and (order + 1,); W D is the same for every
+    length.
+    """
     x, w = gauss_lobatto(order)
     return w[:, None] * differentiation(x), w

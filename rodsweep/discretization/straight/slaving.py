@@ -1,4 +1,5 @@
-"""The tip layer of an arm without rotational drag, whose theta follows y: T of `rodsweep.model.adjoint`.
+"""The tip layer of an arm without rotational drag, whose angle theta follows y: T of
+`rodsweep.model.adjoint`.
 
 d = theta - theta+ solves d' = c3 m, m' = q d with q = g nu/c2 and d(0) = 0, and T = d(1)/m(1). The weak form
 is int b' d'/c3 + b q d = b(1) m(1). T is the energy of d for m(1) = 1, so the error of T is the square of the
@@ -19,20 +20,23 @@ from ..elements.quadrature import gauss, gauss_lobatto
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SlavingSettings:
-    """Settings for the elements of the tip layer."""
+    """Settings for the elements that resolve the tip layer."""
 
     longest: float = 4.0
-    """Longest element in units of the layer's thickness; elements away from the tip may be longer."""
+    """Longest element next to the tip, in units of the layer's thickness; elements away from the tip may be
+    longer."""
     max_equal: int = 64
-    """Largest number of equal elements; thinner layers have elements that get shorter towards the tip."""
+    """Maximum number of equal elements; a thinner layer also has elements that get shorter towards the
+    tip."""
     samples: int = 33
-    """Number of samples of each smooth piece of an arm from which the thickness of the layer is estimated."""
+    """Number of samples of each interval between breaks of an arm, from which the thickness of the layer is
+    estimated."""
 
 
 SLAVING = SlavingSettings()
 ORDER = 16
-"""Order of the elements, derived: it resolves exp(kappa u) over `SLAVING.longest`/kappa to rounding, since no
-error of T is stated. Half of it would leave 4e-11 of a numerical abscissa."""
+"""Order of the elements. It resolves exp(kappa u) over `SLAVING.longest`/kappa to rounding, because T is
+returned without an error. Order 8 would cause an error of 4e-11 of a numerical abscissa."""
 
 
 def slaving_of(rod: Rod) -> float:
@@ -58,8 +62,9 @@ def slaving_of(rod: Rod) -> float:
 
 
 def _at_right_end(K: Array, before: float) -> float:
-    """The ratio d/m of `slaving_of` at the right end of an element, from the ratio at the left end. K:
-    stiffness, (nodes, nodes).
+    """The ratio d/m at the right end of an element, from the ratio `before` at its left end.
+
+    K: stiffness matrix of the element, (nodes, nodes).
     """
     # 0 is the clamp, whose node is no unknown; else all elements before act as a stiffness 1/before.
     if before == 0:
@@ -73,7 +78,9 @@ def _at_right_end(K: Array, before: float) -> float:
 
 
 def _edges(rod: Rod) -> Array:
-    """Edges of elements: breaks, equal elements, and shorter elements towards the tip for a thin layer."""
+    """Edges of elements: breaks, equal elements and, for a thin layer, shorter elements towards the tip;
+    increasing.
+    """
     breaks = rod.build.breaks
     pieces = zip(breaks, breaks[1:], strict=False)
     middles = np.concatenate([np.linspace(a, b, SLAVING.samples + 2)[1:-1] for a, b in pieces])

@@ -1,6 +1,7 @@
-"""Meshes of the transverse problem: equal elements of a uniform rod, or elements of an arm that end at jumps.
+"""Meshes of the transverse eigenproblem: equal elements of a uniform rod, or elements of an arm.
 
-A uniform rod of linear material has a `Resolution`, every other arm an `ArmMesh`.
+A uniform rod of linear material has a `Resolution`. Every other arm has an `ArmMesh`, whose elements end at
+the jumps of its material.
 """
 
 from functools import lru_cache
@@ -14,10 +15,11 @@ from .dense_form import AnyPencil
 from .pencil import assemble
 
 AnyMesh = Resolution | ArmMesh
+"""Mesh of the transverse eigenproblem of a uniform rod or of an arm."""
 
 
 def mesh_for(rod: Rod, wave_number: float, accuracy: float) -> AnyMesh:
-    """Mesh that resolves fields of a wave number, in 1/L, to a relative accuracy."""
+    """The mesh that resolves fields of a wave number, in 1/L, to a relative accuracy."""
     if rod.standard:
         return resolution_for(wave_number, accuracy)
     elements = arm_elements(rod, wave_number, accuracy)
@@ -25,12 +27,12 @@ def mesh_for(rod: Rod, wave_number: float, accuracy: float) -> AnyMesh:
 
 
 def finer_mesh(rod: Rod, mesh: AnyMesh) -> AnyMesh:
-    """The next mesh after a mesh that is too coarse."""
+    """The next finer mesh after `mesh`."""
     return finer(mesh) if isinstance(mesh, Resolution) else finer_arm_mesh(rod, mesh)
 
 
 def pencil_on(mesh: AnyMesh) -> AnyPencil:
-    """The pencil on a mesh, kept for later rods on equal meshes."""
+    """The pencil of the transverse eigenproblem on a mesh, cached for later rods on equal meshes."""
     return assemble(mesh.elements, mesh.order) if isinstance(mesh, Resolution) else _arm_pencil(mesh)
 
 

@@ -42,7 +42,9 @@ from ..state_layout import stress_place, velocity_place
 
 @UnrolledOverAlgebra
 def fields(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
-    """Writes E and s(S) of a state x, (unknowns,), at all nodes into E and S, both (d, nodes + 1)."""
+    """Writes the strains E and stresses s(S) of a state x, (unknowns,), at all nodes into E and S, (d, nodes
+    + 1) each.
+    """
     size = E.shape[1]
     for i in range(size):
         s = [x[stress_place(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
@@ -55,7 +57,7 @@ def fields(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
 
 @compiled
 def apply_law(S: Array, c: NodalRod) -> None:
-    """Replaces S by s(S) at all nodes, (3, nodes + 1), of a rod in the plane."""
+    """Replaces the unknown stresses S by s(S) at all nodes, (3, nodes + 1), for a rod in the plane."""
     k = 0
     for i in range(S.shape[1]):
         if k < len(c.jumps) and c.jumps[k] == i:
@@ -68,7 +70,9 @@ def apply_law(S: Array, c: NodalRod) -> None:
 
 @UnrolledOverAlgebra
 def forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes D*_E Sigma at all nodes into out, (d, nodes + 1), from E and s(S) of `fields`."""
+    """Writes the forces per length D*_E Sigma at all nodes into out, (d, nodes + 1), from E and s(S) of
+    `fields`.
+    """
     size = len(m.weights)
     out[:, :] = 0.0
     for j in range(size - 1):
@@ -91,7 +95,7 @@ def forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatri
 
 @UnrolledOverAlgebra
 def strain_rates(g: Algebra, E: Array, V: Array, G: Array, m: NodeMatrices) -> None:
-    """Writes the weighted strain rates W D_E V in weak form at all nodes into G.
+    """Writes the strain rates W D_E V at all nodes, in weak form, into G, from strains E and velocities V.
 
     E, V, G: (d, nodes + 1).
     """
@@ -141,7 +145,10 @@ def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatric
 
 @UnrolledOverAlgebra
 def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes the equations W (D*_E Sigma - Gamma V) of the unknown components of V into out, (unknowns,)."""
+    """Writes the residuals W (D*_E Sigma - Gamma V) of the unknown components of V into out, (unknowns,).
+
+    x: state, (unknowns,). Entries of out for stresses are not written.
+    """
     size = len(m.weights)
     E = np.empty((g.dimension, size))
     S = np.empty((g.dimension, size))
@@ -157,9 +164,9 @@ def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatri
 
 @compiled
 def law_change(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
-    """Writes the derivative of s(S) along a change of the rod into dS, (3, nodes + 1).
+    """Writes the derivative of s(S) by a parameter, at fixed S, into dS, (3, nodes + 1).
 
-    x: a state in the plane, (unknowns,). change: derivative of the rod `c` with respect to a parameter.
+    x: a state in the plane, (unknowns,). change: derivative of the rod `c` by this parameter.
     """
     n = dS.shape[1] - 1
     k = 0
@@ -179,11 +186,11 @@ def law_change(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
 def balance_change(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
     g: Algebra, x: Array, V: Array, out: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
 ) -> None:
-    """Writes the derivatives along a change of the rod into out, (3, d, nodes + 1).
+    """Writes the derivatives of the equations by a parameter, at a fixed state x, (unknowns,), into out.
 
-    x: state, (unknowns,). V: velocity at x, (d, nodes + 1). change: derivative of the rod `c` with respect to
-    a parameter. out[0]: derivative of D*_E Sigma - Gamma V at fixed V; out[1]: of V; out[2]: of G. Unknown
-    components of V are fixed.
+    out: (3, d, nodes + 1). out[0]: derivative of D*_E Sigma - Gamma V at fixed V; out[1]: of V; out[2]: of G.
+    V: velocity at x, (d, nodes + 1). change: derivative of the rod `c` by the parameter. Unknown components
+    of V are fixed.
     """
     size = len(m.weights)
     E = np.empty((g.dimension, size))

@@ -34,7 +34,8 @@ def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count referenc
     """Writes the Jacobian of the equations at x, (unknowns,), into J, (unknowns, unknowns).
 
     V: velocity at x, (d, nodes + 1). Rows are equations, in the order of the unknowns: G at all nodes except
-    the tip, then the balance of each unknown component of V. tip, (d, unknowns): derivative of the reaction.
+    the tip, then the balance of each unknown component of V. tip, (d, unknowns): derivative of the reaction
+    at the tip.
     """
     size = len(m.weights)
     E = np.empty((g.dimension, size))
@@ -53,7 +54,7 @@ def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count referenc
 
 @compiled
 def _by_law(x: Array, J: Array, P: Array, c: NodalRod) -> None:
-    """Adds P (T - 1) to J; both (rows, unknowns). T: tangent of the law of a rod in the plane, at x."""
+    """Adds P (T - 1) to J; both (rows, unknowns). T: tangent of the law of a rod in the plane, at state x."""
     n = c.compliance.shape[1] - 1
     k = 0
     for i in range(n):

@@ -1,4 +1,4 @@
-"""The rod on a mesh as an explicit differential equation, for finite stiffnesses, compiled.
+"""The rod on a mesh as an explicit differential equation dz/dt = f(z), for finite stiffnesses, compiled.
 
 The unknown is z = C^(1/2) S, with the stresses S of `balance`; z^2 is an energy density.
 """
@@ -15,7 +15,7 @@ from ..state_layout import stress_place
 
 @compiled_for_vectors
 def rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes dz/dt, in units of z per tau2, into out; z, out: (unknowns,).
+    """Writes dz/dt, with time in tau2, into out; z, out: (unknowns,).
 
     roots: square roots of C, positive, (d, nodes + 1).
     """
@@ -44,7 +44,8 @@ def _unscale(z: Array, x: Array, roots: Array) -> None:
 
 @compiled_for_vectors
 def rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes d(dz/dt)/dz into out, (unknowns, unknowns), column-major as in LAPACK: out[column, row].
+    """Writes the Jacobian d(dz/dt)/dz into out, (unknowns, unknowns), column-major as in LAPACK: out[column,
+    row].
 
     z: (unknowns,). roots: square roots of C, positive, (d, nodes + 1).
     """
@@ -72,13 +73,13 @@ def rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatric
 
 @compiled_for_vectors
 def rates(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes `rate` of n states into out; states, out: (n, unknowns)."""
+    """Writes dz/dt of n states z into out; states, out: (n, unknowns)."""
     for i in range(len(states)):
         rate(states[i], out[i], roots, c, m)
 
 
 @compiled_for_vectors
 def rate_jacobians(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes `rate_jacobian` of n states, (n, unknowns), into out, (n, unknowns, unknowns)."""
+    """Writes the Jacobians of n states z, (n, unknowns), into out, (n, unknowns, unknowns)."""
     for i in range(len(states)):
         rate_jacobian(states[i], out[i], roots, c, m)

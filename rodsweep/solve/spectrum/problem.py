@@ -50,7 +50,7 @@ class TransverseProblem(ABC):
 
     @abstractmethod
     def mesh_for(self, modes: int, accuracy: float) -> Any:
-        """The coarsest mesh expected to give `modes` leading eigenvalues to the relative `accuracy`."""
+        """The mesh expected to give `modes` leading eigenvalues to the relative `accuracy`."""
 
     def finer(self, mesh: AnyMesh) -> AnyMesh:
         """The next finer mesh after `mesh`."""
