@@ -99,8 +99,8 @@ def by_roots(
     small.
 
     square = P^2; blur_M, blur_square: rounding errors of M and P^2. u = q1^2 and v = q2^2 solve t^2 - M t +
-    P^2 = 0; with C = cosh q1 cosh q2 - 1, H = sinh q1 sinh q2/(q1 q2) and R = z+ z- = M^2 - 4 P^2 = (u -
-    v)^2,
+    P^2 = 0; with C = cosh q1 cosh q2 - 1, H = sinh q1 sinh q2/(q1 q2) and R = z+ z- = M^2 - 4 P^2 =
+    (u - v)^2,
 
         s = 2 (M C - 2 P^2 H)/R,   d = (M H/2 - C)/R.
     """

@@ -124,8 +124,8 @@ def root_changes(w: complex, at: Branches, change: CoefficientDerivatives) -> tu
 
 @compiled
 def determinant_along(w: complex, coefficients: Coefficients, direction: Coefficients) -> ValueAlong:
-    """D, dD/dw and dD/dp of a uniform rod on a path, times exp(-S), at w != 0. direction: d(F, nu, c2,
-    gamma3)/dp.
+    """D, dD/dw and dD/dp of a uniform rod on a path, times exp(-S), at w != 0. direction:
+    d(F, nu, c2, gamma3)/dp.
     """
     F, nu, c2, gamma3 = coefficients
     parts = even_parts(w, coefficients)

@@ -1,10 +1,10 @@
 """Changes of a rod's stability between two forces, from the leading eigenvalues at both forces.
 
 If the leading growth rate changes its sign, a complex pair crosses the imaginary axis, because D(0) = 1 keeps
-real eigenvalues away from 0. The eigenvalues at both forces are starting points of Newton's method on D(i
-eta; F) = 0. If the two leading eigenvalues are real at the first force and complex at the second, a double
-eigenvalue D = D_w = 0 lies between the forces. Two changes between two forces may cancel and stay unnoticed;
-the task `thresholds` proves completeness.
+real eigenvalues away from 0. The eigenvalues at both forces are starting points of Newton's method on
+D(i eta; F) = 0. If the two leading eigenvalues are real at the first force and complex at the second, a
+double eigenvalue D = D_w = 0 lies between the forces. Two changes between two forces may cancel and stay
+unnoticed; the task `thresholds` proves completeness.
 """
 
 from dataclasses import dataclass

@@ -43,8 +43,8 @@ def material_change_on(rod: Rod, name: str, grid: Mesh) -> Material:
 
 
 def profile_compliance_on(build: Build, grid: Mesh) -> Array:
-    """Bending compliance of an arm without taper at all nodes, in units of its value at the clamp, (nodes +
-    1,).
+    """Bending compliance of an arm without taper at all nodes, in units of its value at the clamp,
+    (nodes + 1,).
 
     At a jump it is the mean of both sides: times m3 it gives the mean bending strain.
     """

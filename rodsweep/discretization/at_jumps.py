@@ -75,8 +75,8 @@ def by_elements(rod: NodalRod, grid: Mesh, S: Array) -> Array:
 
 
 def carried_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Values:
-    """S at all nodes of the mesh `target`, (3, ..., target.nodes + 1), from S on `source`, (3, ..., nodes +
-    1).
+    """S at all nodes of the mesh `target`, (3, ..., target.nodes + 1), from S on `source`,
+    (3, ..., nodes + 1).
 
     The map is linear. The unknown at a jump is not a value of the polynomials on either side. These
     polynomials are taken from the other nodes of their elements, and the means of their ends are the unknowns
@@ -127,8 +127,8 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
 
 @lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _end_from_inside(order: int, starts: bool, stops: bool, first: bool) -> Array:
-    """Row that extrapolates from an element's nodes to its first or last node, without nodes at jumps, (p +
-    1,).
+    """Row that extrapolates from an element's nodes to its first or last node, without nodes at jumps,
+    (p + 1,).
 
     starts, stops: whether the element starts, and stops, at a jump. first: whether to its first node.
     """

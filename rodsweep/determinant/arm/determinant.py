@@ -120,8 +120,8 @@ class Samples(NamedTuple):
 
 
 class PropagatorElements(NamedTuple):
-    """Elements of n arms: their lengths, (elements,), and `LocalCoefficients` at their Gauss points, (6, n,
-    elements, stages).
+    """Elements of n arms: their lengths, (elements,), and `LocalCoefficients` at their Gauss points,
+    (6, n, elements, stages).
     """
 
     lengths: Array

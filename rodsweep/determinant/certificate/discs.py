@@ -94,8 +94,8 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
 
     slopes: (dz/dw, dz/dp). rates: (L, K). bend: bound of the nonlinear change of z. Each exponent +-sqrt(z) -
     L dw - K dp has two bounds, of which the smaller applies: one from |sqrt(z)| alone, one from the Taylor
-    polynomial of sqrt(z) if the disc is away from z = 0. Then |E| <= exp(Re sqrt z)/2 and |dE/dz| <= cosh(Re
-    sqrt z)/24; closed forms give smaller bounds for large z.
+    polynomial of sqrt(z) if the disc is away from z = 0. Then |E| <= exp(Re sqrt z)/2 and |dE/dz| <=
+    cosh(Re sqrt z)/24; closed forms give smaller bounds for large z.
     """
     root = cmath.sqrt(z)
     drift = abs(rates[0]) * radii[0] + abs(rates[1]) * radii[1]

@@ -44,8 +44,8 @@ class Collocation(NamedTuple):
         return len(self.nodes)
 
     def evaluation(self, at: Array) -> Array:
-        """Matrix from values at 0 and at the nodes to values at the times `at` in [0, 1], (m,): shape (m, s +
-        1).
+        """Matrix from values at 0 and at the nodes to values at the times `at` in [0, 1], (m,): shape
+        (m, s + 1).
         """
         return interpolation(np.append(0.0, self.nodes), at)
 

@@ -29,8 +29,8 @@ RECONSTRUCTION = ReconstructionSettings()
 
 
 class NodeMatrices(NamedTuple):
-    """Matrices on all nodes of a mesh: D, D^T and -D^T W, (nodes + 1, nodes + 1), and the weights W, (nodes +
-    1,).
+    """Matrices on all nodes of a mesh: D, D^T and -D^T W, (nodes + 1, nodes + 1), and the weights W,
+    (nodes + 1,).
 
     D differentiates, W is the lumped mass. All arrays are contiguous, for inner loops over the nodes.
     """

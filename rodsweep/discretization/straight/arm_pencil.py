@@ -25,10 +25,11 @@ class _Pieces(NamedTuple):
     """Matrices and weights of a mesh of elements of order p, from which `_filled` computes the pencil of an
     arm.
 
-    value, slope: matrices from nodes to Gauss points, (p, p + 1). both: slope^T weights value, (p + 1, p +
-    1). constant: entries of the first two blocks, which are the same for every arm, (n,). bending, weight:
-    Gauss weights over and times half the length of each element, (elements, p). lumped: mass of the nodes,
-    (elements, p + 1). where: index in the pattern of each entry of all blocks, (m,). rows, columns: (nnz,).
+    value, slope: matrices from nodes to Gauss points, (p, p + 1). both: slope^T weights value,
+    (p + 1, p + 1). constant: entries of the first two blocks, which are the same for every arm, (n,).
+    bending, weight: Gauss weights over and times half the length of each element, (elements, p). lumped: mass
+    of the nodes, (elements, p + 1). where: index in the pattern of each entry of all blocks, (m,). rows,
+    columns: (nnz,).
     """
 
     value: Array
@@ -161,8 +162,8 @@ def _filled(F: float, local: Array, pieces: _Pieces) -> tuple[Array, Array, Arra
 
 @compiled
 def _add_entries(F: float, local: Array, pieces: _Pieces, A: Array) -> None:
-    """Adds the entries of all element blocks, in the order of `where`, to the entries A of the pattern, (nnz
-    + 1,).
+    """Adds the entries of all element blocks, in the order of `where`, to the entries A of the pattern,
+    (nnz + 1,).
 
     local: coefficients of the arm, (6, elements, 2 order + 1).
     """

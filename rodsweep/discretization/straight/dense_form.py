@@ -37,8 +37,8 @@ class DenseForm:
         return fields_of(vectors, self.scale)
 
     def strains(self, vectors: Complex, points: Array) -> Complex:
-        """Strains (h2, Pi) = (Y' - nu Theta, Theta') of k eigenvectors, (unknowns, k), at points, (2, k,
-        points).
+        """Strains (h2, Pi) = (Y' - nu Theta, Theta') of k eigenvectors, (unknowns, k), at points,
+        (2, k, points).
 
         h2 = c2 s is exactly 0 in an unshearable rod. At a jump of a coefficient, both are limits from the
         right.

@@ -17,8 +17,8 @@ from ..nodal_rod import NodalRod
 
 @dataclass(frozen=True)
 class ChangeWithForce:
-    """Derivatives by the force F of the stretch nu of the straight rod, (nodes + 1,), and of the tangent, (3,
-    nodes + 1).
+    """Derivatives by the force F of the stretch nu of the straight rod, (nodes + 1,), and of the tangent,
+    (3, nodes + 1).
     """
 
     nu: Array
@@ -122,8 +122,8 @@ def _fill_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> None:
 
 
 Derivatives = tuple[Array, Array, Array]
-"""First, second and third derivatives of two functions of two variables: (..., 2, 2), (..., 2, 2, 2), (...,
-2, 2, 2, 2). The index after the leading axes is the function; the others are the variables."""
+"""First, second and third derivatives of two functions of two variables: (..., 2, 2), (..., 2, 2, 2),
+(..., 2, 2, 2, 2). The index after the leading axes is the function; the others are the variables."""
 
 
 def stress_at_rest(law: Law, sides: Array) -> Derivatives:

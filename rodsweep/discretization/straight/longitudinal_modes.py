@@ -106,8 +106,8 @@ def _weighted_legendre(order: int) -> Array:
 
 
 def _integrals(order: int, points: Array) -> Array:
-    """Integrals from -1 to each of `points` of the Lagrange polynomials through the Gauss points, (points,
-    order).
+    """Integrals from -1 to each of `points` of the Lagrange polynomials through the Gauss points,
+    (points, order).
     """
     series = legendre.legint(_weighted_legendre(order), lbnd=-1)
     integrals: Array = legendre.legval(points, series).T

@@ -212,8 +212,8 @@ def axial_field(values: Array) -> Array:
 
 
 def integral_to_tip(grid: Mesh, values: Array) -> Array:
-    """Integral of a field from each node to the tip, (nodes + 1,); values: the field at all nodes, (nodes +
-    1,).
+    """Integral of a field from each node to the tip, (nodes + 1,); values: the field at all nodes,
+    (nodes + 1,).
     """
     ends = reconstruction(grid.order).ends
     total = np.zeros(grid.nodes + 1)

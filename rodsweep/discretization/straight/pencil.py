@@ -92,8 +92,8 @@ class Pencil(Elements):
         return self.coefficients(rod) @ self.pieces
 
     def dense_pieces(self) -> Array:
-        """The six constant matrices as dense matrices in column-major order, as LAPACK expects, (6,
-        unknowns^2).
+        """The six constant matrices as dense matrices in column-major order, as LAPACK expects,
+        (6, unknowns^2).
         """
         whole = np.zeros((6, self.unknowns**2))
         whole[:, self.columns.astype(int) * self.unknowns + self.rows] = self.pieces
@@ -147,8 +147,8 @@ def tip_scale(y: Complex, theta: Complex) -> Complex:
 
 
 def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
-    """Shear force s of k eigenvectors, (unknowns, k), interpolated from the Gauss nodes to points: (points,
-    k).
+    """Shear force s of k eigenvectors, (unknowns, k), interpolated from the Gauss nodes to points:
+    (points, k).
     """
     nodes, weights = gauss(mesh.order)
     mass = (weights * mesh.lengths[:, None] / 2).ravel() * PENCIL_NORM.shear_weight**2

@@ -42,8 +42,8 @@ from ..state_layout import stress_place, velocity_place
 
 @UnrolledOverAlgebra
 def fields(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
-    """Writes the strains E and stresses s(S) of a state x, (unknowns,), at all nodes into E and S, (d, nodes
-    + 1) each.
+    """Writes the strains E and stresses s(S) of a state x, (unknowns,), at all nodes into E and S,
+    (d, nodes + 1) each.
     """
     size = E.shape[1]
     for i in range(size):

@@ -41,8 +41,8 @@ class ArmSolver(ShiftInvertSolver):
         return SolverContents(finite_eigenvalues(rod, self.nodes), shift)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k) each, from eigenvectors of the last solved arm, (unknowns,
-        k).
+        """(y, theta) at all nodes, (nodes + 1, k) each, from eigenvectors of the last solved arm,
+        (unknowns, k).
         """
         return fields_of(vectors, self.matrices.scale)
 

@@ -64,9 +64,9 @@ def _hull(arms: "SampledArms") -> Hull:
 class SampledArms(NamedTuple):
     """Coefficients of n arms of one build at Chebyshev points, from which hulls are computed.
 
-    F: forces, (n,). lengths: of the intervals between breaks, (pieces,). local: coefficients, (6, n, pieces,
-    points), with increasing u. averaged: `averaged_regions` of each arm, (n, trials, 2), inf for an arm that
-    allows none; (n, 0, 2) for arms without jumps.
+    F: forces, (n,). lengths: of the intervals between breaks, (pieces,). local: coefficients,
+    (6, n, pieces, points), with increasing u. averaged: `averaged_regions` of each arm, (n, trials, 2), inf
+    for an arm that allows none; (n, 0, 2) for arms without jumps.
     """
 
     F: Array

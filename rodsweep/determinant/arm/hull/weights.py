@@ -17,8 +17,8 @@ def least_squared_norm(alphas: Array, local: Array, push: float) -> float:
     """The smallest a^2, over the constant weights alpha, (n,): a is the largest norm of the hull's matrix
     along all arms.
 
-    The matrix is given in `rodsweep.determinant.arm.hull.hull`. local: coefficients at all points, (6,
-    points). push: the largest F^2 c3/gamma2.
+    The matrix is given in `rodsweep.determinant.arm.hull.hull`. local: coefficients at all points,
+    (6, points). push: the largest F^2 c3/gamma2.
     """
     least = inf
     for alpha in alphas:

@@ -36,8 +36,8 @@ from .following import (
 from .prediction import Track, guess_at, guess_two, mates_of
 
 Level = tuple[float, Array, Array]
-"""(bound W of |w|, propagators valid for |w| <= W, their derivatives by p); both arrays: (elements, terms,
-16)."""
+"""(bound W of |w|, propagators valid for |w| <= W, their derivatives by p); both arrays:
+(elements, terms, 16)."""
 
 
 @compiled
