@@ -21,7 +21,7 @@ from rodsweep.bench.study import Contender
 from rodsweep.determinant.roots.newton import refined
 from rodsweep.discretization.straight.pencil import PENCIL_NORM, assemble
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum.problem import problem_of
+from rodsweep.solve.spectrum.problem import transverse_problem
 
 from ..lapack import Eigenvalues, inverse_spectrum, qz, whole_matrices
 
@@ -47,7 +47,7 @@ def dense_inverse(rod: Rod, size: int) -> Eigenvalues:
 def scipy_eigs(rod: Rod, size: int) -> Eigenvalues:
     """ARPACK through SciPy on the factorised shift-and-invert operator, with rodsweep's shift."""
     A, B = matrices_at(rod, size)
-    shift = problem_of(rod).shift
+    shift = transverse_problem(rod).shift
     factors = scipy.linalg.lu_factor(A - np.diag(shift * B), check_finite=False)
     operator = scipy.sparse.linalg.LinearOperator(
         A.shape, matvec=lambda x: scipy.linalg.lu_solve(factors, B * x, check_finite=False), dtype=float

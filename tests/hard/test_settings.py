@@ -61,7 +61,7 @@ from rodsweep.solve.motion.integrator import RunEnding, forget_integrators, inte
 from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import FAILURES
-from rodsweep.solve.spectrum.path.followed_leader import followed_leader
+from rodsweep.solve.spectrum.path.followed_leader import follow_leading_eigenvalue
 from rodsweep.solve.spectrum.path.stretch import Stretch, solve_stretch
 from rodsweep.solve.spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
@@ -245,7 +245,9 @@ def followed(accuracy: float) -> Answer:
         here = replace(found, eigenvalues=found.eigenvalues[i], error_estimate=found.error_estimate[i])
         answer |= eigenvalues_of(here, f"F = {F}")
     near = complex(found.eigenvalues[0, 0])
-    leader = followed_leader(path.at(forces[0] + 0.1), np.array([complex(near.real, abs(near.imag))]), 1e-10)
+    leader = follow_leading_eigenvalue(
+        path.at(forces[0] + 0.1), np.array([complex(near.real, abs(near.imag))]), 1e-10
+    )
     if leader is None:
         return None
     return answer | {"leader": (leader.w.real, 1e-9 * abs(leader.w))}

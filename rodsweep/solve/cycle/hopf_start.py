@@ -25,7 +25,7 @@ from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import REFLECTION
 from ..point import Unsolvable
 from ..spectrum.candidates import CANDIDATES
-from ..spectrum.problem import problem_of
+from ..spectrum.problem import transverse_problem
 from .along_parameter import orbit_in_steps, predictor_from
 from .straight_rod import straight_rod
 from .transient.motion_mesh import coarse_mesh
@@ -193,7 +193,7 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
         raise Unsolvable("the nearby Hopf point is subcritical")
     if not amplitude**2 <= HOPF_START.direct_distance * rate / -normal.c.real:
         raise Unsolvable("the amplitude of the start is too large for the normal form")
-    if problem_of(form.rod).count(-CANDIDATES.behind * abs(w)).number != 2:
+    if transverse_problem(form.rod).count(-CANDIDATES.last_line_distance * abs(w)).number != 2:
         raise Unsolvable("a second mode may be unstable")
     return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
 

@@ -9,7 +9,7 @@ from ...discretization.straight.arm_resolution import ArmMesh
 from ...discretization.straight.pencil import Matrices, fields_of, finite_eigenvalues
 from ...model.rod import Rod
 from ..backend.kept import LruPool
-from .shift_invert import KRYLOV, ShiftInvertSolver, SolverContents
+from .shift_invert import KRYLOV, LoadedPencil, ShiftInvertSolver
 
 
 class ArmSolver(ShiftInvertSolver):
@@ -24,7 +24,7 @@ class ArmSolver(ShiftInvertSolver):
         super().__init__(self.pencil, np.full(self.pencil.nodes, 1 / self.pencil.nodes))
         self._places: NDArray[np.int64] = self.pencil.columns.astype(np.int64) * n + self.pencil.rows
 
-    def load(self, rod: Rod, shift: float) -> SolverContents:
+    def load(self, rod: Rod, shift: float) -> LoadedPencil:
         self.matrices = found = self.pencil.matrices(rod)
         if not np.isfinite(found.A.sum() + found.B.sum() + shift):
             raise FloatingPointError("matrix entries overflow with these parameters")
@@ -38,7 +38,7 @@ class ArmSolver(ShiftInvertSolver):
             flat[self._places] = values
         else:
             self.A.setValuesCSR(self.indptr, self.indices, values)
-        return SolverContents(finite_eigenvalues(rod, self.nodes), shift)
+        return LoadedPencil(finite_eigenvalues(rod, self.nodes), shift)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
         """(y, theta) at all nodes, (nodes + 1, k) each, from eigenvectors of the last solved arm,
@@ -47,7 +47,7 @@ class ArmSolver(ShiftInvertSolver):
         return fields_of(vectors, self.matrices.scale)
 
 
-_kept = LruPool(ArmSolver, KRYLOV.arm_solvers_kept)
+_kept = LruPool(ArmSolver, KRYLOV.max_arm_solvers)
 
 
 def arm_solver(mesh: ArmMesh) -> ArmSolver:

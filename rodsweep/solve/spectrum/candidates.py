@@ -35,21 +35,21 @@ class CandidateSettings(CompiledSettings):
     wide_gap_of_flutter: float = 0.05
     """`wide_gap` of an unstable rod. It is smaller, because eigenvalues far to the left converge last and
     need a finer mesh."""
-    behind: float = 0.05
+    last_line_distance: float = 0.05
     """Distance by which the last line tried lies left of the last eigenvalue found, in units of its |w|."""
-    far_behind: float = 0.5
-    """Distance by which the first line for counting a followed leading eigenvalue lies left of it, in units
-    of its |w|. A distant line needs fewer nodes; a line at `behind` follows in case another eigenvalue lies
+    leader_line_distance: float = 0.5
+    """Distance of the first line for counting a followed leading eigenvalue, left of it, in units of its |w|.
+    A distant line needs fewer nodes; a line at `last_line_distance` follows in case another eigenvalue lies
     between."""
-    no_gap: float = 1e-6
+    min_gap: float = 1e-6
     """Relative gap below which two real parts are treated as equal: no line is drawn between them."""
-    lines_tried: int = 3
+    max_lines: int = 3
     """Maximum number of lines of one rod right of which eigenvalues are counted until a count succeeds."""
-    below: float = 3.0
+    proof_line_errors: float = 3.0
     """Distance of the line of a proof without a count left of the last wanted eigenvalue, in units of the
     error of this eigenvalue."""
-    close_below: float = 1e-9
-    """Distance added to that of `below`, in units of |w| of the last wanted eigenvalue."""
+    proof_line_distance: float = 1e-9
+    """Distance added to that of `proof_line_errors`, in units of |w| of the last wanted eigenvalue."""
 
 
 CANDIDATES = CandidateSettings()
@@ -68,7 +68,7 @@ class Candidates:
     vectors: Complex | None
     failure: str = ""
 
-    def worst(self, modes: int) -> float:
+    def worst_error(self, modes: int) -> float:
         """Largest relative error estimate among the first `modes` roots."""
         errors: Any = self.roots.error[:modes].tolist()
         w: Any = self.roots.w[:modes].tolist()
@@ -77,13 +77,11 @@ class Candidates:
 
 @dataclass(frozen=True, slots=True)
 class CountComparison:
-    """Number of eigenvalues right of a line by a count, and the number `here` of found eigenvalues right of
-    this line.
-    """
+    """Number of eigenvalues right of a line: `count` from D, `found_count` of the eigenvalues found."""
 
     count: Count
-    here: int
-    clear: bool
+    found_count: int
+    is_clear: bool
     """Whether every found eigenvalue is farther from the line than twice its error."""
 
     @property
@@ -91,7 +89,7 @@ class CountComparison:
         """Whether the count and the found eigenvalues give the same number, and every found eigenvalue is
         clear of the line.
         """
-        return self.clear and self.count.number == self.here
+        return self.is_clear and self.count.number == self.found_count
 
 
 def candidates_on(
@@ -127,25 +125,27 @@ def compare_with_count(problem: TransverseProblem, found: Roots, modes: int) -> 
     """
     w: Any = found.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = found.error.tolist()
-    line = line_of_proof(w[modes - 1], errors[modes - 1])
+    line = line_for_proof(w[modes - 1], errors[modes - 1])
     complete, evaluations = problem.none_is_missing(line, found)
     if complete:
         here, clear = _right_of(line, w, errors)
         return CountComparison(Count(here, evaluations), here, clear)
-    for line in lines_of_count(w, modes):
+    for line in lines_for_count(w, modes):
         count = problem.count(line, found)
         if count.number is not None:
             break
     return CountComparison(count, *_right_of(line, w, errors))
 
 
-def line_of_proof(last: complex, error: float) -> float:
+def line_for_proof(last: complex, error: float) -> float:
     """Real part <= 0 of the line of a proof without a count, left of the last wanted eigenvalue and all
     unstable ones.
 
     last, error: the last wanted eigenvalue and its absolute error.
     """
-    return min(last.real - CANDIDATES.below * error - CANDIDATES.close_below * abs(last), 0.0)
+    return min(
+        last.real - CANDIDATES.proof_line_errors * error - CANDIDATES.proof_line_distance * abs(last), 0.0
+    )
 
 
 def _right_of(line: float, w: list[complex], errors: list[float]) -> tuple[int, bool]:
@@ -155,7 +155,7 @@ def _right_of(line: float, w: list[complex], errors: list[float]) -> tuple[int, 
     return sum(value.real > line for value in w), clear
 
 
-def lines_of_count(w: list[complex], modes: int) -> list[float]:
+def lines_for_count(w: list[complex], modes: int) -> list[float]:
     """Real parts of the lines for a count, best first: middles of gaps left of the first `modes` eigenvalues.
 
     w: eigenvalues in descending order. Gaps wider than `wide_gap` are equally good, and the first of them
@@ -167,9 +167,9 @@ def lines_of_count(w: list[complex], modes: int) -> list[float]:
     gaps = []
     for right, left in zip(below[:-1], below[1:], strict=True):
         width = (right - left) / abs(left)
-        if width > CANDIDATES.no_gap:
+        if width > CANDIDATES.min_gap:
             gaps.append((min(width, wide), (left + right) / 2))
     gaps.sort(key=lambda gap: -gap[0])  # stable sort: the first wide gap stays first
     last = below[-1]
-    behind = last - CANDIDATES.behind * (abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0)
-    return [*(middle for _, middle in gaps[: CANDIDATES.lines_tried - 1]), behind]
+    behind = last - CANDIDATES.last_line_distance * (abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0)
+    return [*(middle for _, middle in gaps[: CANDIDATES.max_lines - 1]), behind]

@@ -11,7 +11,7 @@ from ...discretization.straight.pencil import Pencil, assemble, fields_of, finit
 from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
 from ..backend.kept import LruPool
-from .shift_invert import KRYLOV, ShiftInvertSolver, SolverContents
+from .shift_invert import KRYLOV, LoadedPencil, ShiftInvertSolver
 
 
 @compiled
@@ -37,7 +37,7 @@ class EigenSolver(ShiftInvertSolver):
         self.gamma3 = -1.0
         self.inertia: Array = np.ones(self.pencil.unknowns)
 
-    def load(self, rod: Rod, shift: float) -> SolverContents:
+    def load(self, rod: Rod, shift: float) -> LoadedPencil:
         rod, pace = _as_filament(rod)
         shift *= pace**2
         coefficients = self.pencil.coefficients(rod)
@@ -54,7 +54,7 @@ class EigenSolver(ShiftInvertSolver):
             values = coefficients @ self.pencil.pieces
             values[self.diagonal] -= shift * self.inertia
             self.A.setValuesCSR(self.indptr, self.indices, values)
-        return SolverContents(finite_eigenvalues(rod, self.nodes), shift, pace)
+        return LoadedPencil(finite_eigenvalues(rod, self.nodes), shift, pace)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
         """(y, theta) at all nodes, (nodes + 1, k) each, from eigenvectors of the last solve, (unknowns,
@@ -74,7 +74,7 @@ def _as_filament(rod: Rod) -> tuple[Rod, float]:
     return rod, 1.0
 
 
-_kept = LruPool(EigenSolver, KRYLOV.uniform_solvers_kept)
+_kept = LruPool(EigenSolver, KRYLOV.max_uniform_solvers)
 
 
 def eigen_solver(resolution: Resolution) -> EigenSolver:

@@ -181,6 +181,6 @@ class ArmProblem(TransverseProblem):
         return none_is_missing(line, found.w, found.error, self._determinant, self._hull)
 
 
-def problem_of(rod: Rod, to_prove: int = 0) -> TransverseProblem:
+def transverse_problem(rod: Rod, to_prove: int = 0) -> TransverseProblem:
     """The transverse eigenvalue problem of a uniform rod or of an arm; to_prove: see `ArmProblem`."""
     return UniformProblem(rod) if rod.standard else ArmProblem(rod, to_prove)

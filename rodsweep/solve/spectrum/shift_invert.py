@@ -28,41 +28,41 @@ class KrylovSettings:
     shift_above_growth: float = 1.05
     """Shift in units of the growth rate of the most amplified wave. This growth rate is above most
     spectra."""
-    dense_up_to: int = 300
+    max_dense_unknowns: int = 300
     """Number of unknowns up to which the matrix is factorised as dense: as fast as a sparse factorisation
     there, with smaller rounding errors."""
-    start_tolerance: float = 1e-4
+    loose_tolerance: float = 1e-4
     """Krylov tolerance for eigenvalues that are refined on D."""
-    start_spare: int = 5
+    loose_spare_vectors: int = 5
     """Number of Krylov vectors beyond the wanted eigenvalues, for eigenvalues that are refined on D."""
     tight_tolerance: float = 1e-14
     """Krylov tolerance for eigenvalues and eigenvectors that are not refined on D: the mesh is then the only
     error."""
-    tight_spare: int = 13
+    tight_spare_vectors: int = 13
     """Number of Krylov vectors beyond the wanted eigenvalues, for eigenvalues and eigenvectors that are not
     refined on D."""
     max_restarts: int = 200
     """Maximum number of restarts of the Krylov space."""
-    steps_of_infinity: int = 2
+    vectors_for_infinity: int = 2
     """Number of Krylov vectors beyond the finite eigenvalues. Applying shift-and-invert once, or twice for k2
     = inf, removes all components of infinite eigenvalues. A larger Krylov space would add only rounding
     errors, on which LAPACK may fail (trexc)."""
-    start_width: float = 3.3
+    first_vector_width: float = 3.3
     """Width of the first Krylov vector, a bump of displacement at the tip, in units of the distance between
     nodes. Every mode moves the tip, and the bump is as smooth as the wanted modes. It saves two Krylov steps
     of eleven."""
-    start_rotation: float = 0.1
+    first_vector_rotation: float = 0.1
     """Rotation of the first Krylov vector in units of its displacement. Without rotation only rounding errors
     would excite modes of pure rotation, in rods whose displacement and rotation are uncoupled."""
-    uniform_solvers_kept: int = 24
+    max_uniform_solvers: int = 24
     """Maximum number of solvers of uniform rods that are kept for later rods, one a resolution, if their
     memory allows; a sweep needs few."""
-    arm_solvers_kept: int = 8
+    max_arm_solvers: int = 8
     """Maximum number of solvers of arms that are kept for later arms, one a mesh."""
-    dense_copies: int = 9
+    stored_dense_matrices: int = 9
     """Number of dense matrices that a solver of a small pencil stores: A, its factors, and its constant
     matrices."""
-    sparse_copies: int = 11
+    stored_numbers_per_entry: int = 11
     """Number of stored numbers per nonzero entry of a large pencil: A with its pattern, its factors, and its
     constant matrices."""
 
@@ -97,7 +97,7 @@ class PencilPattern(Protocol):
         """Number of rows of the pencil."""
 
 
-class SolverContents(NamedTuple):
+class LoadedPencil(NamedTuple):
     """The rod whose matrices a solver holds: its number of finite eigenvalues, the shift, and the pace.
 
     shift: in units of the eigenvalues of the pencil. pace: the rod has the eigenvalues of the pencil over
@@ -119,7 +119,7 @@ class ShiftInvertSolver(ABC):
         self.nodes = pattern.nodes
         n = pattern.unknowns
         package = sparse_package()
-        self.dense = n <= KRYLOV.dense_up_to or package is None
+        self.dense = n <= KRYLOV.max_dense_unknowns or package is None
         self.diagonal = pattern.rows == pattern.columns
         self.indptr = np.searchsorted(pattern.rows, np.arange(n + 1)).astype(PETSc.IntType)
         self.indices = pattern.columns.astype(PETSc.IntType)
@@ -133,14 +133,14 @@ class ShiftInvertSolver(ABC):
         self.line = np.arange(n + 1, dtype=PETSc.IntType)
         self.B.createAIJ([n, n], csr=(self.line, self.line[:-1], np.ones(n)), comm=PETSc.COMM_SELF)
         first = np.zeros(n)
-        distance = (1 - pattern.positions[1:]) * pattern.nodes / KRYLOV.start_width
+        distance = (1 - pattern.positions[1:]) * pattern.nodes / KRYLOV.first_vector_width
         first[: pattern.nodes] = np.exp(-(distance**2)) * np.sqrt(mass)
-        first[pattern.nodes : 2 * pattern.nodes] = KRYLOV.start_rotation * first[: pattern.nodes]
+        first[pattern.nodes : 2 * pattern.nodes] = KRYLOV.first_vector_rotation * first[: pattern.nodes]
         self.start = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
         self.users_krylov = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)
         self.users_tolerance = PETSc.Options(SPECTRUM_PREFIX).getReal("eps_tol", 0.0)
         self.eps = self._solver("petsc" if self.dense else package)
-        self.loaded = SolverContents(0, 0.0)
+        self.loaded = LoadedPencil(0, 0.0)
 
     def _solver(self, package: str | None) -> "SLEPc.EPS":
         eps = SLEPc.EPS().create(PETSc.COMM_SELF)
@@ -161,7 +161,7 @@ class ShiftInvertSolver(ABC):
         return eps
 
     @abstractmethod
-    def load(self, rod: Rod, shift: float) -> SolverContents:
+    def load(self, rod: Rod, shift: float) -> LoadedPencil:
         """Fills PETSc's matrices A - shift B and B with the values for a rod."""
 
     @abstractmethod
@@ -182,11 +182,11 @@ class ShiftInvertSolver(ABC):
         self.eps.setOperators(self.A, self.B)
         most = self.loaded.finite
         wanted = min(wanted, most - 1)  # a conjugate pair may add one
-        spare = KRYLOV.tight_spare if tight else KRYLOV.start_spare
-        tolerance = KRYLOV.tight_tolerance if tight else KRYLOV.start_tolerance
+        spare = KRYLOV.tight_spare_vectors if tight else KRYLOV.loose_spare_vectors
+        tolerance = KRYLOV.tight_tolerance if tight else KRYLOV.loose_tolerance
         krylov = self.users_krylov or max(2 * wanted, wanted + spare)
         self.eps.setTolerances(self.users_tolerance or tolerance, KRYLOV.max_restarts)
-        krylov = min(krylov, most + KRYLOV.steps_of_infinity)
+        krylov = min(krylov, most + KRYLOV.vectors_for_infinity)
         self.eps.setDimensions(wanted, krylov, krylov)
         self.eps.setInitialSpace(self.start)
         self.eps.solve()
@@ -216,7 +216,11 @@ class ShiftInvertSolver(ABC):
         """
         n = len(self.line) - 1
         krylov = self.eps.getDimensions()[1] + 1
-        matrices = KRYLOV.dense_copies * n * n if self.dense else KRYLOV.sparse_copies * len(self.indices)
+        matrices = (
+            KRYLOV.stored_dense_matrices * n * n
+            if self.dense
+            else KRYLOV.stored_numbers_per_entry * len(self.indices)
+        )
         return 8 * (matrices + 2 * n * krylov + 4 * krylov**2)
 
     def destroy(self) -> None:

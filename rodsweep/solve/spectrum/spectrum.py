@@ -45,7 +45,7 @@ class SpectrumErrorSettings:
 
 SPECTRUM_ERRORS = SpectrumErrorSettings()
 
-EachRod = Any
+NumberPerRod = Any
 """A number of one rod, or an array of such numbers for n rods solved together, (n,)."""
 
 
@@ -54,27 +54,27 @@ class Spectrum:
     """Leading transverse eigenvalues of one rod, or of n rods; for n rods every array has a first axis
     (n,)."""
 
-    status: EachRod
+    status: NumberPerRod
     """A `SpectrumStatus`, or the integer values of n of them, (n,)."""
     eigenvalues: Complex
     """Eigenvalues w, complex, (modes,), in 1/tau2, in the order defined in `rodsweep.model`."""
     error_estimate: Array
     """Absolute error estimates |D/D'| of the eigenvalues, (modes,), in 1/tau2: at least a tenth of the error,
     and at most ten times the larger of the error and the effect of rounding of the force or of w."""
-    unstable_count: EachRod = -1
+    unstable_count: NumberPerRod = -1
     """Number of eigenvalues with Re w > 0; -1 if unknown. The number is proved if a certificate was
     requested."""
-    certified: EachRod = False
+    certified: NumberPerRod = False
     """Whether it is proved that no eigenvalue is missing right of the last mode."""
-    elements: EachRod = 0
+    elements: NumberPerRod = 0
     """Number of elements of the mesh, 0 without a mesh."""
-    order: EachRod = 0
+    order: NumberPerRod = 0
     """Order of the elements, 0 without a mesh."""
-    seconds: EachRod = 0.0
+    seconds: NumberPerRod = 0.0
     """Wall-clock time of the solve in seconds; for several rods their mean."""
     vectors: Complex | None = None
     """Eigenmodes (Y, Theta), complex, (2, modes, vector_nodes), scaled to Y(1) = 1; None if not requested."""
-    message: EachRod = ""
+    message: NumberPerRod = ""
     """Cause of a failure, or the reason why a proof failed; empty otherwise."""
 
     @property
@@ -118,7 +118,7 @@ def vectors_on_nodes(
     return np.stack([(matrix @ y * scale).T, (matrix @ theta * scale).T])
 
 
-def stated_errors(w: Complex, error: Array, rod: Rod) -> Array:
+def errors_with_rounding(w: Complex, error: Array, rod: Rod) -> Array:
     """Absolute errors of eigenvalues: `error`, the error of the root of D, plus the rounding error of w
     itself.
 
@@ -128,7 +128,7 @@ def stated_errors(w: Complex, error: Array, rod: Rod) -> Array:
     return error + rounding * ROUND_OFF * np.abs(w)
 
 
-def no_spectrum(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:
+def failed_spectrum(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:
     """The outcome of a failed solve: all eigenvalues, errors and eigenmodes are NaN."""
     empty = np.full(request.modes, np.nan)
     shape = (2, request.modes, request.vector_nodes)

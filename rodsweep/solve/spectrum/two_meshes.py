@@ -17,8 +17,8 @@ from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.rod import Rod
 from ..backend.kept import forget_all
 from ..point import Unsolvable, solved
-from .problem import TransverseProblem, problem_of
-from .spectrum import Spectrum, SpectrumRequest, no_spectrum, vectors_on_nodes
+from .problem import TransverseProblem, transverse_problem
+from .spectrum import Spectrum, SpectrumRequest, failed_spectrum, vectors_on_nodes
 from .status import SpectrumStatus
 
 
@@ -28,11 +28,11 @@ class TwoMeshSettings:
 
     max_finer_meshes: int = 8
     """Maximum number of meshes after the first; each has a third more unknowns than its predecessor."""
-    first_spare: int = 2
+    spare_eigenvalues: int = 2
     """Number of eigenvalues beyond the wanted modes in the first request on a mesh."""
-    unchanged: float = 1e-9
+    unchanged_tolerance: float = 1e-9
     """Relative change of the leading eigenvalues, after a doubled request, below which the doubling ends."""
-    unchanged_by_rounding: float = 3e-11
+    unchanged_rounding_tolerance: float = 3e-11
     """Absolute change below which the doubling ends too, in units of the shift plus F^2. It is a hundred
     times `rounding`, because rounding differs between releases of SLEPc and between processors."""
     mesh_error_factor: float = 3.0
@@ -40,7 +40,7 @@ class TwoMeshSettings:
     rounding: float = 3e-13
     """Rounding error of an eigenvalue, in units of |w| plus the shift plus F^2. F^2 is included because the
     first eigenvalue of a pulled rod is exponentially small against F^2."""
-    unknowns_a_mode: int = 3
+    min_unknowns_per_mode: int = 3
     """Minimum number of unknowns of a mesh per requested eigenvalue: a third of the unknowns have no time
     derivative, and the highest modes of a mesh are not resolved."""
 
@@ -57,13 +57,13 @@ def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
     def failed(cause: str) -> Spectrum:
         forget_all()
-        return no_spectrum(SpectrumStatus.failed, request, cause)
+        return failed_spectrum(SpectrumStatus.failed, request, cause)
 
     return solved(lambda: _solve(rod, request), failed)
 
 
 def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    problem = problem_of(rod)
+    problem = transverse_problem(rod)
     modes = request.modes
     aim = mesh_accuracy(request.accuracy, vectors=True) if request.vector_nodes else request.accuracy
     mesh: AnyMesh = problem.mesh_for(modes, aim)
@@ -108,7 +108,7 @@ def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEige
     Empty if the mesh is too coarse for a doubled request.
     """
     solver = problem.solver(mesh)
-    wanted = modes + TWO_MESHES.first_spare
+    wanted = modes + TWO_MESHES.spare_eigenvalues
     # The solver finds the eigenvalues nearest the shift, which need not lead: ask for more until the leading
     # ones stay.
     before = np.empty(0, complex)
@@ -117,10 +117,10 @@ def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEige
         order = np.lexsort((-raw.imag, -raw.real))
         leading = raw[order[:modes]]
         complete = len(leading) == len(before) == modes
-        by_rounding = TWO_MESHES.unchanged_by_rounding * _scale(problem)
-        if complete and np.allclose(leading, before, rtol=TWO_MESHES.unchanged, atol=by_rounding):
+        by_rounding = TWO_MESHES.unchanged_rounding_tolerance * _scale(problem)
+        if complete and np.allclose(leading, before, rtol=TWO_MESHES.unchanged_tolerance, atol=by_rounding):
             return _MeshEigenvalues(raw[order], order)
-        if 2 * wanted > mesh.unknowns // TWO_MESHES.unknowns_a_mode:
+        if 2 * wanted > mesh.unknowns // TWO_MESHES.min_unknowns_per_mode:
             return _MeshEigenvalues(raw[:0], order[:0])
         before = leading
         wanted = 2 * wanted

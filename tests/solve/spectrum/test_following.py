@@ -15,7 +15,7 @@ from rodsweep.determinant.moving_line import IntervalEnd, free_of_zeros, none_cr
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.spectrum.path import stretch as stretch_of
-from rodsweep.solve.spectrum.path.prediction import extrapolated
+from rodsweep.solve.spectrum.path.prediction import extrapolate_hermite
 from rodsweep.solve.spectrum.path.stretch import solve_stretch
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
@@ -158,7 +158,9 @@ def test_cubics_are_extrapolated_exactly():
 
     (a, slope_a), (b, slope_b) = cubic(1.0), cubic(1.5)
     for ahead in (0.5, 0.2, 1.3):
-        assert extrapolated((a, b), (slope_a, slope_b), (0.5, ahead)) == pytest.approx(cubic(1.5 + ahead)[0])
+        assert extrapolate_hermite((a, b), (slope_a, slope_b), (0.5, ahead)) == pytest.approx(
+            cubic(1.5 + ahead)[0]
+        )
 
 
 def test_coefficients_of_a_line_are_those_of_its_rods():

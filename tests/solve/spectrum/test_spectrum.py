@@ -385,7 +385,7 @@ def test_resting_modes_a_hundred_deep_are_those_of_the_cantilever():
 
 def test_a_solver_that_is_no_longer_kept_gives_its_memory_back():
     """petsc4py would set it aside until the end of the process, some megabyte a resolution."""
-    solvers = [eigen_solver(Resolution(1, nodes)) for nodes in range(6, 6 + KRYLOV.uniform_solvers_kept)]
+    solvers = [eigen_solver(Resolution(1, nodes)) for nodes in range(6, 6 + KRYLOV.max_uniform_solvers)]
     assert eigen_solver(Resolution(1, 6)) is solvers[0]
     eigen_solver(Resolution(2, 6))
     first, longest_unused, *others = solvers
@@ -417,7 +417,7 @@ def test_krylov_schur_on_two_meshes_is_sparse_where_elements_are_many():
     )
     result, reference = solve_on_two_meshes(rod, request), solve_spectrum(rod, TIGHT)
     assert result.status == SpectrumStatus.ok
-    assert 3 * result.elements * result.order > KRYLOV.dense_up_to
+    assert 3 * result.elements * result.order > KRYLOV.max_dense_unknowns
     assert np.abs(result.eigenvalues[:4] / reference.eigenvalues - 1).max() < 1e-8
 
 

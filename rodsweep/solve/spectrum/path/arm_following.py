@@ -27,13 +27,13 @@ from ..candidates import CANDIDATES
 from .following import (
     FOLLOWING,
     CorrectedEigenvalue,
-    crowding_of,
-    distinct_roots,
+    are_distinct_roots,
+    converged_error,
+    curvature_estimate,
     newton_step,
-    settled_error,
     store_root,
 )
-from .prediction import Track, guess_at, guess_two, mates_of
+from .prediction import Track, find_conjugates, predict_eigenvalues, set_two_guesses
 
 Level = tuple[float, Array, Array]
 """(bound W of |w|, propagators valid for |w| <= W, their derivatives by p); both arrays:
@@ -41,7 +41,7 @@ Level = tuple[float, Array, Array]
 
 
 @compiled
-def corrected_of_arm(w: complex, level: Level) -> CorrectedEigenvalue:
+def correct_eigenvalue_of_arm(w: complex, level: Level) -> CorrectedEigenvalue:
     """One Newton step on D from w, for an arm given by its propagators `level`; a real w stays real."""
     D, D_w, D_p, _, noise = chain_along(w, level[0], level[1], level[2])
     return newton_step(w, D, D_w, D_p, ARM_VALUE.root_noise * noise)
@@ -51,17 +51,17 @@ def corrected_of_arm(w: complex, level: Level) -> CorrectedEigenvalue:
 def _settled(
     first: CorrectedEigenvalue, crowding: float, exact: bool, level: Level
 ) -> tuple[CorrectedEigenvalue, float]:
-    """(last Newton step, error) of an arm's eigenvalue, after steps until `settled_error` is finite.
+    """(last Newton step, error) of an arm's eigenvalue, after steps until `converged_error` is finite.
 
-    first: result of the first step. crowding, exact: as in `settled_error`. level: propagators of the arm.
+    first: result of the first step. crowding, exact: as in `converged_error`. level: propagators of the arm.
     The error is inf without convergence.
     """
     here = first
     for _ in range(FOLLOWING.max_corrections):
-        error = settled_error(here, crowding, exact)
+        error = converged_error(here, crowding, exact)
         if error < math.inf:
             return here, error
-        here = corrected_of_arm(here.w, level)
+        here = correct_eigenvalue_of_arm(here.w, level)
     return here, math.inf
 
 
@@ -87,7 +87,7 @@ def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, lev
     order = track.order[i]
     m = len(w)
     mate = np.empty(m, np.int64)
-    mates_of(guess, mate)
+    find_conjugates(guess, mate)
     w[:] = guess
     sort_descending(w, order)
     for rank in range(m):
@@ -95,17 +95,17 @@ def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, lev
         if guess[k].imag != 0 and mate[k] < 0:
             return False
         if guess[k].imag >= 0:
-            first = corrected_of_arm(guess[k], level)
+            first = correct_eigenvalue_of_arm(guess[k], level)
             w[k] = first.w
             if mate[k] >= 0:
                 w[mate[k]] = w[k].conjugate()
-            last, error[k] = _settled(first, crowding_of(w, k), rank <= modes, level)
+            last, error[k] = _settled(first, curvature_estimate(w, k), rank <= modes, level)
             # Interpolation changes D as relative changes of w and p by `ARM_FAMILY.converged` would.
             error[k] += ARM_FAMILY.converged * (abs(last.w) + abs(p * last.slope))
             if not store_root(track, i, k, mate[k], last):
                 return False
     sort_descending(w, order)
-    return distinct_roots(w, error) and np.abs(w).max() <= level[0]
+    return are_distinct_roots(w, error) and np.abs(w).max() <= level[0]
 
 
 @compiled
@@ -119,7 +119,9 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level
     w = track.w[i]
     error = track.error[i]
     k = track.order[i, modes - 1]
-    line = min(w[k].real - CANDIDATES.below * error[k] - CANDIDATES.close_below * abs(w[k]), 0.0)
+    line = min(
+        w[k].real - CANDIDATES.proof_line_errors * error[k] - CANDIDATES.proof_line_distance * abs(w[k]), 0.0
+    )
     here = 0
     for j in range(len(w)):
         if abs(w[j].real - line) <= 2 * error[j]:
@@ -135,7 +137,7 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level
 
 
 @compiled
-def follow_arms(
+def follow_eigenvalues_of_arms(
     track: Track, family: ArmFamily, hulls: PathHulls, p: Array, modes: int, known: NDArray
 ) -> int:
     """Follows eigenvalues of arms along the points p, (points,), and returns the number of points reached.
@@ -152,11 +154,11 @@ def follow_arms(
     for i in range(len(p)):
         propagators_at(family, p[i], polynomials, changes)
         if i > 0:
-            guess_at(track, i, p, guess, decided)
+            predict_eigenvalues(track, i, p, guess, decided)
             for k in range(len(guess)):
                 if decided[k] >= 0:
                     two = (k, decided[k])
-                    guess_two(track.w[i - 1], two, two_roots_of_arm(guess[k], level), guess)
+                    set_two_guesses(track.w[i - 1], two, two_roots_of_arm(guess[k], level), guess)
             track.order[i] = track.order[i - 1]
         if not _correct_all(track, i, p[i], guess, modes, level):
             return i

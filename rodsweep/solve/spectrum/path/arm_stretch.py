@@ -23,20 +23,20 @@ from ....determinant.parameter_path import Path
 from ....determinant.roots.roots import Roots
 from ...backend.kept import forget_all
 from ...point import FAILURES
-from ..candidates import line_of_proof, lines_of_count
+from ..candidates import line_for_proof, lines_for_count
 from ..search import Search
 from ..spectrum import FollowedPoints, SpectrumRequest
-from .arm_following import follow_arms
+from .arm_following import follow_eigenvalues_of_arms
 from .arm_stretch_settings import ARM_STRETCH
-from .carried_count import judge_points, leading
-from .prediction import Track, part_of_track, track_from
+from .carried_count import assess_points, leading_eigenvalues
+from .prediction import Track, slice_track, start_track
 
 
 class ArmInterval(NamedTuple):
     """Points p of a path, (n,), whose eigenvalues were followed with one family of arms.
 
-    track, known: as in `follow_arms`. arms: number of given points inside the family, of which the first n
-    were reached. further: number of modes followed beyond the wanted modes.
+    track, known: as in `follow_eigenvalues_of_arms`. arms: number of given points inside the family, of which
+    the first n were reached. further: number of modes followed beyond the wanted modes.
     """
 
     p: Array
@@ -52,20 +52,20 @@ class ArmInterval(NamedTuple):
         return int((self.known >= modes).sum())
 
 
-def followed_arms(path: Path, p: Array, request: SpectrumRequest) -> FollowedPoints | None:
+def follow_stretch_of_arms(path: Path, p: Array, request: SpectrumRequest) -> FollowedPoints | None:
     """Spectra of the arms at p, (n,), from the first up to the last point reached; None if none is
     reached."""
-    found = interval_of(path, p, request)
+    found = follow_interval(path, p, request)
     if found is None:
         return None
     for i in np.flatnonzero(found.known < request.modes).tolist():
-        here = part_of_track(found.track, i, i + 1)
-        found.known[i] = counted(path, found, float(found.p[i]), request.modes, here)
-    good, unstable = judge_points(found.track, found.known, request.modes, request.accuracy)
-    return FollowedPoints(*leading(found.track, request.modes), unstable, good)
+        here = slice_track(found.track, i, i + 1)
+        found.known[i] = count_at(path, found, float(found.p[i]), request.modes, here)
+    good, unstable = assess_points(found.track, found.known, request.modes, request.accuracy)
+    return FollowedPoints(*leading_eigenvalues(found.track, request.modes), unstable, good)
 
 
-def interval_of(
+def follow_interval(
     path: Path, p: Array, request: SpectrumRequest, before: ArmInterval | None = None
 ) -> ArmInterval | None:
     """The first points of p, (n,), that are reached with one family of arms; None if the first point fails.
@@ -79,10 +79,12 @@ def interval_of(
     ):
         if best is not None and not (_too_few(best) or _proves_more(path, best, request, further)):
             break
-        found = _followed(path, p, request, further, before) if len(p) >= ARM_STRETCH.fewest_points else None
+        found = _followed(path, p, request, further, before) if len(p) >= ARM_STRETCH.min_points else None
         if found is not None and (best is None or _is_better(found, best, request.modes)):
             best = found
-        enough = best is not None and best.proved(request.modes) >= ARM_STRETCH.proved_enough * len(best.p)
+        enough = best is not None and best.proved(request.modes) >= ARM_STRETCH.min_proved_fraction * len(
+            best.p
+        )
         if best is not None and enough and not _too_few(best):
             break
     return best
@@ -111,7 +113,7 @@ def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, furth
     if roots is None or len(roots.w) < request.modes:
         return False
     arm = arm_determinant(path.at(p))
-    line = line_of_proof(complex(roots.w[request.modes - 1]), float(roots.error[request.modes - 1]))
+    line = line_for_proof(complex(roots.w[request.modes - 1]), float(roots.error[request.modes - 1]))
     try:
         return none_is_missing(line, roots.w, roots.error, arm, hull_at(found.hulls, p))[0]
     except FloatingPointError:
@@ -121,7 +123,7 @@ def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, furth
 def _followed(
     path: Path, p: Array, request: SpectrumRequest, further: int, before: ArmInterval | None
 ) -> ArmInterval | None:
-    """`interval_of` with exactly `further` modes followed beyond the wanted modes."""
+    """`follow_interval` with exactly `further` modes followed beyond the wanted modes."""
     first = _carried(before, float(p[0]), request, further)
     if first is None:
         first = first_eigenvalues(path, float(p[0]), request, further)
@@ -130,32 +132,32 @@ def _followed(
     if first is not None and before is not None:
         inside = int(((p >= before.family.low) & (p <= before.family.high)).sum())
         if (
-            inside >= ARM_STRETCH.fewest_points
+            inside >= ARM_STRETCH.min_points
             and ARM_STRETCH.reused_headroom * np.abs(first).max() <= before.family.W
         ):
             made = (before.family, before.hulls)
             n = inside
         else:
-            n = min(n, max(ARM_STRETCH.points_growth * len(before.p), ARM_STRETCH.fewest_points))
-    while first is not None and made is None and n >= ARM_STRETCH.fewest_points:
-        made = arms_between(path, p[:n], first, request.modes)
+            n = min(n, max(ARM_STRETCH.max_points_growth * len(before.p), ARM_STRETCH.min_points))
+    while first is not None and made is None and n >= ARM_STRETCH.min_points:
+        made = family_and_hulls(path, p[:n], first, request.modes)
         # On half the interval the propagators need a lower degree.
         n = n if made is not None else n // 2
     if first is None or made is None:
         return None
     family, hulls = made
-    track = track_from(first, n)
+    track = start_track(first, n)
     known = np.zeros(n, np.int64)
-    reached = follow_arms(track, family, hulls, p[:n], request.modes, known)
+    reached = follow_eigenvalues_of_arms(track, family, hulls, p[:n], request.modes, known)
     if reached == 0:
         return None
     arms = before.arms if before is not None and family is before.family else n
     return ArmInterval(
-        p[:reached], part_of_track(track, 0, reached), known[:reached], family, hulls, arms, further
+        p[:reached], slice_track(track, 0, reached), known[:reached], family, hulls, arms, further
     )
 
 
-def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmFamily, PathHulls] | None:
+def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmFamily, PathHulls] | None:
     """(family of the arms at all p, (n,), their hulls); None if the arms do not vary smoothly or D overflows.
 
     first: eigenvalues at the first point, (m,), leading first.
@@ -211,21 +213,21 @@ def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Root
     except FAILURES:
         forget_all()
         return None
-    return None if search.best is None else search.best.found.roots
+    return None if search.best is None else search.best.candidates.roots
 
 
-def counted(path: Path, found: ArmInterval, p: float, modes: int, here: Track) -> int:
+def count_at(path: Path, found: ArmInterval, p: float, modes: int, here: Track) -> int:
     """Number of eigenvalues at p that a count confirms to be all eigenvalues right of a line; 0 if no count
     does.
 
     found: an interval that contains p. here: a track with the eigenvalues at p only.
     """
-    w, error = leading(here, here.w.shape[1])
+    w, error = leading_eigenvalues(here, here.w.shape[1])
     if w[0, -1].real > 0:  # there are further growing modes, which the count would find as well
         return 0
     determinant = ArmDeterminant(path.at(p), level_at(found.family, p))
     hull = hull_at(found.hulls, p)
-    for line in lines_of_count(w[0].tolist(), modes):
+    for line in lines_for_count(w[0].tolist(), modes):
         number = count_right_of(line, determinant, hull, w[0], error[0]).number
         if number is not None:
             clear = (np.abs(w[0].real - line) > 2 * error[0]).all()

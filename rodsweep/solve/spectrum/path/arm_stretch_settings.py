@@ -12,7 +12,7 @@ class ArmStretchSettings:
     further_modes: tuple[int, ...] = (3, 9)
     """Numbers of modes followed beyond the wanted modes. The second is tried if the first proves too few
     points."""
-    proved_enough: float = 0.5
+    min_proved_fraction: float = 0.5
     """Fraction of points proved complete below which more modes are followed, provided that more modes prove
     a further point."""
     headroom: float = 2.0
@@ -20,9 +20,9 @@ class ArmStretchSettings:
     first point."""
     reused_headroom: float = 1.25
     """`headroom` that the family of the previous interval must still have to be used again."""
-    points_growth: int = 2
+    max_points_growth: int = 2
     """Maximum number of points of a new family, in units of the points that the previous family reached."""
-    fewest_points: int = 4
+    min_points: int = 4
     """Minimum number of points for which a family of arms is made."""
     accuracy: float = 1e-8
     """Relative accuracy of the eigenvalues of `FollowedArms`."""

@@ -23,15 +23,15 @@ from .prediction import Track
 class CarriedCountSettings(CompiledSettings):
     """Settings for a count that is carried from point to point of a path."""
 
-    rectangles: int = 60
+    base_rectangles: int = 60
     """Maximum number of rectangles of one proof, besides `rectangles_per_point`."""
     rectangles_per_point: int = 20
     """Increase of this maximum with each point that the proof covers: a new count at a point costs as much as
     twenty rectangles."""
-    wide_enough: float = 0.2
+    wide_gap: float = 0.2
     """Half-width of a gap, relative to the distance of its middle from the imaginary axis, above which a
     wider gap is not preferred. Of several such gaps the one farthest left is taken."""
-    narrowest_gap: float = 1e-6
+    min_gap: float = 1e-6
     """Relative half-width below which no line is drawn in a gap."""
 
 
@@ -39,7 +39,7 @@ CARRIED_COUNT = CarriedCountSettings()
 
 
 @compiled
-def line_in(track: Track, i: int, gap: int) -> tuple[float, float]:
+def line_in_gap(track: Track, i: int, gap: int) -> tuple[float, float]:
     """(real part of the line in the middle of a gap at point i, relative half-width of the gap).
 
     gap: number of eigenvalues right of the gap.
@@ -49,19 +49,19 @@ def line_in(track: Track, i: int, gap: int) -> tuple[float, float]:
     line = (right + left) / 2
     if not line < 0:
         return line, 0.0
-    return line, min((right - line) / -line, CARRIED_COUNT.wide_enough)
+    return line, min((right - line) / -line, CARRIED_COUNT.wide_gap)
 
 
 @compiled
-def best_gap(track: Track, i: int, modes: int) -> int:
+def widest_gap(track: Track, i: int, modes: int) -> int:
     """Number of eigenvalues right of the widest gap at point i; 0 if no gap is wide enough.
 
     The gap lies left of the leading `modes` and of the imaginary axis.
     """
     best = 0
-    widest = CARRIED_COUNT.narrowest_gap
+    widest = CARRIED_COUNT.min_gap
     for gap in range(modes, track.w.shape[1]):
-        width = line_in(track, i, gap)[1]
+        width = line_in_gap(track, i, gap)[1]
         if width >= widest:
             best = gap
             widest = width
@@ -96,10 +96,10 @@ def _gap_between(track: Track, ends: tuple[int, int], modes: int, known: int, p:
     The number is at least `modes` and at most `known`.
     """
     best = 0
-    widest = CARRIED_COUNT.narrowest_gap
+    widest = CARRIED_COUNT.min_gap
     for gap in range(modes, min(known, track.w.shape[1] - 1) + 1):
-        here, wide = line_in(track, ends[0], gap)
-        there, wide_there = line_in(track, ends[1], gap)
+        here, wide = line_in_gap(track, ends[0], gap)
+        there, wide_there = line_in_gap(track, ends[1], gap)
         if min(wide, wide_there) >= widest and _stays_open(track, ends, gap, (here, there), p):
             best = gap
             widest = min(wide, wide_there)
@@ -109,7 +109,7 @@ def _gap_between(track: Track, ends: tuple[int, int], modes: int, known: int, p:
 @compiled
 def _end(track: Track, i: int, gap: int, p: Array, coefficients: Array) -> IntervalEnd:
     F, nu, c2, gamma3 = coefficients[i]
-    return IntervalEnd(p[i], Coefficients(F, nu, c2, gamma3), line_in(track, i, gap)[0])
+    return IntervalEnd(p[i], Coefficients(F, nu, c2, gamma3), line_in_gap(track, i, gap)[0])
 
 
 @compiled
@@ -131,7 +131,7 @@ def carry_count(
         if gap > 0:
             first = _end(track, i, gap, p, coefficients)
             end = _end(track, j, gap, p, coefficients)
-            most = CARRIED_COUNT.rectangles + CARRIED_COUNT.rectangles_per_point * (j - i)
+            most = CARRIED_COUNT.base_rectangles + CARRIED_COUNT.rectangles_per_point * (j - i)
             proved, _ = none_crosses(first, end, direction, most)
         if proved:
             # The proof holds for the gap of the line, though more eigenvalues may have been known.
@@ -147,7 +147,7 @@ def carry_count(
 
 
 @compiled
-def judge_points(track: Track, known: NDArray, modes: int, accuracy: float) -> tuple[NDArray, NDArray]:
+def assess_points(track: Track, known: NDArray, modes: int, accuracy: float) -> tuple[NDArray, NDArray]:
     """(whether each point is certified and its leading `modes` accurate, number of unstable modes), (points,)
     each.
 
@@ -172,7 +172,7 @@ def judge_points(track: Track, known: NDArray, modes: int, accuracy: float) -> t
 
 
 @compiled
-def leading(track: Track, modes: int) -> tuple[Complex, Array]:
+def leading_eigenvalues(track: Track, modes: int) -> tuple[Complex, Array]:
     """The leading `modes` eigenvalues and their errors at every point of a track, (points, modes) each."""
     n = track.w.shape[0]
     w = np.empty((n, modes), np.complex128)

@@ -11,11 +11,11 @@ from ....determinant.arm.family import ArmFamily
 from ....determinant.parameter_path import Path
 from ..spectrum import Spectrum, SpectrumRequest
 from ..status import SpectrumStatus
-from .arm_following import follow_arms
-from .arm_stretch import ArmInterval, counted, interval_of
+from .arm_following import follow_eigenvalues_of_arms
+from .arm_stretch import ArmInterval, count_at, follow_interval
 from .arm_stretch_settings import ARM_STRETCH
-from .carried_count import judge_points, leading
-from .prediction import KnownRoots, Track, part_of_track, track_from
+from .carried_count import assess_points, leading_eigenvalues
+from .prediction import KnownRoots, Track, slice_track, start_track
 
 
 class FollowedArms:
@@ -32,21 +32,21 @@ class FollowedArms:
         self.path = path
         self.request = SpectrumRequest(modes, ARM_STRETCH.accuracy, certify=True)
         self.intervals: list[ArmInterval] = []
-        self._judged: dict[float, list[JudgedPlace]] = {}
+        self._judged: dict[float, list[ProvedEigenvalues]] = {}
         self._p = p
-        self._place = 0
+        self._next = 0
         self._patience = 1
 
     def _follow_to(self, p: float) -> None:
         """Follows eigenvalues up to the first point at or beyond p."""
-        while self._place < len(self._p) and (self._place == 0 or self._p[self._place] < p):
+        while self._next < len(self._p) and (self._next == 0 or self._p[self._next] < p):
             before = self.intervals[-1] if self.intervals else None
-            found = interval_of(self.path, self._p[self._place :], self.request, before)
+            found = follow_interval(self.path, self._p[self._next :], self.request, before)
             if found is not None:
                 self.intervals.append(found)
             # Intervals share their end points. Where following fails it often fails at the next points too,
             # so every further failure skips twice as many.
-            self._place += max(len(found.p) - 1, 1) if found is not None else self._patience
+            self._next += max(len(found.p) - 1, 1) if found is not None else self._patience
             self._patience = 1 if found is not None else 2 * self._patience
 
     def family(self, p: float) -> ArmFamily | None:
@@ -57,8 +57,8 @@ class FollowedArms:
     def slope(self, w: complex, p: float) -> tuple[complex, float] | None:
         """(dw/dp, error of w) of an eigenvalue w that `spectrum` returned at p; None for any other w."""
         for one in self._judged.get(p, []):
-            for k in np.flatnonzero(one.here.w[0] == w).tolist():
-                return complex(one.here.slope[0, k]), float(one.here.error[0, k])
+            for k in np.flatnonzero(one.track.w[0] == w).tolist():
+                return complex(one.track.slope[0, k]), float(one.track.error[0, k])
         return None
 
     def spectrum(self, p: float, modes: int) -> Spectrum | None:
@@ -67,7 +67,7 @@ class FollowedArms:
         """
         self._follow_to(p)
         judged = self._judged.setdefault(p, [])
-        if not any(modes <= one.asked for one in judged):
+        if not any(modes <= one.max_modes for one in judged):
             judged += self._judge(p, modes)
         found = (one.spectrum(modes, self.request.accuracy) for one in judged)
         return next((spectrum for spectrum in found if spectrum is not None), None)
@@ -82,7 +82,7 @@ class FollowedArms:
                     return KnownRoots(here.w[0], here.error[0])
         return None
 
-    def _judge(self, p: float, modes: int) -> Iterator["JudgedPlace"]:
+    def _judge(self, p: float, modes: int) -> Iterator["ProvedEigenvalues"]:
         """Yields the eigenvalues at p of each interval that contains p, up to the first that proves `modes`
         complete.
 
@@ -105,8 +105,8 @@ class FollowedArms:
                 continue
             for number in sorted({wanted, modes}, reverse=True):
                 if known < number:
-                    known = max(known, counted(self.path, one, p, number, here))
-            yield JudgedPlace(max(modes, min(known, wanted)), here, known)
+                    known = max(known, count_at(self.path, one, p, number, here))
+            yield ProvedEigenvalues(max(modes, min(known, wanted)), here, known)
             if known >= modes:
                 return
 
@@ -119,36 +119,36 @@ class FollowedArms:
         i = int(np.argmin(np.abs(one.p - p)))
         start = float(one.p[i])
         if p == start and modes <= self.request.modes:
-            return part_of_track(one.track, i, i + 1), int(one.known[i])
+            return slice_track(one.track, i, i + 1), int(one.known[i])
         for steps in ARM_STRETCH.steps_from_nearest:
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
-            track = track_from(one.track.w[i], len(grid))
+            track = start_track(one.track.w[i], len(grid))
             known = np.zeros(len(grid), np.int64)
             track.order[0] = one.track.order[i]
-            if follow_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
-                return part_of_track(track, len(grid) - 1, len(grid)), int(known[-1])
+            if follow_eigenvalues_of_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
+                return slice_track(track, len(grid) - 1, len(grid)), int(known[-1])
         return None, 0
 
 
-class JudgedPlace(NamedTuple):
+class ProvedEigenvalues(NamedTuple):
     """Eigenvalues at one p of a path; the leading `known` of them are proved complete.
 
-    asked: largest number of modes whose proof was tried.
+    max_modes: largest number of modes whose proof was tried.
     """
 
-    asked: int
-    here: Track
+    max_modes: int
+    track: Track
     known: int
 
     def spectrum(self, modes: int, accuracy: float) -> Spectrum | None:
         """The leading `modes` eigenvalues if all were followed, are accurate and proved complete; else
         None."""
-        if self.here.w.shape[1] < modes:
+        if self.track.w.shape[1] < modes:
             return None
-        good, unstable = judge_points(self.here, np.array([self.known]), modes, accuracy)
+        good, unstable = assess_points(self.track, np.array([self.known]), modes, accuracy)
         if not good[0]:
             return None
-        w, error = leading(self.here, modes)
+        w, error = leading_eigenvalues(self.track, modes)
         return Spectrum(
             status=SpectrumStatus.ok,
             eigenvalues=w[0],

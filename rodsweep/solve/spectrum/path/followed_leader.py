@@ -21,23 +21,23 @@ from ....determinant.certificate.winding_number import count_right_of
 from ....determinant.roots.newton import refined
 from ....determinant.roots.roots import root_error
 from ....model.rod import Rod
-from ..candidates import CANDIDATES, line_of_proof
-from .following import distinct_roots
+from ..candidates import CANDIDATES, line_for_proof
+from .following import are_distinct_roots
 from .prediction import KnownRoots
 
 
-class Leader(NamedTuple):
+class LeadingEigenvalue(NamedTuple):
     """The leading eigenvalue w of a rod, in 1/tau2, with Im w >= 0, and its absolute error.
 
-    known: all followed eigenvalues of the rod with Im w >= 0, (n,), the leading one first.
+    eigenvalues: all followed eigenvalues of the rod with Im w >= 0, (n,), the leading one first.
     """
 
     w: complex
     error: float
-    known: Complex
+    eigenvalues: Complex
 
 
-def followed_leader(rod: Rod, near: Complex, accuracy: float) -> Leader | None:
+def follow_leading_eigenvalue(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | None:
     """The leading eigenvalue of a rod, followed from a neighbouring rod; None unless it is proved to lead.
 
     near: eigenvalues of the neighbouring rod with Im w >= 0, (n,), the leading one first. An arm that varies
@@ -48,36 +48,33 @@ def followed_leader(rod: Rod, near: Complex, accuracy: float) -> Leader | None:
         return _of_uniform(rod, complex(near[0]), accuracy)
     if rod.uniform:
         linear, rate = rod.equivalent
-        found = followed_leader(linear, near / rate, accuracy)
-        return found and Leader(rate * found.w, rate * found.error, rate * found.known)
+        found = follow_leading_eigenvalue(linear, near / rate, accuracy)
+        return found and LeadingEigenvalue(rate * found.w, rate * found.error, rate * found.eigenvalues)
     try:
         return _of_arm(rod, near, accuracy)
     except FloatingPointError:  # D needs too many elements
         return None
 
 
-def _of_uniform(rod: Rod, near: complex, accuracy: float) -> Leader | None:
-    """`followed_leader` for a uniform rod of linear material, from the neighbour's leading eigenvalue
-    `near`."""
+def _of_uniform(rod: Rod, near: complex, accuracy: float) -> LeadingEigenvalue | None:
+    """`follow_leading_eigenvalue` for a uniform rod of linear material; near: the neighbour's eigenvalue."""
     w = refined(near, rod.coefficients)
     error, _, _ = root_error(w, rod.coefficients)
     if not _is_of_its_kind(w, error, near, accuracy):
         return None
     number = 2 if w.imag else 1
     leads = any(count_right_of(line, rod).number == number for line in _lines(w))
-    return Leader(w, error, np.array([w])) if leads else None
+    return LeadingEigenvalue(w, error, np.array([w])) if leads else None
 
 
-def _of_arm(rod: Rod, near: Complex, accuracy: float) -> Leader | None:
-    """`followed_leader` for an arm that varies along its length, from the neighbour's eigenvalues `near`,
-    (n,).
-    """
+def _of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | None:
+    """`follow_leading_eigenvalue` for an arm that varies along its length; near: of the neighbour, (n,)."""
     hull = hull_of(rod)
     if not isfinite(hull.a) or not np.isfinite(near).all():
         return None
     determinant = arm_determinant(rod)
     first = complex(near[0])
-    size = largest_w_of_proof(line_of_proof(first, 0.0), hull, near)
+    size = largest_w_of_proof(line_for_proof(first, 0.0), hull, near)
     if not isfinite(size):
         size = largest_w_of_count(next(_lines(first)), determinant, hull)
     determinant.level(size)  # elements for the proof, which serve the eigenvalues too
@@ -88,16 +85,16 @@ def _of_arm(rod: Rod, near: Complex, accuracy: float) -> Leader | None:
     w = w[order]
     error = error[order]
     leader = complex(w[0])
-    if not _is_of_its_kind(leader, float(error[0]), first, accuracy) or not distinct_roots(w, error):
+    if not _is_of_its_kind(leader, float(error[0]), first, accuracy) or not are_distinct_roots(w, error):
         return None
     pairs = w.imag != 0
     known = KnownRoots(np.append(w, w[pairs].conj()), np.append(error, error[pairs]))
-    complete, _ = none_is_missing(line_of_proof(leader, float(error[0])), *known, determinant, hull)
+    complete, _ = none_is_missing(line_for_proof(leader, float(error[0])), *known, determinant, hull)
     leads = complete or any(
         count_of_arm(line, determinant, hull, *known).number == (known.w.real > line).sum()
         for line in _lines(leader)
     )
-    return Leader(leader, float(error[0]), w) if leads else None
+    return LeadingEigenvalue(leader, float(error[0]), w) if leads else None
 
 
 def _is_of_its_kind(w: complex, error: float, near: complex, accuracy: float) -> bool:
@@ -108,4 +105,4 @@ def _is_of_its_kind(w: complex, error: float, near: complex, accuracy: float) ->
 def _lines(w: complex) -> Iterator[float]:
     """Real parts of two lines left of a leading eigenvalue w, for its count; the cheaper count comes
     first."""
-    return (w.real - far * abs(w) for far in (CANDIDATES.far_behind, CANDIDATES.behind))
+    return (w.real - far * abs(w) for far in (CANDIDATES.leader_line_distance, CANDIDATES.last_line_distance))

@@ -20,7 +20,7 @@ from ....determinant.value import DETERMINANT
 from ....model.compiled.compilation import compiled
 from ....model.compiled.settings import CompiledSettings
 from ....model.rod import Coefficients
-from .prediction import Track, guess_at, guess_two, mates_of
+from .prediction import Track, find_conjugates, predict_eigenvalues, set_two_guesses
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,10 +32,10 @@ class FollowingSettings(CompiledSettings):
     accuracy: float = 1e-9
     """Relative accuracy of eigenvalues beyond the leading modes, which only show where to draw the line of a
     count."""
-    safe_curvature: float = 4.0
+    curvature_safety_factor: float = 4.0
     """Safety factor on |D''/(2 D')|, which is the modulus of the sum of 1/(w - w_j) over all other roots w_j,
     but is computed from the followed roots only."""
-    rounding_step: float = 4.0
+    final_step: float = 4.0
     """Newton step, in units of the rounding error of the eigenvalue, at which the iteration ends."""
 
 
@@ -54,9 +54,11 @@ class CorrectedEigenvalue(NamedTuple):
 
 
 @compiled
-def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -> CorrectedEigenvalue:
-    """One Newton step on D from w, for a uniform rod. direction: d(F, nu, c2, gamma3)/dp. A real w stays
-    real.
+def correct_eigenvalue(
+    w: complex, coefficients: Coefficients, direction: Coefficients
+) -> CorrectedEigenvalue:
+    """One Newton step on D from w, for a uniform rod; a real w stays real. direction:
+    d(F, nu, c2, gamma3)/dp.
     """
     D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
     return newton_step(w, D, D_w, D_p, DETERMINANT.typical_noise * noise)
@@ -80,7 +82,7 @@ def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, rounding: fl
 
 
 @compiled
-def crowding_of(w: Complex, k: int) -> float:
+def curvature_estimate(w: Complex, k: int) -> float:
     """Upper estimate of |D''/(2 D')| at root w[k], from its distances to 0 and to the other followed roots w,
     (m,).
     """
@@ -88,11 +90,11 @@ def crowding_of(w: Complex, k: int) -> float:
     for j in range(len(w)):
         if j != k:
             total += 1 / abs(w[k] - w[j])
-    return FOLLOWING.safe_curvature * total
+    return FOLLOWING.curvature_safety_factor * total
 
 
 @compiled
-def settled_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> float:
+def converged_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> float:
     """Absolute error of an eigenvalue after a Newton step; inf until the remainder crowding step^2 is small
     enough.
 
@@ -101,7 +103,7 @@ def settled_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> fl
     """
     left = crowding * here.step * here.step
     allowed = max(here.blur, ROUND_OFF * abs(here.w)) if exact else FOLLOWING.accuracy * abs(here.w)
-    if left <= allowed or here.step <= FOLLOWING.rounding_step * here.blur:
+    if left <= allowed or here.step <= FOLLOWING.final_step * here.blur:
         return max(here.blur, min(left, here.step))
     return math.inf
 
@@ -131,23 +133,23 @@ def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalu
 def _settled(
     first: CorrectedEigenvalue, crowding: float, exact: bool, rod: Coefficients, direction: Coefficients
 ) -> tuple[CorrectedEigenvalue, float]:
-    """(last Newton step, error) of an eigenvalue of a uniform rod, after steps until `settled_error` is
+    """(last Newton step, error) of an eigenvalue of a uniform rod, after steps until `converged_error` is
     finite.
 
-    first: result of the first step. crowding, exact: as in `settled_error`. The error is inf without
+    first: result of the first step. crowding, exact: as in `converged_error`. The error is inf without
     convergence.
     """
     here = first
     for _ in range(FOLLOWING.max_corrections):
-        error = settled_error(here, crowding, exact)
+        error = converged_error(here, crowding, exact)
         if error < math.inf:
             return here, error
-        here = corrected(here.w, rod, direction)
+        here = correct_eigenvalue(here.w, rod, direction)
     return here, math.inf
 
 
 @compiled
-def distinct_roots(w: Complex, error: Array) -> bool:
+def are_distinct_roots(w: Complex, error: Array) -> bool:
     """Whether all eigenvalues w and errors, (m,), are finite and no two eigenvalues can be the same root."""
     for k in range(len(w)):
         if not (abs(w[k]) < math.inf and error[k] < math.inf):
@@ -171,14 +173,14 @@ def _correct_all(
     order = track.order[i]
     m = len(w)
     mate = np.empty(m, np.int64)
-    mates_of(guess, mate)
+    find_conjugates(guess, mate)
     # One step for all before further steps for any: the crowding of a root needs its neighbours.
     first = [CorrectedEigenvalue(0j, 0j, math.inf, math.inf) for _ in range(m)]
     for k in range(m):
         if guess[k].imag != 0 and mate[k] < 0:
             return False
         if guess[k].imag >= 0:
-            first[k] = corrected(guess[k], rod, direction)
+            first[k] = correct_eigenvalue(guess[k], rod, direction)
             w[k] = first[k].w
             if mate[k] >= 0:
                 w[mate[k]] = w[k].conjugate()
@@ -186,15 +188,17 @@ def _correct_all(
     for rank in range(m):
         k = order[rank]
         if guess[k].imag >= 0:
-            last, error[k] = _settled(first[k], crowding_of(w, k), rank <= modes, rod, direction)
+            last, error[k] = _settled(first[k], curvature_estimate(w, k), rank <= modes, rod, direction)
             if not store_root(track, i, k, mate[k], last):
                 return False
     sort_descending(w, order)
-    return distinct_roots(w, error)
+    return are_distinct_roots(w, error)
 
 
 @compiled
-def follow(track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int) -> int:
+def follow_eigenvalues(
+    track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int
+) -> int:
     """Follows eigenvalues of uniform rods along the points p, (points,), and returns the number of points
     reached.
 
@@ -207,11 +211,11 @@ def follow(track: Track, coefficients: Array, p: Array, direction: Coefficients,
         F, nu, c2, gamma3 = coefficients[i]
         rod = Coefficients(F, nu, c2, gamma3)
         if i > 0:
-            guess_at(track, i, p, guess, decided)
+            predict_eigenvalues(track, i, p, guess, decided)
             for k in range(len(guess)):
                 if decided[k] >= 0:
                     two = (k, decided[k])
-                    guess_two(track.w[i - 1], two, two_roots(guess[k], rod), guess)
+                    set_two_guesses(track.w[i - 1], two, two_roots(guess[k], rod), guess)
             track.order[i] = track.order[i - 1]
         if not _correct_all(track, i, guess, modes, rod, direction):
             return i

@@ -22,10 +22,10 @@ from ....model.compiled.settings import CompiledSettings
 class EigenvaluePredictionSettings(CompiledSettings):
     """Settings for the prediction of two eigenvalues that meet."""
 
-    closing: float = 4.0
+    max_steps_to_meeting: float = 4.0
     """Two real eigenvalues are extrapolated as a pair if their slopes let them meet within this many steps of
     the path, ahead or behind."""
-    meeting: float = 0.25
+    undecided_fraction: float = 0.25
     """Fraction of the squared half difference at the last point. If the prediction falls below it, D decides
     whether the two eigenvalues are real or complex."""
 
@@ -52,7 +52,7 @@ class KnownRoots(NamedTuple):
     error: Array
 
 
-def track_from(first: Complex, points: int) -> Track:
+def start_track(first: Complex, points: int) -> Track:
     """A track of `points` points of which only the first is filled, with the eigenvalues `first`, (m,),
     leading first.
     """
@@ -64,14 +64,14 @@ def track_from(first: Complex, points: int) -> Track:
     return track
 
 
-def part_of_track(track: Track, start: int, stop: int) -> Track:
+def slice_track(track: Track, start: int, stop: int) -> Track:
     """The points `start` up to, but without, `stop` of a track."""
     here = slice(start, stop)
     return Track(track.w[here], track.slope[here], track.error[here], track.order[here])
 
 
 @compiled
-def mates_of(w: Complex, mate: NDArray) -> None:
+def find_conjugates(w: Complex, mate: NDArray) -> None:
     """Writes the index of the complex conjugate of each eigenvalue into `mate`, (m,); -1 for real
     eigenvalues.
     """
@@ -89,7 +89,7 @@ def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
     first.
     """
     while True:
-        soonest = EIGENVALUE_PREDICTION.closing
+        soonest = EIGENVALUE_PREDICTION.max_steps_to_meeting
         a = -1
         b = -1
         for k in range(len(w)):
@@ -108,7 +108,7 @@ def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
 
 
 @compiled
-def extrapolated(
+def extrapolate_hermite(
     values: tuple[float, float], slopes: tuple[float, float], steps: tuple[float, float]
 ) -> float:
     """Cubic Hermite extrapolation to a third point, from the values and slopes at two points.
@@ -141,7 +141,7 @@ def _two_ahead(
     first.
 
     undecided: whether D has to decide between two real eigenvalues and a complex pair. Both guesses are then
-    half the sum. steps: as in `extrapolated`.
+    half the sum. steps: as in `extrapolate_hermite`.
     """
     k, j = two
     # Where two real eigenvalues meet and become a pair, each has a square root in p; middle and squared half
@@ -150,19 +150,19 @@ def _two_ahead(
     before = square
     if i >= 2:
         middle_0, square_0, m0, s0 = _sum_and_square(track.w[i - 2], track.slope[i - 2], k, j)
-        middle = extrapolated((middle_0, middle), (m0, m1), steps)
-        square = extrapolated((square_0, square), (s0, s1), steps)
+        middle = extrapolate_hermite((middle_0, middle), (m0, m1), steps)
+        square = extrapolate_hermite((square_0, square), (s0, s1), steps)
     else:
         middle = middle + m1 * steps[1]
         square = square + s1 * steps[1]
-    if square * before <= 0 or abs(square) < EIGENVALUE_PREDICTION.meeting * abs(before):
+    if square * before <= 0 or abs(square) < EIGENVALUE_PREDICTION.undecided_fraction * abs(before):
         return complex(middle, 0.0), complex(middle, 0.0), True
     root = cmath.sqrt(complex(square, 0.0))
     return middle + root, middle - root, False
 
 
 @compiled
-def guess_two(w: Complex, two: tuple[int, int], roots: tuple[complex, complex], guess: Complex) -> None:
+def set_two_guesses(w: Complex, two: tuple[int, int], roots: tuple[complex, complex], guess: Complex) -> None:
     """Writes `roots` as the guesses for two eigenvalues of w, in the order of w: real part, then frequency.
 
     two: indices of the two in w and `guess`, (m,) each.
@@ -176,7 +176,7 @@ def guess_two(w: Complex, two: tuple[int, int], roots: tuple[complex, complex], 
 
 
 @compiled
-def guess_at(track: Track, i: int, p: Array, guess: Complex, decided: NDArray) -> None:
+def predict_eigenvalues(track: Track, i: int, p: Array, guess: Complex, decided: NDArray) -> None:
     """Writes the predicted eigenvalues of point i >= 1 into `guess`, (m,). p: path variable of every point,
     (points,).
 
@@ -186,7 +186,7 @@ def guess_at(track: Track, i: int, p: Array, guess: Complex, decided: NDArray) -
     w = track.w[i - 1]
     slope = track.slope[i - 1]
     mate = np.empty(len(w), np.int64)
-    mates_of(w, mate)
+    find_conjugates(w, mate)
     ahead = p[i] - p[i - 1]
     _pair_up(w, slope, ahead, mate)
     steps = (p[i - 1] - p[i - 2] if i >= 2 else ahead, ahead)
@@ -196,11 +196,11 @@ def guess_at(track: Track, i: int, p: Array, guess: Complex, decided: NDArray) -
         if j < 0 and i >= 2:
             values = (track.w[i - 2, k].real, w[k].real)
             slopes = (track.slope[i - 2, k].real, slope[k].real)
-            guess[k] = complex(extrapolated(values, slopes, steps), 0.0)
+            guess[k] = complex(extrapolate_hermite(values, slopes, steps), 0.0)
         elif j < 0:
             guess[k] = complex(w[k].real + slope[k].real * ahead, 0.0)
         elif j > k:
             one, other, undecided = _two_ahead(track, i, (k, j), steps)
-            guess_two(w, (k, j), (one, other), guess)
+            set_two_guesses(w, (k, j), (one, other), guess)
             if undecided:
                 decided[k] = j

@@ -21,12 +21,12 @@ from ...backend.kept import forget_all
 from ...point import FAILURES
 from ..search import Search, SpectrumRequest, solve_spectrum
 from ..search import warm_up as warm_up_search
-from ..spectrum import FollowedPoints, Spectrum, stated_errors
+from ..spectrum import FollowedPoints, Spectrum, errors_with_rounding
 from ..status import SpectrumStatus
-from .arm_stretch import followed_arms
-from .carried_count import best_gap, carry_count, judge_points, leading, line_in
-from .following import follow
-from .prediction import Track, part_of_track, track_from
+from .arm_stretch import follow_stretch_of_arms
+from .carried_count import assess_points, carry_count, leading_eigenvalues, line_in_gap, widest_gap
+from .following import follow_eigenvalues
+from .prediction import Track, slice_track, start_track
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,7 +90,7 @@ def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
         if found:
             here = slice(place, end)
             columns["eigenvalues"][here] = found.w
-            columns["error_estimate"][here] = stated_errors(found.w, found.error, stretch.path.rod)
+            columns["error_estimate"][here] = errors_with_rounding(found.w, found.error, stretch.path.rod)
             columns["unstable_count"][here] = found.unstable
             columns["certified"][here] = True
         for i in range(place, end):
@@ -126,22 +126,22 @@ def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Followe
     if rod.uniform and not (rod.standard or varies):
         return None  # the linear rod to which uniform rubber is equivalent has the closed form and its proof
     if varies or not rod.standard:
-        return followed_arms(stretch.path, stretch.coordinates[start:], request)
+        return follow_stretch_of_arms(stretch.path, stretch.coordinates[start:], request)
     seed = _first_point(stretch.rod(start), request)
     if seed is None:
         return None
     first, complete = seed
     modes = request.modes
     rest = Stretch(stretch.path, stretch.values[start:])
-    track = track_from(first, len(rest))
-    n = follow(track, rest.coefficients, rest.coordinates, stretch.path.direction, modes)
+    track = start_track(first, len(rest))
+    n = follow_eigenvalues(track, rest.coefficients, rest.coordinates, stretch.path.direction, modes)
     if n == 0:
         return None
-    track = part_of_track(track, 0, n)
+    track = slice_track(track, 0, n)
     known = _known_along(rest, track, modes, complete)
-    reached = part_of_track(track, 0, len(known))
-    good, unstable = judge_points(reached, known, modes, request.accuracy)
-    return FollowedPoints(*leading(reached, modes), unstable, good)
+    reached = slice_track(track, 0, len(known))
+    good, unstable = assess_points(reached, known, modes, request.accuracy)
+    return FollowedPoints(*leading_eigenvalues(reached, modes), unstable, good)
 
 
 def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> NDArray[np.int64]:
@@ -157,12 +157,12 @@ def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> N
     known[0] = complete
     at = 0
     while True:
-        rest = part_of_track(track, at, n)
+        rest = slice_track(track, at, n)
         at += carry_count(rest, coefficients[at:], p[at:], stretch.path.direction, modes, known[at:])
         if at == n - 1:
             break
-        gap = best_gap(track, at + 1, modes)
-        line = float(line_in(track, at + 1, gap)[0]) if gap else 0.0
+        gap = widest_gap(track, at + 1, modes)
+        line = float(line_in_gap(track, at + 1, gap)[0]) if gap else 0.0
         if not gap or count_right_of(line, stretch.rod(at + 1)).number != gap:
             break
         at += 1
@@ -182,10 +182,10 @@ def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | No
     except FAILURES:
         forget_all()
         return None
-    if search.best is None or search.best.verdict is None or not outcome.certified:
+    if search.best is None or search.best.comparison is None or not outcome.certified:
         return None
-    w = search.best.found.roots.w.copy()
-    complete = search.best.verdict.here
+    w = search.best.candidates.roots.w.copy()
+    complete = search.best.comparison.found_count
     w = w[: complete + 1 + (complete < len(w) and w[complete].imag > 0)]
     for k in np.flatnonzero(w.imag > 0):
         if k + 1 == len(w):
