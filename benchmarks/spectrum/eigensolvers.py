@@ -18,7 +18,7 @@ from rodsweep.bench.spectrum.arms import mesh_of_arm, on_arm
 from rodsweep.bench.spectrum.own import PENCIL, WANTED_MODES, leading
 from rodsweep.bench.spectrum.study import ORDERS, mesh_of
 from rodsweep.bench.study import Contender
-from rodsweep.determinant.roots.newton import refined
+from rodsweep.determinant.roots.newton import refine_eigenvalue
 from rodsweep.discretization.straight.pencil import PENCIL_NORM, assemble
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.problem import transverse_problem
@@ -58,7 +58,7 @@ def scipy_eigs(rod: Rod, size: int) -> Eigenvalues:
 
 def lapack_on_d(rod: Rod, size: int) -> Eigenvalues:
     """LAPACK on a coarse pencil, then Newton's method on D: what a root polisher does."""
-    return np.array([refined(complex(w), rod.coefficients) for w in dense_inverse(rod, size)])
+    return np.array([refine_eigenvalue(complex(w), rod.coefficients) for w in dense_inverse(rod, size)])
 
 
 def displacement_elements(rod: Rod, size: int) -> Eigenvalues:

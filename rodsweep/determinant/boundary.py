@@ -23,15 +23,15 @@ class BoundarySettings:
 
     max_steps: int = 12
     """Maximum number of Newton steps to a point; beyond, Newton's method has failed."""
-    longest_step: float = 0.5
+    max_step: float = 0.5
     """Largest Newton step, in units of the lengths of the axes and of h; after a larger step Newton's method
     has failed."""
-    converged: float = 4.0
+    converged_step: float = 4.0
     """Newton step, in units of the rounding error of the point, at which Newton's method has converged."""
-    singular: float = EXPONENTS.least_divisor
+    min_determinant: float = EXPONENTS.least_divisor
     """Least |determinant| of the 3 x 3 matrix of a Newton step; below it the matrix is singular and Newton's
     method fails. It is far below that of any regular matrix."""
-    stagnation: float = 1e-10
+    stagnant_step: float = 1e-10
     """Newton step below which a step that is not half of its predecessor is rounding error: Newton's method
     has converged."""
 
@@ -39,8 +39,8 @@ class BoundarySettings:
 BOUNDARY = BoundarySettings()
 
 
-class OnBoundary(NamedTuple):
-    """A point v = (x, y, h) on a stability boundary, the 2 x 3 Jacobian of its two equations, and the error
+class BoundarySolution(NamedTuple):
+    """A point v = (x, y, h) on a stability boundary, the 2 x 3 Jacobian of its equations there, and the error
     of v.
     """
 
@@ -79,9 +79,9 @@ class Boundary:
     def tangent(self, v: Array) -> Array:
         """Unit tangent of the boundary at v, (3,)."""
         _, jacobian, error = self.equations(v)
-        return OnBoundary(v, jacobian, error).tangent
+        return BoundarySolution(v, jacobian, error).tangent
 
-    def corrected(self, guess: Array, normal: NDArray[np.floating]) -> OnBoundary | None:
+    def corrected(self, guess: Array, normal: NDArray[np.floating]) -> BoundarySolution | None:
         """The point of the boundary on the plane through `guess`, (3,), that is perpendicular to `normal`,
         (3,).
 
@@ -96,16 +96,16 @@ class Boundary:
                 return None
             matrix = np.vstack([jacobian, normal])
             right = np.append(-residual, -normal @ (v - guess))
-            if not np.isfinite(matrix).all() or abs(np.linalg.det(matrix)) < BOUNDARY.singular:
+            if not np.isfinite(matrix).all() or abs(np.linalg.det(matrix)) < BOUNDARY.min_determinant:
                 return None
             inverse = np.linalg.inv(matrix)
             step = inverse @ right
             error = float(np.abs(inverse[:, :2]).sum(axis=1).max()) * blur
             size = float(np.abs(step).max())
             v = v + step
-            if size <= BOUNDARY.converged * error or (size < BOUNDARY.stagnation and size > last / 2):
-                return OnBoundary(v, jacobian, max(error, size))
-            if size > BOUNDARY.longest_step or not np.isfinite(v).all():
+            if size <= BOUNDARY.converged_step * error or (size < BOUNDARY.stagnant_step and size > last / 2):
+                return BoundarySolution(v, jacobian, max(error, size))
+            if size > BOUNDARY.max_step or not np.isfinite(v).all():
                 return None
             last = size
         return None
@@ -129,7 +129,9 @@ class Boundary:
         jacobian = np.empty((2, 3))
         jacobian[0] = here.D_x.real, here.D_y.real, slope
         for i in range(3):
-            stencil, h = self.plane.stencil(v[0], v[1], i) if i < 2 else (CENTRAL_STENCIL, PLANE.step)
+            stencil, h = (
+                self.plane.stencil(v[0], v[1], i) if i < 2 else (CENTRAL_STENCIL, PLANE.difference_step)
+            )
             jacobian[1, i] = 0.0
             for offset, weight in stencil:
                 step = np.zeros(3)
@@ -140,7 +142,7 @@ class Boundary:
                 jacobian[1, i] += weight * (w * neighbour.D_w).real * math.exp(neighbour.S - here.S) / h
         scale = np.abs(jacobian).max(axis=1)
         residual = np.array([here.D.real, slope]) / scale
-        return residual, jacobian / scale[:, None], float(here.blur / scale.min())
+        return residual, jacobian / scale[:, None], float(here.rounding / scale.min())
 
     def _real(self, v: Array) -> complex:
         """The real eigenvalue w = sign exp(h) at v = (x, y, h)."""

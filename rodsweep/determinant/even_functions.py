@@ -22,15 +22,17 @@ class EvenFunctionSettings(CompiledSettings):
 
     series_terms: int = 13
     """Number of terms of the series of s and d."""
-    series_below: float = 1.5
-    """|M| + 2 |P| below which `by_series` computes s and d."""
-    squares_below: float = 0.1
-    """|z+ z-|, in units of |M|^2 + 4 |P|^2, below which `by_squares` computes s and d."""
+    by_series_below: float = 1.5
+    """|M| + 2 |P| below which `even_functions_by_series` computes s and d."""
+    by_squares_below: float = 0.1
+    """|z+ z-|, in units of |M|^2 + 4 |P|^2, below which `even_sum_by_squares` computes s and d."""
 
     def __post_init__(self) -> None:
         n = self.series_terms
-        if self.series_below**n > ROUND_OFF * math.factorial(2 * n + 2):
-            raise ValueError(f"{n} terms leave more than rounding error of a series at {self.series_below}")
+        if self.by_series_below**n > ROUND_OFF * math.factorial(2 * n + 2):
+            raise ValueError(
+                f"{n} terms leave more than rounding error of a series at {self.by_series_below}"
+            )
 
 
 EVEN_FUNCTIONS = EvenFunctionSettings()
@@ -59,8 +61,8 @@ def _noise_by_roots(
     results: tuple[complex, complex],
     blurs: tuple[float, float, float],
 ) -> tuple[float, float]:
-    """Rounding errors of s and d as `by_roots` computes them, to first order, in units of a relative rounding
-    error.
+    """Rounding errors of s and d as `even_functions_by_roots` computes them, to first order, in units of a
+    relative rounding error.
 
     squares: (M, P^2, u, v). apart: u - v. of_u, of_v: hyperbolic functions of sqrt(u) and sqrt(v). results:
     (s, d). blurs: exp(-S) and the rounding errors of M and P^2, in the same unit.
@@ -92,7 +94,7 @@ def _noise_by_roots(
 
 
 @compiled
-def by_roots(
+def even_functions_by_roots(
     M: complex, square: complex, blur_M: float, blur_square: float
 ) -> tuple[EvenFunctions, float, float]:
     """(s, d and their derivatives; rounding error of s; of d) from the roots q, if neither z+ nor z- is
@@ -141,7 +143,7 @@ def by_roots(
 
 
 @compiled
-def by_series(
+def even_functions_by_series(
     M: complex, P: complex, blur_M: float, blur_square: float
 ) -> tuple[EvenFunctions, float, float]:
     """(s, d and their derivatives; rounding error of s; of d) by the series E(z) = sum z^n/(2n + 2)! for

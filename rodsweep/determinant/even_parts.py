@@ -14,12 +14,12 @@ import math
 
 from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
-from .even_functions import EVEN_FUNCTIONS, EvenFunctions, by_roots, by_series
+from .even_functions import EVEN_FUNCTIONS, EvenFunctions, even_functions_by_roots, even_functions_by_series
 from .exponents import EXPONENTS, NOISE_UNIT, entire_cosh, exponents, modulus
 
 EvenSum = tuple[EvenFunctions, complex, float]
 """(s and d with derivatives, sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error). `even_parts` returns
-the rounding error of D, `by_squares` that of the sum."""
+the rounding error of D, `even_sum_by_squares` that of the sum."""
 
 
 @compiled
@@ -30,7 +30,8 @@ def _noise_by_squares(
     slopes: tuple[complex, complex],
     blurs: tuple[float, float],
 ) -> float:
-    """Rounding error of the sum z+' E(z+) + z-' E(z-) of `by_squares`, in units of a relative rounding error.
+    """Rounding error of the sum z+' E(z+) + z-' E(z-) of `even_sum_by_squares`, in units of a relative
+    rounding error.
 
     sizes: |w| and |P|. roots: sqrt z+ and sqrt z-. slopes: z+' and z-'. blurs: rounding errors of M and P^2.
     The error of z follows from the terms that cancel in z. An exponent q = sqrt z has half of the error of z
@@ -69,7 +70,7 @@ def _noise_by_squares(
 
 
 @compiled
-def by_squares(w: complex, coefficients: Coefficients, blur_M: float, blur_square: float) -> EvenSum:
+def even_sum_by_squares(w: complex, coefficients: Coefficients, blur_M: float, blur_square: float) -> EvenSum:
     """s and d with derivatives, the sum of D and its rounding error, if one of z+ and z- is much smaller than
     the other.
 
@@ -133,15 +134,15 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
     # themselves.
     size_M = modulus(M)
     size_square = modulus(square)
-    small = size_M + 2 * math.sqrt(size_square) < EVEN_FUNCTIONS.series_below
-    close = EVEN_FUNCTIONS.squares_below * (size_M * size_M + 4 * size_square)
+    small = size_M + 2 * math.sqrt(size_square) < EVEN_FUNCTIONS.by_series_below
+    close = EVEN_FUNCTIONS.by_squares_below * (size_M * size_M + 4 * size_square)
     if small or modulus(M * M - 4 * square) > close:
         if small:
-            even, noise_s, noise_d = by_series(M, cmath.sqrt(square), blur_M, blur_square)
+            even, noise_s, noise_d = even_functions_by_series(M, cmath.sqrt(square), blur_M, blur_square)
         else:
-            even, noise_s, noise_d = by_roots(M, square, blur_M, blur_square)
+            even, noise_s, noise_d = even_functions_by_roots(M, square, blur_M, blur_square)
         total = T * even.s + 4 * N * even.d
         noise = T * noise_s + 4 * (stiffness + X * size) * noise_d
     else:
-        even, total, noise = by_squares(w, coefficients, blur_M, blur_square)
+        even, total, noise = even_sum_by_squares(w, coefficients, blur_M, blur_square)
     return even, total, NOISE_UNIT * (math.exp(-even.S) + size / 2 * noise)

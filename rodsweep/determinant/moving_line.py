@@ -17,10 +17,15 @@ from typing import ClassVar, NamedTuple
 from ..model.compiled.compilation import compiled
 from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
-from .certificate.box import BOX, box_of, squared_amplification_between
-from .certificate.covering import box_costs, distance_bound, mean_rates, remainder_fits
-from .certificate.discs import DISCS, centre_at
-from .parameter_path import changes, determinant_along
+from .certificate.box import BOX, box_from_amplification, squared_amplification_between
+from .certificate.covering import (
+    distance_from_zero_bound,
+    exponent_changes,
+    is_remainder_below,
+    mean_growth_rates,
+)
+from .certificate.discs import DISCS, bidisc_centre
+from .parameter_path import coefficient_derivatives, determinant_along
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,7 +43,7 @@ class MovingLineSettings(CompiledSettings):
     overlap: float = 1e-7
     """Relative excess of the half-widths of every rectangle, so that rounding leaves no gap between
     rectangles."""
-    smallest_share: float = 1e-6
+    min_fraction: float = 1e-6
     """Smallest width of a rectangle in p, over the width of the interval, and smallest half-height, over the
     line's distance from the imaginary axis. If a smaller rectangle is needed, the proof fails."""
     ranges: ClassVar = {"half_height_growth": (1.0, math.inf), "largest_half_height": (0.0, 1.0)}
@@ -72,7 +77,7 @@ class Strip(NamedTuple):
 
 
 @compiled
-def end_between(share: float, first: IntervalEnd, last: IntervalEnd) -> IntervalEnd:
+def interpolate_ends(share: float, first: IntervalEnd, last: IntervalEnd) -> IntervalEnd:
     """The interval end interpolated linearly between `first` (share 0) and `last` (share 1), without
     cancellation.
     """
@@ -87,7 +92,7 @@ def end_between(share: float, first: IntervalEnd, last: IntervalEnd) -> Interval
 
 
 @compiled
-def free_of_zeros(
+def is_free_of_zeros(
     at: IntervalEnd, y: float, direction: Coefficients, half: tuple[float, float], tilt: float
 ) -> tuple[bool, float, float]:
     """(whether D is proved to have no zero on the rectangle about l(p) + i y, cost in y, cost in p).
@@ -101,26 +106,27 @@ def free_of_zeros(
         raise ValueError("the half-widths of a rectangle must be above 0")
     w = complex(at.line, y)
     D, D_w, D_p, S, noise = determinant_along(w, at.coefficients, direction)
-    rounding = DISCS.rounding * noise
-    centre = centre_at(w, at.coefficients, changes(at.coefficients, direction), S)
+    rounding = DISCS.rounding_over_noise * noise
+    centre = bidisc_centre(w, at.coefficients, coefficient_derivatives(at.coefficients, direction), S)
     radii = (math.hypot(half_y, tilt * half_p), half_p)
     if abs(D) > 2 * rounding:
-        if remainder_fits(centre, (D_w / D, D_p / D), radii, DISCS.clearance * abs(D) - rounding, 1):
+        if is_remainder_below(centre, (D_w / D, D_p / D), radii, DISCS.clearance * abs(D) - rounding, 1):
             return True, 0.0, 0.0
-        mean = mean_rates(centre)
+        mean = mean_growth_rates(centre)
         in_w = D_w - mean[0] * D
         in_p = D_p - mean[1] * D
         room = (
-            DISCS.clearance * distance_bound(D, 1j * in_w * half_y, (tilt * in_w + in_p) * half_p) - rounding
+            DISCS.clearance * distance_from_zero_bound(D, 1j * in_w * half_y, (tilt * in_w + in_p) * half_p)
+            - rounding
         )
-        if room > 0 and remainder_fits(centre, mean, radii, room, 1):
+        if room > 0 and is_remainder_below(centre, mean, radii, room, 1):
             return True, 0.0, 0.0
-    cost_y, cost_p = box_costs(centre, half)
-    return False, cost_y, max(cost_p, box_costs(centre, (abs(tilt) * half_p, half_p))[0])
+    cost_y, cost_p = exponent_changes(centre, half)
+    return False, cost_y, max(cost_p, exponent_changes(centre, (abs(tilt) * half_p, half_p))[0])
 
 
 @compiled
-def none_crosses(
+def proves_no_crossing(
     first: IntervalEnd, last: IntervalEnd, direction: Coefficients, most: int
 ) -> tuple[bool, int]:
     """(whether it is proved that no eigenvalue crosses the moving line, number of rectangles examined).
@@ -135,24 +141,24 @@ def none_crosses(
     a = math.sqrt((1 + BOX.margin) * squared_amplification_between(first.coefficients, last.coefficients))
     if not (first.p < last.p and max(first.line, last.line) < 0 and a < math.inf):
         return False, 0
-    top = box_of(a, depth)[1]
+    top = box_from_amplification(a, depth)[1]
     width = last.p - first.p
     tilt = (last.line - first.line) / width
     examined = 0
     stack = [Strip(0.0, 1.0, 0.0, MOVING_LINE.first_half_height * depth)]
     while len(stack) > 0:
         start, stop, y, half_y = stack.pop()
-        at = end_between((start + stop) / 2, first, last)
+        at = interpolate_ends((start + stop) / 2, first, last)
         half_p = width * (stop - start) / 2
         while y < top:
-            smallest = MOVING_LINE.smallest_share
+            smallest = MOVING_LINE.min_fraction
             if examined >= most or half_y < smallest * depth or stop - start < smallest:
                 return False, examined
             examined += 1
             # The first rectangle is centred on the real axis: the lower half plane mirrors the upper.
             middle = y + half_y if y > 0 else 0.0
             half = ((1 + MOVING_LINE.overlap) * half_y, (1 + MOVING_LINE.overlap) * half_p)
-            proved, cost_y, cost_p = free_of_zeros(at, middle, direction, half, tilt)
+            proved, cost_y, cost_p = is_free_of_zeros(at, middle, direction, half, tilt)
             if proved:
                 y = middle + half_y
                 largest = MOVING_LINE.largest_half_height * math.hypot(at.line, y)

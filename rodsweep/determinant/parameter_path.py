@@ -12,7 +12,7 @@ from ..model.compiled.compilation import compiled
 from ..model.parameters import PARAMETERS, Parameter
 from ..model.rod import Coefficients, Rod, coefficients_of
 from .even_parts import even_parts
-from .value import Branches, from_parts
+from .value import ExponentDerivatives, determinant_from_parts
 
 
 class CoefficientDerivatives(NamedTuple):
@@ -95,7 +95,7 @@ def coefficients_at(p: float, origin: Coefficients, direction: Coefficients) -> 
 
 
 @compiled
-def changes(coefficients: Coefficients, direction: Coefficients) -> CoefficientDerivatives:
+def coefficient_derivatives(coefficients: Coefficients, direction: Coefficients) -> CoefficientDerivatives:
     """Derivatives of T, N, G and X by p at a rod; F and c2 must not both vary along the path."""
     F, nu, c2, gamma3 = coefficients
     F1, nu1, c21, gamma31 = direction
@@ -114,8 +114,11 @@ def changes(coefficients: Coefficients, direction: Coefficients) -> CoefficientD
 
 
 @compiled
-def root_changes(w: complex, at: Branches, change: CoefficientDerivatives) -> tuple[complex, complex]:
-    """(dz+/dp, dz-/dp) at w. at: `branches` at w. change: derivatives of the coefficients by p."""
+def exponent_slopes(
+    w: complex, at: ExponentDerivatives, change: CoefficientDerivatives
+) -> tuple[complex, complex]:
+    """(dz+/dp, dz-/dp) at w. at: `exponent_derivatives` at w. change: derivatives of the coefficients by
+    p."""
     P_p = 0j
     if at.P != 0:
         P_p = w * (change.G1 + change.X1 * w) / (2 * at.P)
@@ -129,9 +132,9 @@ def determinant_along(w: complex, coefficients: Coefficients, direction: Coeffic
     """
     F, nu, c2, gamma3 = coefficients
     parts = even_parts(w, coefficients)
-    D, D_w, S, noise = from_parts(w, coefficients, parts)
+    D, D_w, S, noise = determinant_from_parts(w, coefficients, parts)
     even = parts[0]
-    T1, N1, _, G1, _, X1, _ = changes(coefficients, direction)
+    T1, N1, _, G1, _, X1, _ = coefficient_derivatives(coefficients, direction)
     T = c2 + gamma3
     N = (nu + F * c2) * nu + 2 * (c2 * gamma3) * w
     M1 = T1 * w - N1

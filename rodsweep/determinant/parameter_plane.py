@@ -17,10 +17,10 @@ from .value import DeterminantValue, scaled_determinant
 class PlaneSettings:
     """Settings for derivatives of D by differences along the scaled axes of a plane."""
 
-    beyond_an_end: float = 1e-12
+    end_tolerance: float = 1e-12
     """Distance beyond an end of a scaled axis that is rounding error: such a coordinate is moved to the
     end."""
-    step: float = 1e-3
+    difference_step: float = 1e-3
     """Step of differences along a scaled axis, where the axis has length 1."""
     step_to_crushing: float = 0.01
     """Largest step of a difference, as a fraction of the distance from the point at which the rod is
@@ -33,7 +33,7 @@ PLANE = PlaneSettings()
 CENTRAL_STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
 """Central difference of fourth order for a first derivative: (offset in steps, weight times step) of each
 value."""
-ONE_SIDED = ((0, -25 / 12), (1, 4.0), (2, -3.0), (3, 4 / 3), (4, -1 / 4))
+ONE_SIDED_STENCIL = ((0, -25 / 12), (1, 4.0), (2, -3.0), (3, 4 / 3), (4, -1 / 4))
 """One-sided difference of fourth order for a first derivative, for points beside the limit of a parameter."""
 
 
@@ -51,7 +51,7 @@ class PlaneAxis:
         """The parameter at the scaled coordinate x: 0 at `start`, 1 at `stop`. x just beyond an end is moved
         to the end.
         """
-        if -PLANE.beyond_an_end < x < 0 or 1 < x < 1 + PLANE.beyond_an_end:
+        if -PLANE.end_tolerance < x < 0 or 1 < x < 1 + PLANE.end_tolerance:
             x = round(x)
         if self.logarithmic:
             return exp(log(self.start) + x * (log(self.stop) - log(self.start)))
@@ -63,21 +63,21 @@ class PlaneAxis:
             return (log(value) - log(self.start)) / (log(self.stop) - log(self.start))
         return (value - self.start) / (self.stop - self.start)
 
-    def stretch(self, value: float) -> float:
+    def parameter_slope(self, value: float) -> float:
         """d(parameter)/dx where the parameter has `value`."""
         return value * (log(self.stop) - log(self.start)) if self.logarithmic else self.stop - self.start
 
-    def slope(self, value: float) -> float:
+    def path_variable_slope(self, value: float) -> float:
         """dp/dx where the parameter has `value`, with the path variable p: 1/k for a stiffness k, else the
         parameter.
         """
-        along = self.stretch(value)
+        along = self.parameter_slope(value)
         return -along / value**2 if PARAMETERS[self.name].by_compliance else along
 
 
 class ValueOnPlane(NamedTuple):
-    """D and its derivatives by w, x and y, times exp(-S); blur: rounding error of D, with those of w, x and
-    y.
+    """D and its derivatives by w, x and y, times exp(-S); rounding: rounding error of D, with those of w, x
+    and y.
     """
 
     D: complex
@@ -85,7 +85,7 @@ class ValueOnPlane(NamedTuple):
     D_x: complex
     D_y: complex
     S: float
-    blur: float
+    rounding: float
 
 
 @dataclass(frozen=True)
@@ -127,9 +127,9 @@ class Plane:
 
         The stencil is one-sided where a neighbour would be an invalid rod.
         """
-        h = self.small_step(x, y, which, PLANE.step)
+        h = self.small_step(x, y, which, PLANE.difference_step)
         back = (x - 2 * h, y) if which == 0 else (x, y - 2 * h)
-        return (CENTRAL_STENCIL if self.holds(*back) else ONE_SIDED), h
+        return (CENTRAL_STENCIL if self.is_valid(*back) else ONE_SIDED_STENCIL), h
 
     def _of_arms(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """`determinant` of arms, whose derivatives by x and y are differences of fourth order."""
@@ -152,7 +152,7 @@ class Plane:
         axis).
         """
         value = determinant_along(w, rod.coefficients, rod.direction(axis.name))
-        return value, value.D_p * axis.slope(getattr(rod, axis.name))
+        return value, value.D_p * axis.path_variable_slope(getattr(rod, axis.name))
 
     def small_step(self, x: float, y: float, which: int, largest: float) -> float:
         """A step along axis number `which`: at most `largest`, and at most 1 % of the distance from
@@ -164,10 +164,10 @@ class Plane:
             return largest
         # The crushing force is proportional to k1 and quadratic in the taper, like the area.
         rate = {"F": 1.0, "k1": force / rod.k1}.get(axis.name, 2 * force / rod.taper)
-        slope = rate * axis.stretch(getattr(rod, axis.name))
+        slope = rate * axis.parameter_slope(getattr(rod, axis.name))
         return min(largest, PLANE.step_to_crushing * (force - rod.F) / slope)
 
-    def holds(self, x: float, y: float) -> bool:
+    def is_valid(self, x: float, y: float) -> bool:
         """Whether the rod at scaled coordinates (x, y) is valid."""
         try:
             self.at(x, y)
@@ -175,7 +175,7 @@ class Plane:
             return False
         return True
 
-    def uncrushed(self, x: float, y: float) -> bool:
+    def is_uncrushed(self, x: float, y: float) -> bool:
         """Whether the force at scaled coordinates (x, y) is below the force that crushes the rod."""
         values = {**self.rod.values} | {a.name: a.value(v) for a, v in zip(self.axes, (x, y), strict=True)}
         return values["F"] < values["k1"] * self.rod.build.crushing_share(values["taper"])

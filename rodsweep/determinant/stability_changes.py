@@ -23,7 +23,7 @@ from .roots.newton import crossing_newton, double_newton
 class StabilityChangeSettings(CompiledSettings):
     """Settings for crossings of the imaginary axis between two forces."""
 
-    same_crossing: float = 1e-8
+    same_crossing_distance: float = 1e-8
     """Relative distance below which two zeros of D(i eta; F) are one crossing; Newton's method converges to
     rounding error, far below it."""
 
@@ -113,12 +113,12 @@ def crossings_between(
                     continue
                 is_new = True
                 for i in range(n):
-                    same_F = abs(zero.p - found[i, 0]) <= STABILITY_CHANGES.same_crossing * (
+                    same_F = abs(zero.p - found[i, 0]) <= STABILITY_CHANGES.same_crossing_distance * (
                         1 + abs(found[i, 0])
                     )
-                    same_eta = abs(zero.eta_or_x - found[i, 1]) <= STABILITY_CHANGES.same_crossing * (
-                        1 + abs(found[i, 1])
-                    )
+                    same_eta = abs(
+                        zero.eta_or_x - found[i, 1]
+                    ) <= STABILITY_CHANGES.same_crossing_distance * (1 + abs(found[i, 1]))
                     is_new = is_new and not (same_F and same_eta)
                 if is_new:
                     found[n] = zero.p, zero.eta_or_x, zero.error_of_p

@@ -37,10 +37,10 @@ class DeterminantSettings(CompiledSettings):
     typical_noise: float = 0.1
     """Rounding error of D in units of its bound `noise`: the upper quartile of measured errors, whose median
     is 0.05 and maximum 0.7."""
-    in_place_of_0: float = 1e-200
+    zero_replacement: float = 1e-200
     """Value of w, in 1/tau2, at which D(0) is computed, so that no formula divides by 0. D - 1 is below
     rounding error there."""
-    second_step: float = 1e-4
+    second_difference_step: float = 1e-4
     """Step of the difference of D' for D'', in units of |w|. The relative error of D'' is about its square,
     enough to distinguish a double root from two roots."""
 
@@ -57,7 +57,7 @@ class DeterminantValue(NamedTuple):
     noise: float
 
 
-class Branches(NamedTuple):
+class ExponentDerivatives(NamedTuple):
     """P, its derivatives P' and P'' by w, and z+ and z-, of the module `rodsweep.determinant.value`."""
 
     P: complex
@@ -68,7 +68,7 @@ class Branches(NamedTuple):
 
 
 @compiled
-def branches(w: complex, coefficients: Coefficients) -> Branches:
+def exponent_derivatives(w: complex, coefficients: Coefficients) -> ExponentDerivatives:
     """P, P', P'', z+ and z- of a uniform rod at w != 0."""
     F, nu, c2, gamma3 = coefficients
     P, plus, minus = exponents(w, coefficients)
@@ -77,22 +77,22 @@ def branches(w: complex, coefficients: Coefficients) -> Branches:
     if P != 0:  # P is zero for every w if g = gamma3 = 0; then z+ = z- has no branch point
         P1 = ((nu + F * c2) * nu + 2 * c2 * gamma3 * w) / (2 * P)
         P2 = (c2 * gamma3 - P1 * P1) / P
-    return Branches(P, P1, P2, plus, minus)
+    return ExponentDerivatives(P, P1, P2, plus, minus)
 
 
 @compiled
 def scaled_determinant(w: complex, coefficients: Coefficients) -> DeterminantValue:
     """D and D' of a uniform rod at w, times exp(-S).
 
-    w = 0 is replaced by `DETERMINANT.in_place_of_0`, where D is 1 too.
+    w = 0 is replaced by `DETERMINANT.zero_replacement`, where D is 1 too.
     """
     if w == 0:
-        w = complex(DETERMINANT.in_place_of_0, 0.0)
-    return from_parts(w, coefficients, even_parts(w, coefficients))
+        w = complex(DETERMINANT.zero_replacement, 0.0)
+    return determinant_from_parts(w, coefficients, even_parts(w, coefficients))
 
 
 @compiled
-def from_parts(w: complex, coefficients: Coefficients, parts: EvenSum) -> DeterminantValue:
+def determinant_from_parts(w: complex, coefficients: Coefficients, parts: EvenSum) -> DeterminantValue:
     """D and D' times exp(-S) at w, from the functions s and d and their derivatives, as `even_parts` returns
     them.
     """
@@ -116,7 +116,7 @@ def second_difference(after: DeterminantValue, before: DeterminantValue, S: floa
 @compiled
 def second_derivative(w: complex, S: float, coefficients: Coefficients) -> complex:
     """D'' exp(-S) of a uniform rod at w, by a central difference of D'; real for real w."""
-    h = DETERMINANT.second_step * abs(w)
+    h = DETERMINANT.second_difference_step * abs(w)
     after = scaled_determinant(w + h, coefficients)
     before = scaled_determinant(w - h, coefficients)
     second = second_difference(after, before, S, h)
@@ -144,7 +144,7 @@ def newton_correction(w: complex, coefficients: Coefficients) -> tuple[float, fl
     value, slope, _, noise = scaled_determinant(w, coefficients)
     # A value that happens to be far below its rounding error proves no better root.
     error = max(abs(value), DETERMINANT.typical_noise * noise) / max(abs(slope), EXPONENTS.least_divisor)
-    P, P1, _, plus, minus = branches(w, coefficients)
+    P, P1, _, plus, minus = exponent_derivatives(w, coefficients)
     root_plus = math.sqrt(abs(plus))
     root_minus = math.sqrt(abs(minus))
     drag = coefficients.c2 + coefficients.gamma3

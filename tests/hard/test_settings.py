@@ -28,7 +28,7 @@ from numba.core.dispatcher import Dispatcher
 import rodsweep.determinant
 import rodsweep.discretization
 import rodsweep.solve
-from rodsweep.determinant.certificate.box import box_of
+from rodsweep.determinant.certificate.box import box_from_amplification
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.determinant.stability_changes import crossings_between
@@ -547,7 +547,7 @@ CASES = {
     "STRETCH": FOLLOWED,
     "COUNT": THRESHOLDS,
     "COVERING": THRESHOLDS,
-    "QUIET": THRESHOLDS,
+    "ZERO_FREE_DISC": THRESHOLDS,
     "TRANSITIONS": THRESHOLDS,
     "LEADER": THRESHOLDS,
     "CHANGE_COUNTS": THRESHOLDS,
@@ -773,10 +773,10 @@ def test_settings_are_frozen_and_have_keywords_only():
 
 
 def test_a_changed_setting_reaches_compiled_functions():
-    before = box_of(0.0, 1.0)
+    before = box_from_amplification(0.0, 1.0)
     with replaced("BOX", "padding", 2.0):
-        assert box_of(0.0, 1.0)[0] - before[0] == pytest.approx(settings()["BOX"].padding)
-    assert box_of(0.0, 1.0) == before
+        assert box_from_amplification(0.0, 1.0)[0] - before[0] == pytest.approx(settings()["BOX"].padding)
+    assert box_from_amplification(0.0, 1.0) == before
 
 
 @pytest.mark.parametrize(

@@ -70,7 +70,7 @@ class ArmAlongPath:
         if family is not None and abs(guess) < family.W / 2:
             w, slope, error = eigenvalue_in(family, guess, p)
             # Beside a double eigenvalue the interpolation errors of the family are magnified.
-            if error <= ROOTS.blurred * abs(w):
+            if error <= ROOTS.double_root_correction * abs(w):
                 return w, slope, error
         here = self.determinant(p)
         w, error = refined_root(guess, here)
@@ -100,7 +100,7 @@ class ArmAlongPath:
             D_w = value.D_w.real
             S = value.S
             noise = value.noise
-            h = DETERMINANT.second_step * abs(x)
+            h = DETERMINANT.second_difference_step * abs(x)
             D_ww = (self._real(x + h, p, S)[1] - self._real(x - h, p, S)[1]) / (2 * h)
             stencil, k = self._stencil(p, ROOT_NEWTON.jacobian_step * reach)
             neighbours = [(weight, self._real(x, p + offset * k, S)) for offset, weight in stencil]
@@ -119,8 +119,8 @@ class ArmAlongPath:
             p += in_p
             if not abs(p - first) <= 2 * reach or not x * start > 0:
                 return FAILED
-            small = abs(in_p) <= ROOT_NEWTON.last_step * e_p
-            if small and (abs(in_x) <= ROOT_NEWTON.last_step * e_x or abs(in_x) > last / 2):
+            small = abs(in_p) <= ROOT_NEWTON.converged_step * e_p
+            if small and (abs(in_x) <= ROOT_NEWTON.converged_step * e_x or abs(in_x) > last / 2):
                 # Only now: the spread takes D on further elements.
                 more = max(self._spread(x, p, S) / blur, 1.0)
                 e_p = max(more * e_p, abs(in_p)) + ARM_FAMILY.rounding * abs(p)

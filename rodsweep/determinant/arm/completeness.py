@@ -72,12 +72,12 @@ COMPLETENESS = CompletenessSettings()
 class Remainder(NamedTuple):
     """Remainder R of the sum of phi over all eigenvalues, less the known ones (see the module).
 
-    blur: rounding error of R. least: smallest contribution to R of an unknown eigenvalue right of the line.
+    rounding: rounding error of R. least_contribution: of an unknown eigenvalue right of the line.
     """
 
     R: float
-    blur: float
-    least: float
+    rounding: float
+    least_contribution: float
 
 
 def none_is_missing(
@@ -153,8 +153,8 @@ def proves_completeness(found: Remainder) -> bool:
 
     It does not if R is far below 0: a known eigenvalue is then no root of D.
     """
-    allowed = COMPLETENESS.allowed * found.least
-    return found.R + found.blur < allowed and -allowed < found.R
+    allowed = COMPLETENESS.allowed * found.least_contribution
+    return found.R + found.rounding < allowed and -allowed < found.R
 
 
 @compiled

@@ -37,7 +37,7 @@ ARM_ROOTS = ArmRootSettings()
 @compiled
 def _second_derivative(w: complex, S: float, level: Level) -> complex:
     """D'' exp(-S) at w, by a central difference of D', from the propagators of `level`."""
-    h = DETERMINANT.second_step * abs(w)
+    h = DETERMINANT.second_difference_step * abs(w)
     after = chain_value(w + h, level[0], level[1])
     before = chain_value(w - h, level[0], level[1])
     second = second_difference(after, before, S, h)
@@ -50,10 +50,10 @@ def _error(w: complex, value: DeterminantValue, level: Level) -> float:
     e = ARM_VALUE.root_residual * abs(value.D) + ARM_VALUE.root_noise * value.noise
     size = abs(value.D_w)
     error = e / max(size, EXPONENTS.least_divisor)
-    if error > ROOTS.blurred * abs(w):
+    if error > ROOTS.double_root_correction * abs(w):
         # Near a double root e/|D'| is unbounded, but a root of the second-order polynomial is near.
         second = abs(_second_derivative(w, value.S, level))
-        if size**2 < ROOTS.separated * e * second:
+        if size**2 < ROOTS.min_squared_slope * e * second:
             spread = math.sqrt(2 * e / second)
             error = min(max(error, spread), size / second + spread)
     return error + ARM_ROOTS.rounding * ROUND_OFF * abs(w)
@@ -83,9 +83,9 @@ def _refined(guess: complex, level: Level, last: float) -> tuple[complex, float,
             return w, _error(w, value, level), last
         last = abs(step)
         w -= step
-        if abs(w.imag) <= ROOT_NEWTON.real_below * abs(w):
+        if abs(w.imag) <= ROOT_NEWTON.real_tolerance * abs(w):
             w = complex(w.real, 0.0)
-        if not (1 + DETERMINANT.second_step) * abs(w) <= level[0]:
+        if not (1 + DETERMINANT.second_difference_step) * abs(w) <= level[0]:
             return w, -1.0, last
     return w, _root_error(w, level), last
 
@@ -102,7 +102,7 @@ def _two_roots(middle: complex, level: Level) -> tuple[complex, complex]:
 
 def _level(w: complex, determinant: ArmDeterminant) -> Level:
     """(W, propagators) that hold for D and D'' at w."""
-    return determinant.level((1 + DETERMINANT.second_step) * abs(w))
+    return determinant.level((1 + DETERMINANT.second_difference_step) * abs(w))
 
 
 def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> complex:

@@ -34,7 +34,7 @@ def roots(
     afterwards. Infinite eigenvalues, which rounding makes finite, are dropped: they lie outside the hull,
     have too large a |q|, or are far from every root.
     """
-    first = [w.real + 0j if abs(w.imag) <= ROOT_NEWTON.real_below * abs(w) else w for w in raw.tolist()]
+    first = [w.real + 0j if abs(w.imag) <= ROOT_NEWTON.real_tolerance * abs(w) else w for w in raw.tolist()]
     inside = [i for i, w in enumerate(first) if _inside(w, hull)]
     waves, lengths = determinant.scales_of_all(np.array([first[i] for i in inside], complex))
     scale = dict(zip(inside, lengths.tolist(), strict=True))
@@ -59,7 +59,7 @@ def roots(
     error = _with_equal_roots(found, determinant)
     length: Array = np.array([scale[i] for i in kept.tolist()], float)
     displacement = np.abs(w - np.array(first, complex)[kept]) / np.maximum(np.abs(w), length)
-    axis = np.abs(w.real) <= np.maximum(ROOTS.axis_errors * error, ROOTS.on_the_axis * np.abs(w))
+    axis = np.abs(w.real) <= np.maximum(ROOTS.axis_errors * error, ROOTS.axis_tolerance * np.abs(w))
     leader = w[0].real if len(w) else -math.inf
     # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
     ahead = sum(raw[i].real > leader for i in inside if i not in chosen)
@@ -103,15 +103,15 @@ def _separated(
     w = w.copy()
     reach = [math.inf] * len(w)
     each = zip(w, error, strict=True)
-    if not any(abs(a - b) <= ROOTS.refined_together * (e + f) for (a, e), (b, f) in combinations(each, 2)):
+    if not any(abs(a - b) <= ROOTS.pair_distance * (e + f) for (a, e), (b, f) in combinations(each, 2)):
         return w, reach
     for i in range(len(w)):
         others = [j for j in range(len(w)) if j != i and reach[j] == math.inf]
         if reach[i] < math.inf or not others:
             continue
         partner = min(others, key=lambda j: abs(w[j] - w[i]))
-        if abs(w[partner] - w[i]) <= ROOTS.refined_together * (error[i] + error[partner]):
-            for _ in range(ROOTS.expansions):
+        if abs(w[partner] - w[i]) <= ROOTS.pair_distance * (error[i] + error[partner]):
+            for _ in range(ROOTS.parabolas_per_pair):
                 middle = (w[i] + w[partner]) / 2
                 if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
                     middle = complex(middle.real, 0.0)
@@ -148,11 +148,11 @@ def _with_equal_roots(found: list[_LocatedRoot], determinant: ArmDeterminant) ->
     for i, one in enumerate(found):
         for j in range(i + 1, len(found)):
             apart = abs(one.w - found[j].w)
-            if apart <= ROOTS.same_root * (error[i] + error[j]):
+            if apart <= ROOTS.same_root_distance * (error[i] + error[j]):
                 value = determinant.value(one.w)
                 second = abs(second_derivative(one.w, value.S, determinant))
                 next_root = 2 * abs(value.D_w) / max(second, EXPONENTS.least_divisor)
-                if apart < ROOTS.share_of_next * next_root:
+                if apart < ROOTS.same_root_fraction * next_root:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)
     return np.array(error, float)

@@ -22,7 +22,7 @@ from math import exp, inf, log, sqrt
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients, Rod
-from ..parameter_path import Path, changes, coefficients_at
+from ..parameter_path import Path, coefficient_derivatives, coefficients_at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,25 +42,25 @@ BOX = BoxSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class QuietSettings:
+class ZeroFreeDiscSettings:
     """Settings for the disc about w = 0 in which D has no zero."""
 
-    departure: float = 0.5
+    max_departure: float = 0.5
     """Bound of |D - 1| in this disc: D has no zero where |D - 1| < 1, so any bound below 1 would do."""
 
 
-QUIET = QuietSettings()
+ZERO_FREE_DISC = ZeroFreeDiscSettings()
 
 
 def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
     """Bounds (max Re w, max |Im w|), in 1/tau2, of all eigenvalues with Re w >= -depth, depth >= 0; inf
     without a bound.
     """
-    return box_of(sqrt(squared_amplification(rod)), depth)
+    return box_from_amplification(sqrt(squared_amplification(rod)), depth)
 
 
 @compiled
-def box_of(a: float, depth: float) -> tuple[float, float]:
+def box_from_amplification(a: float, depth: float) -> tuple[float, float]:
     """Bounds (max Re w, max |Im w|) of all eigenvalues with Re w >= -depth; a: square root of
     `squared_amplification`.
     """
@@ -124,36 +124,36 @@ def squared_amplification_between(first: Coefficients, last: Coefficients) -> fl
     return load**2 * least if least < inf else inf
 
 
-def quiet_radius(path: Path, start: float, stop: float, largest: float) -> float:
+def zero_free_radius(path: Path, start: float, stop: float, largest: float) -> float:
     """A radius r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r and every p of a path from start to
     stop.
     """
     ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
     T = max(c2 + gamma3 for *_, c2, gamma3 in ends)
     X = max(c2 * gamma3 for *_, c2, gamma3 in ends)
-    bends = [changes(c, path.direction) for c in ends]
+    bends = [coefficient_derivatives(c, path.direction) for c in ends]
     # A function lies within (stop - start)^2/8 times its curvature of the chord between its ends.
     span = (stop - start) ** 2 / 8
     G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + span * max(abs(b.G2) for b in bends)
     pull = max(max(-F * (nu + F * c2) for F, nu, c2, _ in ends) + span * max(abs(b.N2) for b in bends), 0.0)
     if all(F >= 0 and nu + F * c2 >= 0 for F, nu, c2, _ in ends):
         pull = 0.0  # -F g is negative at the ends, and F and g are linear in p or constant
-    return _quiet(largest, T, X, G, pull)
+    return _zero_free_radius(largest, T, X, G, pull)
 
 
-def quiet_radius_of(coefficients: Coefficients, largest: float) -> float:
+def zero_free_radius_of_rod(coefficients: Coefficients, largest: float) -> float:
     """A radius r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r, for one uniform rod."""
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
-    return _quiet(largest, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0))
+    return _zero_free_radius(largest, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0))
 
 
-def _quiet(r: float, T: float, X: float, G: float, pull: float) -> float:
+def _zero_free_radius(r: float, T: float, X: float, G: float, pull: float) -> float:
     """The first of r, r/2, r/4, ... such that |D(i eta) - 1| < 1/2 for |eta| <= r; 0 if r underflows.
 
     T, X, G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. pull: bound of -F g, at least 0.
     """
-    while _departure(r, T, X, G, pull) >= QUIET.departure:
+    while _departure(r, T, X, G, pull) >= ZERO_FREE_DISC.max_departure:
         r /= 2
     return r
 
@@ -161,7 +161,7 @@ def _quiet(r: float, T: float, X: float, G: float, pull: float) -> float:
 def _departure(r: float, T: float, X: float, G: float, pull: float) -> float:
     """An upper bound of |D(i eta) - 1| for |eta| <= r; inf where it would be too large to be useful.
 
-    T, X, G, pull: as in `_quiet`.
+    T, X, G, pull: as in `_zero_free_radius`.
     """
     exponent = sqrt(pull + T * r + 2 * sqrt(r * (G + X * r)))
     if exponent > 1 + sqrt(pull):

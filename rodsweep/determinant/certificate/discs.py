@@ -13,35 +13,35 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from ..exponents import EXPONENTS
-from ..parameter_path import CoefficientDerivatives, root_changes
-from ..value import branches
+from ..parameter_path import CoefficientDerivatives, exponent_slopes
+from ..value import exponent_derivatives
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiscSettings(CompiledSettings):
     """Settings for upper bounds of D over discs in w and bidiscs in (w, p)."""
 
-    rounding: float = 4.0
+    rounding_over_noise: float = 4.0
     """Bound of the rounding error of D, in units of its `noise`; the worst of 20 000 unfavourable values had
     0.7."""
     clearance: float = 0.9
     """Largest change of D, in units of |D|, that a proof may allow for: below 1, so that D cannot vanish."""
-    away_from_zero: float = 0.5
+    max_expansion_change: float = 0.5
     """Largest relative change x of z over a disc at which sqrt(z) is expanded about its centre. The
     remainder, like x^2/(1 - x), is small up to here."""
-    largest_change: float = 0.98
+    max_factor_change: float = 0.98
     """Largest relative change of each of the two factors of P^2 over a disc; a larger disc has no bound."""
     ranges: ClassVar = {
         "clearance": (0.0, 1.0),
-        "away_from_zero": (0.0, 1.0),
-        "largest_change": (0.0, 1.0),
+        "max_expansion_change": (0.0, 1.0),
+        "max_factor_change": (0.0, 1.0),
     }
 
 
 DISCS = DiscSettings()
 
 
-Pair = tuple[complex, complex]
+DerivativePair = tuple[complex, complex]
 """(derivative by w, derivative by p)."""
 Radii = tuple[float, float]
 """(radius in w, radius in p) of a bidisc; also a pair of real bounds."""
@@ -61,18 +61,18 @@ class BidiscCentre(NamedTuple):
     P: complex
     plus: complex
     minus: complex
-    slopes_plus: Pair
-    slopes_minus: Pair
+    slopes_plus: DerivativePair
+    slopes_minus: DerivativePair
 
 
 @compiled
-def centre_at(
+def bidisc_centre(
     w: complex, coefficients: Coefficients, change: CoefficientDerivatives, S: float
 ) -> BidiscCentre:
     """The centre of a bidisc at w, for the rod `coefficients`; change: derivatives by p. S: scale of D at
     w."""
-    at = branches(w, coefficients)
-    along_plus, along_minus = root_changes(w, at, change)
+    at = exponent_derivatives(w, coefficients)
+    along_plus, along_minus = exponent_slopes(w, at, change)
     drag = coefficients.c2 + coefficients.gamma3
     slopes_plus = (drag + 2 * at.P_w, along_plus)
     slopes_minus = (drag - 2 * at.P_w, along_minus)
@@ -80,7 +80,7 @@ def centre_at(
 
 
 @compiled
-def bend_of_root(root: complex, bend: float, x: float) -> float:
+def nonlinear_root_bound(root: complex, bend: float, x: float) -> float:
     """Bound of the nonlinear part of the change of sqrt(z) = `root`.
 
     x: bound of the total change of z over |z|. bend: bound of the nonlinear part of the change of z.
@@ -89,7 +89,9 @@ def bend_of_root(root: complex, bend: float, x: float) -> float:
 
 
 @compiled
-def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: float, S: float) -> Radii:
+def bounds_of_E_on_bidisc(
+    z: complex, slopes: DerivativePair, rates: DerivativePair, radii: Radii, bend: float, S: float
+) -> Radii:
     """Bounds of |E(z)| and |dE/dz| over a bidisc about z, both times |exp(-L dw - K dp)| exp(-S).
 
     slopes: (dz/dw, dz/dp). rates: (L, K). bend: bound of the nonlinear change of z. Each exponent +-sqrt(z) -
@@ -104,10 +106,10 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
     crude = math.sqrt(max((abs(z) + z.real) / 2 + change, 0.0)) + drift
     grow = crude
     decay = crude
-    if change < DISCS.away_from_zero * abs(z):
+    if change < DISCS.max_expansion_change * abs(z):
         in_w = slopes[0] / (2 * root)
         in_p = slopes[1] / (2 * root)
-        curve = bend_of_root(root, bend, change / abs(z))
+        curve = nonlinear_root_bound(root, bend, change / abs(z))
         with_rates = abs(in_w - rates[0]) * radii[0] + abs(in_p - rates[1]) * radii[1]
         against = abs(in_w + rates[0]) * radii[0] + abs(in_p + rates[1]) * radii[1]
         grow = min(grow, root.real + with_rates + curve)
@@ -128,7 +130,7 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
 
 
 @compiled
-def bound_together(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
+def bound_for_equal_exponents(centre: BidiscCentre, rates: DerivativePair, radii: Radii) -> float:
     """`bound_on_bidisc` for nearly equal z+ and z-, from |E(z+) - E(z-)| <= 4 |P| max |dE/dz|."""
     w = centre.w
     S = centre.S
@@ -143,7 +145,7 @@ def bound_together(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
     dX = (abs(X1) + abs(X2) / 2 * sigma) * sigma
     largest = far * (abs(g * nu + X * w) + dG + X * rho + dX * far)
     bend = abs(T1) * sigma * rho + abs(N2) / 2 * sigma * sigma + 2 * math.sqrt(largest)
-    E, E1 = terms_on_bidisc(T * w - F * g, (complex(T), T1 * w - N1), rates, radii, bend, S)
+    E, E1 = bounds_of_E_on_bidisc(T * w - F * g, (complex(T), T1 * w - N1), rates, radii, bend, S)
     drift = abs(rates[0]) * rho + abs(rates[1]) * sigma
     steep = abs(g * nu + 2 * X * w) + dG + 2 * (X * rho + dX * far)
     still = math.exp(min(drift - S, EXPONENTS.largest_exponent))
@@ -151,17 +153,17 @@ def bound_together(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
 
 
 @compiled
-def bound_on_bidisc(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
+def bound_on_bidisc(centre: BidiscCentre, rates: DerivativePair, radii: Radii) -> float:
     """An upper bound of |D exp(-L dw - K dp)| exp(-S) over the bidisc about `centre`; rates: (L, K)."""
     F, nu, c2, _ = centre.coefficients
-    apart = bound_apart(centre, rates, radii)
+    apart = bound_for_distinct_exponents(centre, rates, radii)
     if F * (nu + F * c2) < 0:  # both exponentials grow at similar rates; separate bounds do not cancel
-        return min(apart, bound_together(centre, rates, radii))
+        return min(apart, bound_for_equal_exponents(centre, rates, radii))
     return apart
 
 
 @compiled
-def bound_apart(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
+def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, radii: Radii) -> float:
     """`bound_on_bidisc` for distinct z+ and z-, from separate bounds of E(z+) and E(z-); inf if the bidisc is
     too large.
 
@@ -183,7 +185,7 @@ def bound_apart(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
     e1 = rho / abs(w)
     moved = dG + X * rho + dX * (abs(w) + rho)
     e2 = moved / base if base > moved else 1.0
-    if e1 > DISCS.largest_change or (moved > 0 and e2 > DISCS.largest_change):
+    if e1 > DISCS.max_factor_change or (moved > 0 and e2 > DISCS.max_factor_change):
         return math.inf
     if moved == 0:
         e2 = 0.0
@@ -197,7 +199,7 @@ def bound_apart(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
         bend += 2 * abs(P) * (majorant + second * sigma / base / 2)
         least = abs(P) * math.sqrt((1 - e1) * (1 - e2))
         steepest += (abs(g * nu + 2 * X * w) + dG + 2 * (X * rho + dX * (abs(w) + rho))) / least
-    terms = terms_on_bidisc(centre.plus, centre.slopes_plus, rates, radii, bend, S)[0]
-    terms += terms_on_bidisc(centre.minus, centre.slopes_minus, rates, radii, bend, S)[0]
+    terms = bounds_of_E_on_bidisc(centre.plus, centre.slopes_plus, rates, radii, bend, S)[0]
+    terms += bounds_of_E_on_bidisc(centre.minus, centre.slopes_minus, rates, radii, bend, S)[0]
     drift = abs(rates[0]) * rho + abs(rates[1]) * sigma
     return math.exp(min(drift - S, EXPONENTS.largest_exponent)) + (abs(w) + rho) / 2 * steepest * terms

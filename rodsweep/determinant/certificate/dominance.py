@@ -19,8 +19,8 @@ from typing import ClassVar, NamedTuple
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
-from ..value import branches, scaled_determinant
-from .discs import DISCS, bend_of_root, terms_on_bidisc
+from ..value import exponent_derivatives, scaled_determinant
+from .discs import DISCS, bounds_of_E_on_bidisc, nonlinear_root_bound
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,7 +30,7 @@ class DominanceSettings(CompiledSettings):
     first_radius: float = 0.25
     """Radius of the first trial disc, in units of the distance of its edge point from the nearest branch
     point of z+-."""
-    halvings: int = 2
+    max_halvings: int = 2
     """Maximum number of halvings of a trial disc before dominance counts as not proved."""
     overlap: float = 1e-3
     """Relative excess of a disc's radius over half the step that it covers, so that rounding leaves no gap
@@ -57,7 +57,7 @@ class Exponent(NamedTuple):
 @compiled
 def _ordered(w: complex, coefficients: Coefficients) -> tuple[complex, Exponent, Exponent]:
     """(P, dominant exponent, recessive exponent) at w; the dominant one has the larger Re sqrt(z)."""
-    P, P_w, _, plus, minus = branches(w, coefficients)
+    P, P_w, _, plus, minus = exponent_derivatives(w, coefficients)
     drag = coefficients.c2 + coefficients.gamma3
     of_plus = Exponent(plus, drag + 2 * P_w, cmath.sqrt(plus))
     of_minus = Exponent(minus, drag - 2 * P_w, cmath.sqrt(minus))
@@ -89,7 +89,7 @@ def _bend_and_turn(w: complex, rho: float, P: complex, coefficients: Coefficient
 
 
 @compiled
-def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
+def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     """Whether one exponential is proved to dominate D = A (1 + e), |e| < 1, on the disc of radius rho about
     w.
     """
@@ -103,14 +103,14 @@ def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
         return False
     L = slope / (2 * root)
     drift = abs(L) * rho
-    curve = bend_of_root(root, bend, x)
+    curve = nonlinear_root_bound(root, bend, x)
     # If the recessive exponent changes little, the two are compared by their rates; otherwise by crude
     # extremes.
     lowest = root.real - drift - curve
     change_other = abs(slope_other) * rho + bend
     highest = math.sqrt(max((abs(z_other) + z_other.real) / 2 + change_other, 0.0))
     if change_other < DOMINANCE.largest_factor_change * abs(z_other):
-        curve_other = bend_of_root(root_other, bend, change_other / abs(z_other))
+        curve_other = nonlinear_root_bound(root_other, bend, change_other / abs(z_other))
         together = abs(slope_other / (2 * root_other) - L) * rho + curve_other
         if not root.real - curve > root_other.real + together:
             return False
@@ -124,7 +124,7 @@ def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     rest = still + far * (abs(slope) + turn) / (4 * (abs(z) - change)) * (
         2 * still + math.exp(2 * drift + curve - 2 * S)
     )
-    E = terms_on_bidisc(z_other, (slope_other, 0j), (L, 0j), (rho, 0.0), bend, S)[0]
+    E = bounds_of_E_on_bidisc(z_other, (slope_other, 0j), (L, 0j), (rho, 0.0), bend, S)[0]
     rest += far / 2 * (abs(slope_other) + turn) * E
     return rest < DISCS.clearance * A
 
@@ -147,7 +147,7 @@ def _phase_beside(w: complex, factors: tuple[complex, complex], coefficients: Co
 
 
 @compiled
-def dominated_stretch(
+def phase_over_dominated_segment(
     start: complex, direction: complex, length: float, coefficients: Coefficients
 ) -> tuple[float, float, int]:
     """(length of the segment from `start` on which dominance is proved, change of arg D over it, number of
@@ -171,10 +171,10 @@ def dominated_stretch(
         # A disc covers the step with its diameter.
         rho = min(rho, (length - t) / 2)
         found = False
-        for _ in range(DOMINANCE.halvings + 1):
+        for _ in range(DOMINANCE.max_halvings + 1):
             discs += 1
             # The disc is a little wider than the step, so that rounding leaves no gap between discs.
-            if dominated(w + direction * rho, (1 + DOMINANCE.overlap) * rho, coefficients):
+            if is_dominated(w + direction * rho, (1 + DOMINANCE.overlap) * rho, coefficients):
                 found = True
                 break
             rho /= 2

@@ -12,23 +12,23 @@ import numpy as np
 
 from ...arrays import Array
 from ..parameter_path import Path, coefficients_at
-from .box import BOX, quiet_radius, squared_amplification_over
+from .box import BOX, squared_amplification_over, zero_free_radius
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoveringSettings:
     """Settings for the first boxes of a covering of the (eta, p) plane."""
 
-    slabs: int = 8
+    min_intervals: int = 8
     """Minimum number of intervals of p into which the path is divided."""
-    first_ratio: float = 4.0
+    max_eta_ratio: float = 4.0
     """Largest ratio of the upper to the lower end of a first box in eta."""
-    nu_step: float = 0.5
+    max_nu_decrease: float = 0.5
     """Largest decrease of nu over an interval of p, in units of nu at its start."""
-    least_step: float = 1e-6
+    min_interval: float = 1e-6
     """Shortest interval, in units of the longest, near p = 0, where each interval doubles a drag or
     compliance p."""
-    last_step: float = 1e-3
+    min_last_interval: float = 1e-3
     """Length of a remaining last interval, in units of its predecessor, below which it is merged with its
     predecessor."""
     padding: float = 1e-6
@@ -38,23 +38,23 @@ class CoveringSettings:
 COVERING = CoveringSettings()
 
 
-def slabs(path: Path, start: float, stop: float) -> list[tuple[float, float]]:
+def path_intervals(path: Path, start: float, stop: float) -> list[tuple[float, float]]:
     """Intervals (start, end) of p; over each interval nu at most halves, and a drag or compliance at most
     doubles.
     """
     edges = [start]
-    width = (stop - start) / COVERING.slabs
+    width = (stop - start) / COVERING.min_intervals
     while edges[-1] < stop:
         p = edges[-1]
         step = width
         nu = coefficients_at(p, path.origin, path.direction).nu
         slope = path.direction.nu
         if slope < 0:  # the rod is crushed at nu = 0
-            step = min(step, COVERING.nu_step * nu / -slope)
+            step = min(step, COVERING.max_nu_decrease * nu / -slope)
         if path.name != "F":  # drag and compliances vary over decades
-            step = min(step, max(p, COVERING.least_step * width))
+            step = min(step, max(p, COVERING.min_interval * width))
         end = p + step
-        edges.append(stop if stop - end < COVERING.last_step * step else end)
+        edges.append(stop if stop - end < COVERING.min_last_interval * step else end)
     return list(zip(edges[:-1], edges[1:], strict=True))
 
 
@@ -64,14 +64,14 @@ def first_boxes(path: Path, start: float, stop: float) -> Array | None:
     None without an a-priori bound.
     """
     boxes = []
-    for a, b in slabs(path, start, stop):
+    for a, b in path_intervals(path, start, stop):
         top = (1 + BOX.margin) * squared_amplification_over(path, a, b) + COVERING.padding
         if not math.isfinite(top):
             return None
-        low = quiet_radius(path, a, b, top)
+        low = zero_free_radius(path, a, b, top)
         if low == 0.0:
             return None
-        count = max(1, math.ceil(math.log(top / low) / math.log(COVERING.first_ratio)))
+        count = max(1, math.ceil(math.log(top / low) / math.log(COVERING.max_eta_ratio)))
         edges = np.geomspace(low, top, count + 1)
         boxes += [(edges[i], edges[i + 1], a, b) for i in range(count)]
     return np.array(boxes).reshape(-1, 4)

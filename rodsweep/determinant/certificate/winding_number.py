@@ -20,8 +20,8 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients, Rod
 from ..value import scaled_determinant
-from .box import eigenvalue_box, quiet_radius_of
-from .dominance import dominated_stretch
+from .box import eigenvalue_box, zero_free_radius_of_rod
+from .dominance import phase_over_dominated_segment
 from .reach import node_at
 
 
@@ -34,25 +34,25 @@ class CountSettings(CompiledSettings):
     the eigenvalues."""
     width_added: float = 50.0
     """Length added to the width of the box, in 1/tau2, for the same reason."""
-    least_height: float = 0.5
+    min_height: float = 0.5
     """Smallest height of the box, in units of the line's distance from the imaginary axis."""
-    not_an_integer: float = 1e-3
+    integer_tolerance: float = 1e-3
     """Distance of the computed winding number from the nearest integer beyond which the count fails."""
-    patience: float = 0.25
+    walk_length: float = 0.25
     """Length, in units of |w|, of a walk from node to node before dominance is tried again; doubled after
     each failure."""
-    longest_step: float = 1.9
+    max_step: float = 1.9
     """Longest step tried from a node, in units of its reach. Beyond 1 the reach of the next node must cover
     the step."""
-    within_reach: float = 0.999
+    safe_step: float = 0.999
     """Step from a node, in units of its reach, that is certainly within the reach despite rounding."""
-    smallest_reach: float = 1e-13
+    min_reach: float = 1e-13
     """Reach of a node, in units of |w|, below which the contour is taken to meet a zero of D, and the count
     fails."""
     max_edge_nodes: int = 20_000
     """Maximum number of nodes on one edge of the box; the paper's rods need about 30 on all edges
     together."""
-    ranges: ClassVar = {"within_reach": (0.0, 1.0)}
+    ranges: ClassVar = {"safe_step": (0.0, 1.0)}
 
 
 COUNT = CountSettings()
@@ -82,20 +82,20 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
     t = 0.0
     total = 0.0
     nodes = 0
-    patience = COUNT.patience
+    patience = COUNT.walk_length
     while t < length:
         w = start + direction * t
-        ahead, change, discs = dominated_stretch(w, direction, length - t, coefficients)
+        ahead, change, discs = phase_over_dominated_segment(w, direction, length - t, coefficients)
         total += change
         nodes += discs
         # Dominance that fails is tried again only after a longer walk: each failure costs three discs.
-        patience = COUNT.patience if ahead > 0 else 2 * patience
+        patience = COUNT.walk_length if ahead > 0 else 2 * patience
         t = length if ahead == length - t else t + ahead
         if t < length:
             w = start + direction * t
             goal = min(length, t + patience * abs(w))
             to = end if goal == length else start + direction * goal
-            change, used = stepped_change(w, to, coefficients)
+            change, used = phase_change_by_nodes(w, to, coefficients)
             nodes += abs(used)
             if used < 0 or nodes > COUNT.max_edge_nodes:
                 return 0.0, -nodes
@@ -105,7 +105,7 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
 
 
 @compiled
-def stepped_change(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
+def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
     """(change of arg D along the segment from start to end, number of nodes), from node to node.
 
     The number of nodes is negative after a failure.
@@ -117,17 +117,17 @@ def stepped_change(start: complex, end: complex, coefficients: Coefficients) -> 
     nodes = 1
     here = node_at(start, coefficients)
     while t < length:
-        if not here.reach > COUNT.smallest_reach * abs(here.w) or nodes > COUNT.max_edge_nodes:
+        if not here.reach > COUNT.min_reach * abs(here.w) or nodes > COUNT.max_edge_nodes:
             return 0.0, -nodes
         # The next node may lie beyond the reach of this node if its own reach covers the step.
-        ahead = min(COUNT.longest_step * here.reach, length - t)
+        ahead = min(COUNT.max_step * here.reach, length - t)
         while True:
             inside = ahead < here.reach
             there = node_at(start + direction * (t + ahead) if ahead < length - t else end, coefficients)
             nodes += 1
             if inside or abs(there.w - here.w) < max(here.reach, there.reach):
                 break
-            ahead = COUNT.within_reach * here.reach
+            ahead = COUNT.safe_step * here.reach
         # The linear part of arg D may be many turns; only the rest, less than pi/2, is read off the values.
         turn = ((here.L if here.reach >= there.reach else there.L) * (there.w - here.w)).imag
         total += turn + cmath.phase(there.D / here.D * cmath.exp(complex(0.0, -turn)))
@@ -137,7 +137,7 @@ def stepped_change(start: complex, end: complex, coefficients: Coefficients) -> 
 
 
 @compiled
-def contour_change(
+def contour_phase_change(
     line: float, foot: float, corner: complex, coefficients: Coefficients
 ) -> tuple[float, int]:
     """(change of arg D, number of nodes) along the upper half of the box.
@@ -173,19 +173,19 @@ def count_right_of(line: float, rod: Rod) -> Count:
     foot = 0.0
     total = 0.0
     if line == 0.0:  # D(0) = 1, and D is near 1 up to `foot`, so this part of the line needs no nodes
-        foot = quiet_radius_of(rod.coefficients, imag)
+        foot = zero_free_radius_of_rod(rod.coefficients, imag)
         if foot == 0.0:
             return Count(None, 0, "the pull is so strong that numbers underflow")
         # Downwards from the foot to w = 0, where D = 1 is real, arg D changes by minus its value at the foot.
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
     real = COUNT.width_factor * real + COUNT.width_added
-    imag = max(imag, COUNT.least_height * abs(line))
-    change, nodes = contour_change(line, foot, complex(real, imag), rod.coefficients)
+    imag = max(imag, COUNT.min_height * abs(line))
+    change, nodes = contour_phase_change(line, foot, complex(real, imag), rod.coefficients)
     if nodes < 0:
         return Count(None, -nodes, "an eigenvalue lies too close to the line, or the box is too large")
     total += change
     # Half the box has half the winding number: 2 pi times the count over both halves.
     number = round(total / math.pi)
-    if abs(total / math.pi - number) > COUNT.not_an_integer:
+    if abs(total / math.pi - number) > COUNT.integer_tolerance:
         return Count(None, nodes, "the winding number is not an integer within rounding")
     return Count(number, nodes)

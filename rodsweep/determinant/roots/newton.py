@@ -30,14 +30,14 @@ class RootNewtonSettings(CompiledSettings):
     largest_step: float = 20.0
     """Largest Newton step to a crossing, in units of the expected sizes of eta and p; a larger step is a
     failure."""
-    last_step: float = 4.0
+    converged_step: float = 4.0
     """Newton step, in units of the rounding error of the zero, at which Newton's method has converged."""
     jacobian_step: float = 1e-5
     """Relative step of the differences in the Jacobian of a double eigenvalue, which need not be accurate."""
     stagnant_step: float = 1e-9
     """Newton step relative to p. A smaller step that is not half of its predecessor is rounding error:
     Newton's method has converged."""
-    real_below: float = 1e-14
+    real_tolerance: float = 1e-14
     """|Im w|/|w| below which an eigenvalue is taken to be real: the size of rounding errors."""
 
 
@@ -92,9 +92,10 @@ def crossing_newton(
             return FAILED
         eta += in_eta
         p += in_p
-        if (abs(in_eta) <= ROOT_NEWTON.last_step * e_eta and abs(in_p) <= ROOT_NEWTON.last_step * e_p) or (
-            step > last / 2 and step * scale[1] < ROOT_NEWTON.stagnant_step * abs(p)
-        ):
+        if (
+            abs(in_eta) <= ROOT_NEWTON.converged_step * e_eta
+            and abs(in_p) <= ROOT_NEWTON.converged_step * e_p
+        ) or (step > last / 2 and step * scale[1] < ROOT_NEWTON.stagnant_step * abs(p)):
             return LocatedZero(eta, p, max(e_eta, abs(in_eta)), max(e_p, abs(in_p)))
         last = step
     return FAILED
@@ -135,8 +136,8 @@ def double_newton(
         # A double eigenvalue is never 0, since D(0) = 1: a change of sign means another root.
         if not abs(p - first) <= 2 * reach or not x * start > 0:
             return FAILED
-        if abs(in_p) <= ROOT_NEWTON.last_step * e_p and (
-            abs(in_x) <= ROOT_NEWTON.last_step * e_x or abs(in_x) > last / 2
+        if abs(in_p) <= ROOT_NEWTON.converged_step * e_p and (
+            abs(in_x) <= ROOT_NEWTON.converged_step * e_x or abs(in_x) > last / 2
         ):
             return LocatedZero(x, p, max(e_x, abs(in_x)), max(e_p, abs(in_p)))
         last = abs(in_x)
@@ -155,7 +156,7 @@ def _real(
 
 
 @compiled
-def refined(w: complex, coefficients: Coefficients, farthest: float = math.inf) -> complex:
+def refine_eigenvalue(w: complex, coefficients: Coefficients, farthest: float = math.inf) -> complex:
     """The eigenvalue of a uniform rod near w, by Newton's method until rounding error stops the convergence.
 
     A real guess w gives a real eigenvalue. farthest: a first Newton step of at least this length is not
@@ -176,7 +177,7 @@ def refined(w: complex, coefficients: Coefficients, farthest: float = math.inf) 
         last = abs(step)
         w -= step
         # D is real on the real axis, where rounding leaves a tiny imaginary part.
-        if abs(w.imag) <= ROOT_NEWTON.real_below * abs(w):
+        if abs(w.imag) <= ROOT_NEWTON.real_tolerance * abs(w):
             w = complex(w.real, 0.0)
     return w
 
@@ -186,6 +187,6 @@ def eigenvalue_newton(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> tuple[complex, complex, float]:
     """(w, dw/dp, error of w) of the simple eigenvalue of a uniform rod near the guess w."""
-    w = refined(w, coefficients)
+    w = refine_eigenvalue(w, coefficients)
     value = determinant_along(w, coefficients, direction)
     return w, -value.D_p / value.D_w, max(abs(value.D), value.noise) / abs(value.D_w)

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
-from ..certificate.box import box_of
+from ..certificate.box import box_from_amplification
 from ..value import DETERMINANT, distance_to_next, newton_correction, scaled_determinant, second_derivative
-from .newton import ROOT_NEWTON, refined
+from .newton import ROOT_NEWTON, refine_eigenvalue
 from .settings import ROOTS
 
 
@@ -53,12 +53,12 @@ def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, fl
     roots cannot be separated within sqrt(2 e/|D''|) of the middle.
     """
     error, length, wave = newton_correction(w, coefficients)
-    if error > ROOTS.blurred * abs(w):
+    if error > ROOTS.double_root_correction * abs(w):
         D, D1, S, noise = scaled_determinant(w, coefficients)
         e = max(abs(D), DETERMINANT.typical_noise * noise)
         second = abs(second_derivative(w, S, coefficients))
         # Close to a double root Newton's correction is useless: the roots of the parabola bound the distance.
-        if abs(D1) ** 2 < ROOTS.separated * e * second:
+        if abs(D1) ** 2 < ROOTS.min_squared_slope * e * second:
             spread = math.sqrt(2 * e / second)
             error = min(max(error, spread), abs(D1) / second + spread)
     return error, length, wave
@@ -105,8 +105,8 @@ def _separate(w: Complex, error: Array, coefficients: Coefficients) -> Array:
             if j != i and reach[j] == math.inf and abs(w[j] - w[i]) < least:
                 partner = j
                 least = abs(w[j] - w[i])
-        if partner >= 0 and least <= ROOTS.refined_together * (error[i] + error[partner]):
-            for _ in range(ROOTS.expansions):
+        if partner >= 0 and least <= ROOTS.pair_distance * (error[i] + error[partner]):
+            for _ in range(ROOTS.parabolas_per_pair):
                 middle = (w[i] + w[partner]) / 2
                 # The pair's centre is exactly real, and must stay so: its two roots are real or conjugate.
                 if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
@@ -161,11 +161,11 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
     for i in range(len(raw)):
         if not (math.isfinite(raw[i].real) and math.isfinite(raw[i].imag)):
             continue
-        if abs(raw[i].imag) <= ROOT_NEWTON.real_below * abs(raw[i]):
+        if abs(raw[i].imag) <= ROOT_NEWTON.real_tolerance * abs(raw[i]):
             first[i] = complex(raw[i].real, 0.0)
         error[i], length[i], wave[i] = root_error(first[i], coefficients)
         # No eigenvalue lies outside the box; what the mesh has there is its artefact.
-        real, imag = box_of(amplification, max(-first[i].real, 0.0))
+        real, imag = box_from_amplification(amplification, max(-first[i].real, 0.0))
         inside[i] = first[i].real <= real and abs(first[i].imag) <= imag
         near[i] = inside[i] and wave[i] <= most_waves and error[i] <= ROOTS.largest_of_pair * length[i]
     chosen = np.flatnonzero(near)
@@ -182,7 +182,7 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
     error = error[order]
     wave = wave[order]
     _raise_errors_of_equal_roots(w, error, coefficients)
-    axis = np.abs(w.real) <= np.maximum(ROOTS.axis_errors * error, ROOTS.on_the_axis * np.abs(w))
+    axis = np.abs(w.real) <= np.maximum(ROOTS.axis_errors * error, ROOTS.axis_tolerance * np.abs(w))
     ahead = (inside & ~near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
     return Roots(chosen, w, error, displacement, wave, axis, ahead)
 
@@ -211,7 +211,7 @@ def _refined_all(
             wave[i] = wave[i - 1]
         else:
             # Close to a double root D and D' are rounding errors, whose quotient may lead anywhere.
-            w[i] = refined(w[i], coefficients, reach[i])
+            w[i] = refine_eigenvalue(w[i], coefficients, reach[i])
             error[i], _, wave[i] = root_error(w[i], coefficients)
     return w, stands
 
@@ -226,8 +226,8 @@ def _raise_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coeffic
     for i in range(len(w)):
         for j in range(i + 1, len(w)):
             apart = abs(w[i] - w[j])
-            if apart <= ROOTS.same_root * (error[i] + error[j]):
+            if apart <= ROOTS.same_root_distance * (error[i] + error[j]):
                 next_root = distance_to_next(w[i], coefficients)
-                if apart < ROOTS.share_of_next * next_root:
+                if apart < ROOTS.same_root_fraction * next_root:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)

@@ -15,23 +15,23 @@ class RootSettings(CompiledSettings):
     largest_of_pair: float = 0.1
     """Largest Newton correction, in the same unit, of an eigenvalue that approximates a root together with a
     close second eigenvalue."""
-    refined_together: float = 4.0
+    pair_distance: float = 4.0
     """Distance of two eigenvalues of the mesh, over the sum of their Newton corrections, below which both are
     moved to the two roots of one parabola before Newton's method."""
-    expansions: int = 2
+    parabolas_per_pair: int = 2
     """Number of times this parabola is renewed, each about the middle of the two roots of its predecessor."""
-    on_the_axis: float = 1e-13
+    axis_tolerance: float = 1e-13
     """|Re w|/|w| below which an eigenvalue is taken to be imaginary, whatever its error estimate."""
     axis_errors: float = 4.0
     """|Re w| in units of the error of w below which an eigenvalue is taken to be imaginary."""
-    blurred: float = 1e-11
+    double_root_correction: float = 1e-11
     """Relative Newton correction above which an eigenvalue is checked for a double root."""
-    separated: float = 16.0
+    min_squared_slope: float = 16.0
     """Least |D'|^2, in units of e |D''| with the error e of D, at which the Newton correction is a valid
     error estimate: the next root, at 2 |D'/D''|, is then 32 errors away."""
-    same_root: float = 4.0
+    same_root_distance: float = 4.0
     """Distance of two roots, over the sum of their errors, below which the two may be one root of D."""
-    share_of_next: float = 0.25
+    same_root_fraction: float = 0.25
     """Distance of two roots, in units of the estimated distance 2 |D'/D''| of the next root, below which
     Newton's method has found one root twice."""
 

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 
-from ...determinant.certificate.first_boxes import slabs
+from ...determinant.certificate.first_boxes import path_intervals
 from ...determinant.certificate.winding_number import Count, count_right_of
 from ...determinant.parameter_path import Path, coefficients_at
 from ...determinant.roots.newton import LocatedZero, double_newton, eigenvalue_newton
@@ -57,7 +57,7 @@ class UniformPath(PathProblem):
     """Path of uniform rods of linear material, with D in closed form."""
 
     def edges(self, low: float, high: float) -> list[float]:
-        return [a for a, _ in slabs(self.path, low, high)] + [high]
+        return [a for a, _ in path_intervals(self.path, low, high)] + [high]
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         coefficients = coefficients_at(p, self.path.origin, self.path.direction)

@@ -52,7 +52,7 @@ class StraightRod:
     @property
     def stable(self) -> bool | None:
         """Whether all small motions decay; None if the error leaves this open."""
-        margin = max(STRAIGHT_ROD.errors_from_axis * self.error, ROOTS.on_the_axis * abs(self.w))
+        margin = max(STRAIGHT_ROD.errors_from_axis * self.error, ROOTS.axis_tolerance * abs(self.w))
         # A NaN satisfies no comparison, so an unknown eigenvalue gives None.
         return self.w.real < 0 if abs(self.w.real) > margin else None
 

@@ -10,8 +10,8 @@ from followed_lines import Comparison, line, random_line
 from surveyed import RODS
 
 from rodsweep.determinant import moving_line
-from rodsweep.determinant.certificate.winding_number import count_right_of, stepped_change
-from rodsweep.determinant.moving_line import IntervalEnd, free_of_zeros, none_crosses
+from rodsweep.determinant.certificate.winding_number import count_right_of, phase_change_by_nodes
+from rodsweep.determinant.moving_line import IntervalEnd, is_free_of_zeros, proves_no_crossing
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.spectrum.path import stretch as stretch_of
@@ -95,11 +95,11 @@ def test_what_crosses_a_moving_line_is_never_overlooked():
     """Where the counts at both ends differ something crosses, in either direction of the path."""
     strips = list(random_strips(100))
     assert sum(a != b for _, _, (a, b) in strips) > 30
-    proved, wrong = wrong_proofs(none_crosses, strips)
+    proved, wrong = wrong_proofs(proves_no_crossing, strips)
     assert proved > 15
     assert wrong == 0
     for ends, direction, _ in strips:
-        assert none_crosses(*ends, direction, 2000) == none_crosses(*ends[::-1], direction, 2000)
+        assert proves_no_crossing(*ends, direction, 2000) == proves_no_crossing(*ends[::-1], direction, 2000)
 
 
 def holds_always(*words):
@@ -108,19 +108,19 @@ def holds_always(*words):
 
 def no_width_in_p(at, y, direction, half, tilt):
     """The proof for the rod in the middle alone, which is what negative half-widths make of it."""
-    return free_of_zeros(at, y, direction, (half[0], 1e-12 * half[1]), 0.0)
+    return is_free_of_zeros(at, y, direction, (half[0], 1e-12 * half[1]), 0.0)
 
 
 @pytest.mark.parametrize(
     ("name", "broken"),
-    [("remainder_fits", holds_always), ("free_of_zeros", no_width_in_p)],
+    [("is_remainder_below", holds_always), ("is_free_of_zeros", no_width_in_p)],
     ids=["bound", "width"],
 )
 def test_a_broken_proof_is_noticed(monkeypatch, name, broken):
     """Without the remainder, or the width of a rectangle in p, strips are proved that counts refute."""
-    monkeypatch.setattr(moving_line, "free_of_zeros", free_of_zeros.py_func)
+    monkeypatch.setattr(moving_line, "is_free_of_zeros", is_free_of_zeros.py_func)
     monkeypatch.setattr(moving_line, name, broken)
-    _, wrong = wrong_proofs(none_crosses.py_func, random_strips(20))
+    _, wrong = wrong_proofs(proves_no_crossing.py_func, random_strips(20))
     assert wrong >= 3
 
 
@@ -129,7 +129,7 @@ def test_rectangles_without_an_inside_are_refused(half):
     rod = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
     at = IntervalEnd(30.0, rod.coefficients, -20.0)
     with pytest.raises(ValueError, match="half-widths of a rectangle must be above 0"):
-        free_of_zeros(at, 5.0, Coefficients(1.0, -1e-4, 0.0, 0.0), half, 0.0)
+        is_free_of_zeros(at, 5.0, Coefficients(1.0, -1e-4, 0.0, 0.0), half, 0.0)
 
 
 def test_what_is_proved_has_no_zero_inside():
@@ -141,13 +141,13 @@ def test_what_is_proved_has_no_zero_inside():
         half = (y * 10 ** rng.uniform(-2, -0.4), 10 ** rng.uniform(-3, 0.5))
         tilt = rng.normal() * at_line / 10
         at = IntervalEnd(p, path.at(p).coefficients, at_line)
-        if free_of_zeros(at, y, path.direction, half, tilt)[0]:
+        if is_free_of_zeros(at, y, path.direction, half, tilt)[0]:
             proved += 1
             for share in (-1, -0.3, 0.6, 1):
                 rod = path.at(p + share * half[1]).coefficients
                 middle = at_line + share * tilt * half[1]
                 corners = [complex(middle + 1e-3 * a * half[0], y + b * half[0]) for a, b in CORNERS]
-                turn = [stepped_change(a, b, rod)[0] for a, b in pairwise([*corners, corners[0]])]
+                turn = [phase_change_by_nodes(a, b, rod)[0] for a, b in pairwise([*corners, corners[0]])]
                 assert abs(sum(turn)) < 1
     assert proved > 300
 

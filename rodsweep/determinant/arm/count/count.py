@@ -83,7 +83,7 @@ def count_right_of(
     except FloatingPointError as unresolved:
         return Count(None, 0, str(unresolved))
     number = round(total / math.pi)
-    if abs(total / math.pi - number) > COUNT.not_an_integer:
+    if abs(total / math.pi - number) > COUNT.integer_tolerance:
         return Count(None, nodes, "the winding number is not an integer within rounding")
     return Count(number + int((known.real > line).sum()), nodes)
 
@@ -112,7 +112,7 @@ def _corner(line: float, hull: Hull) -> complex:
     line.
     """
     real, imag = hull.box(max(-line, 0.0))
-    return complex(COUNT.width_factor * real + COUNT.width_added, max(imag, COUNT.least_height * abs(line)))
+    return complex(COUNT.width_factor * real + COUNT.width_added, max(imag, COUNT.min_height * abs(line)))
 
 
 def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: Complex) -> tuple[float, int]:

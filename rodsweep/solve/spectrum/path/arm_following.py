@@ -69,7 +69,7 @@ def _settled(
 def two_roots_of_arm(middle: complex, level: Level) -> tuple[complex, complex]:
     """The two roots of D near a real `middle`, from the quadratic Taylor polynomial of D about `middle`."""
     D, D_w, S, _ = chain_value(middle, level[0], level[1])
-    h = DETERMINANT.second_step * abs(middle)
+    h = DETERMINANT.second_difference_step * abs(middle)
     after = chain_value(middle + h, level[0], level[1])
     before = chain_value(middle - h, level[0], level[1])
     second = second_difference(after, before, S, h)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array, Complex
-from ....determinant.moving_line import IntervalEnd, none_crosses
+from ....determinant.moving_line import IntervalEnd, proves_no_crossing
 from ....determinant.roots.settings import ROOTS
 from ....model.compiled.compilation import compiled
 from ....model.compiled.settings import CompiledSettings
@@ -132,7 +132,7 @@ def carry_count(
             first = _end(track, i, gap, p, coefficients)
             end = _end(track, j, gap, p, coefficients)
             most = CARRIED_COUNT.base_rectangles + CARRIED_COUNT.rectangles_per_point * (j - i)
-            proved, _ = none_crosses(first, end, direction, most)
+            proved, _ = proves_no_crossing(first, end, direction, most)
         if proved:
             # The proof holds for the gap of the line, though more eigenvalues may have been known.
             known[i + 1 : j + 1] = gap
@@ -163,9 +163,9 @@ def assess_points(track: Track, known: NDArray, modes: int, accuracy: float) -> 
             k = track.order[s, rank]
             w = track.w[s, k]
             error = track.error[s, k]
-            if abs(w.real) <= max(ROOTS.axis_errors * error, ROOTS.on_the_axis * abs(w)):
+            if abs(w.real) <= max(ROOTS.axis_errors * error, ROOTS.axis_tolerance * abs(w)):
                 good[s] = False
-            if rank < modes and not error <= min(ROOTS.blurred, accuracy / 2) * abs(w):
+            if rank < modes and not error <= min(ROOTS.double_root_correction, accuracy / 2) * abs(w):
                 good[s] = False
             unstable[s] += w.real > 0
     return good, unstable

@@ -18,7 +18,7 @@ from ....determinant.arm.determinant import arm_determinant
 from ....determinant.arm.hull.hull import hull_of
 from ....determinant.arm.newton import refined_root
 from ....determinant.certificate.winding_number import count_right_of
-from ....determinant.roots.newton import refined
+from ....determinant.roots.newton import refine_eigenvalue
 from ....determinant.roots.roots import root_error
 from ....model.rod import Rod
 from ..candidates import CANDIDATES, line_for_proof
@@ -58,7 +58,7 @@ def follow_leading_eigenvalue(rod: Rod, near: Complex, accuracy: float) -> Leadi
 
 def _of_uniform(rod: Rod, near: complex, accuracy: float) -> LeadingEigenvalue | None:
     """`follow_leading_eigenvalue` for a uniform rod of linear material; near: the neighbour's eigenvalue."""
-    w = refined(near, rod.coefficients)
+    w = refine_eigenvalue(near, rod.coefficients)
     error, _, _ = root_error(w, rod.coefficients)
     if not _is_of_its_kind(w, error, near, accuracy):
         return None

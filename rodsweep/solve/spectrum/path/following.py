@@ -50,7 +50,7 @@ class CorrectedEigenvalue(NamedTuple):
     w: complex
     slope: complex
     step: float
-    blur: float
+    rounding: float
 
 
 @compiled
@@ -102,9 +102,9 @@ def converged_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> 
     rounding error, instead of `FOLLOWING.accuracy`.
     """
     left = crowding * here.step * here.step
-    allowed = max(here.blur, ROUND_OFF * abs(here.w)) if exact else FOLLOWING.accuracy * abs(here.w)
-    if left <= allowed or here.step <= FOLLOWING.final_step * here.blur:
-        return max(here.blur, min(left, here.step))
+    allowed = max(here.rounding, ROUND_OFF * abs(here.w)) if exact else FOLLOWING.accuracy * abs(here.w)
+    if left <= allowed or here.step <= FOLLOWING.final_step * here.rounding:
+        return max(here.rounding, min(left, here.step))
     return math.inf
 
 
@@ -121,7 +121,7 @@ def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalu
     w[k] = last.w
     slope[k] = last.slope
     if mate >= 0:
-        if not w[k].imag > ROOT_NEWTON.real_below * abs(w[k]):
+        if not w[k].imag > ROOT_NEWTON.real_tolerance * abs(w[k]):
             return False
         w[mate] = w[k].conjugate()
         slope[mate] = slope[k].conjugate()
@@ -155,7 +155,7 @@ def are_distinct_roots(w: Complex, error: Array) -> bool:
         if not (abs(w[k]) < math.inf and error[k] < math.inf):
             return False
         for j in range(k):
-            if not abs(w[k] - w[j]) > ROOTS.same_root * (error[k] + error[j]):
+            if not abs(w[k] - w[j]) > ROOTS.same_root_distance * (error[k] + error[j]):
                 return False
     return True
 
