@@ -14,7 +14,7 @@ from rodsweep.bench.limit_cycle.integrators import (
     IntegratorFamily,
     by_petsc,
 )
-from rodsweep.discretization.stress.rates import rate, rate_jacobian
+from rodsweep.discretization.stress.rates import write_rate, write_rate_jacobian
 from rodsweep.solve.motion.integrator import RunEnding, Trajectory
 
 from ..installed import installed
@@ -59,10 +59,10 @@ def by_cvode(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
     buffer = np.empty((len(z), len(z)))
 
     def right_side(_: float, x: Array, out: Array) -> None:
-        rate(x, out, *arguments)
+        write_rate(x, out, *arguments)
 
     def derivative(_: float, x: Array, __: Array, out: Array) -> None:
-        rate_jacobian(x, buffer, *arguments)
+        write_rate_jacobian(x, buffer, *arguments)
         out[:, :] = buffer.T
 
     solver = cvode.CVODE(

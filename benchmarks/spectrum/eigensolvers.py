@@ -19,7 +19,7 @@ from rodsweep.bench.spectrum.own import PENCIL, WANTED_MODES, leading
 from rodsweep.bench.spectrum.study import ORDERS, mesh_of
 from rodsweep.bench.study import Contender
 from rodsweep.determinant.roots.newton import refine_eigenvalue
-from rodsweep.discretization.straight.pencil import PENCIL_NORM, assemble
+from rodsweep.discretization.straight.pencil import PENCIL_NORM, assemble_pencil
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.problem import transverse_problem
 
@@ -79,7 +79,7 @@ def displacement_elements(rod: Rod, size: int) -> Eigenvalues:
 def _displacement_pieces(size: int) -> tuple[Array, Array, Array]:
     """<a', b'>, <a', b> and a(1) b(1) in units of the masses, from the pencil's own pieces."""
     mesh = mesh_of(size)
-    pencil = assemble(mesh.elements, mesh.order)
+    pencil = assemble_pencil(mesh.elements, mesh.order)
     n = pencil.nodes
     whole = pencil.dense_pieces().reshape(6, 3 * n, 3 * n).transpose(0, 2, 1)
     tip = np.diag(np.append(np.zeros(n - 1), 1 / pencil.mass[-1]))

@@ -20,7 +20,7 @@ from ..model.rod import Rod
 from .elements.elements import ELEMENTS
 from .elements.mesh import Mesh
 from .elements.quadrature import gauss_lobatto
-from .nodal_rod import NO_JUMPS, NO_SIDE_CHANGE, Integers, Jumps
+from .nodal_rod import NO_JUMP_CHANGE, NO_JUMPS, IntegerArray, Jumps
 
 
 def material_on(rod: Rod, grid: Mesh) -> Material:
@@ -72,17 +72,17 @@ def jumps_on(rod: Rod, grid: Mesh) -> Jumps:
 def jump_change_on(rod: Rod, name: str, grid: Mesh) -> Array:
     """Derivatives of nu, c1 and c3 on both sides of each jump by the path variable of a parameter, (k, 2, 3).
 
-    `NO_SIDE_CHANGE` for a linear law, whose stress at a jump depends on the mean strain only.
+    `NO_JUMP_CHANGE` for a linear law, whose stress at a jump depends on the mean strain only.
     """
     inside, at = _beside_jumps(rod.build, grid)
     if rod.build.constitutive_law is LINEAR or not len(at):
-        return NO_SIDE_CHANGE
+        return NO_JUMP_CHANGE
     changes = rod.section_changes(name, grid.points_inside.ravel()[inside].ravel())
     c1, _, c3 = changes.compliance
     return np.ascontiguousarray(np.stack([changes.nu, c1, c3], axis=-1).reshape(*inside.shape, 3))
 
 
-def _beside_jumps(build: Build, grid: Mesh) -> tuple[Integers, Integers]:
+def _beside_jumps(build: Build, grid: Mesh) -> tuple[IntegerArray, IntegerArray]:
     """(indices in `points_inside` before and behind each jump, (k, 2); its node, (k,))."""
     jumps = build.jumps
     ends = np.array([e for e in range(1, grid.elements) if grid.edges[e] in jumps], np.int64)
@@ -111,8 +111,8 @@ def _mean_at_nodes(values: Array, grid: Mesh) -> Array:
     return mean
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
-def _places_of(grid: Mesh) -> tuple[Integers, Array]:
+@lru_cache(maxsize=ELEMENTS.max_meshes)
+def _places_of(grid: Mesh) -> tuple[IntegerArray, Array]:
     """(node, quadrature weight) of each of the `points_inside`, (elements (order + 1),) each."""
     weights = grid.lengths[:, None] / 2 * gauss_lobatto(grid.order)[1]
     return grid.element_nodes.ravel(), weights.ravel()

@@ -20,7 +20,7 @@ from .elements.basis import interpolation
 from .elements.elements import ELEMENTS
 from .elements.mesh import Mesh, transfer
 from .elements.quadrature import gauss_lobatto
-from .nodal_rod import NO_JUMPS, Integers, NodalRod
+from .nodal_rod import NO_JUMPS, IntegerArray, NodalRod
 
 STRETCHING = 0
 BENDING = 2
@@ -59,7 +59,7 @@ def stresses_beside_jumps(rod: NodalRod, S: Array) -> Array:
     return out
 
 
-def by_elements(rod: NodalRod, grid: Mesh, S: Array) -> Array:
+def stresses_by_element(rod: NodalRod, grid: Mesh, S: Array) -> Array:
     """S at the nodes of each element, (3, ..., elements, order + 1); at a jump each element has the S of its
     own side.
 
@@ -74,7 +74,7 @@ def by_elements(rod: NodalRod, grid: Mesh, S: Array) -> Array:
     return fields
 
 
-def carried_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Values:
+def interpolate_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Values:
     """S at all nodes of the mesh `target`, (3, ..., target.nodes + 1), from S on `source`,
     (3, ..., nodes + 1).
 
@@ -95,7 +95,7 @@ def carried_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Values:
 
 
 def _across(  # noqa: PLR0913, PLR0917 - of both meshes
-    E: Array, source: Mesh, target: Mesh, here: Integers, there: Integers, shares: Array
+    E: Array, source: Mesh, target: Mesh, here: IntegerArray, there: IntegerArray, shares: Array
 ) -> Array:
     """Interpolation matrix E between two meshes, (target nodes, source nodes), changed for a field with
     jumps.
@@ -125,7 +125,7 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
     return out
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def _end_from_inside(order: int, starts: bool, stops: bool, first: bool) -> Array:
     """Row that extrapolates from an element's nodes to its first or last node, without nodes at jumps,
     (p + 1,).

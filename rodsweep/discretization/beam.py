@@ -15,7 +15,7 @@ from ..arrays import Array
 from ..model.balance import Values
 from .elements.mesh import configuration
 from .rod_on_mesh import RodOnMesh
-from .stress.rates import rate_jacobians, rates
+from .stress.rates import write_rate_jacobians, write_rates
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,7 +38,7 @@ class Beam(RodOnMesh):
     """
 
     @property
-    def kept(self) -> tuple[int, ...]:
+    def unknown_velocities(self) -> tuple[int, ...]:
         return ()
 
     @cached_property
@@ -63,11 +63,11 @@ class Beam(RodOnMesh):
         scaled = self.layout.stresses(z)
         return scaled / self._along(scaled)
 
-    def scaled(self, S: Array) -> Array:
+    def state_of_stresses(self, S: Array) -> Array:
         """States z of stresses S at all nodes, (3, ..., nodes + 1)."""
         return self.layout.state(S * self._along(S), S)
 
-    def unknown(self, strains: Array) -> Array:
+    def state_of_strains(self, strains: Array) -> Array:
         """The state z of strains (h1, h2, Pi) at all nodes, (3, nodes + 1); strains at the tip are
         ignored."""
         return self.layout.state((strains - self.nodal.rest) / self.roots, strains)
@@ -76,7 +76,7 @@ class Beam(RodOnMesh):
         """dz/dt of states z, both (..., unknowns), with time in tau2."""
         out = np.empty(z.shape)
         flat = z.reshape(-1, self.unknowns), out.reshape(-1, self.unknowns)
-        rates(*flat, self.roots, self.nodal, self.mesh.matrices)
+        write_rates(*flat, self.roots, self.nodal, self.mesh.matrices)
         return out
 
     def jacobian(self, z: Array) -> Array:
@@ -86,7 +86,7 @@ class Beam(RodOnMesh):
         out = np.empty((*z.shape, size))
         states = z.reshape(-1, size)
         matrices = out.reshape(-1, size, size)
-        rate_jacobians(states, matrices, self.roots, self.nodal, self.mesh.matrices)
+        write_rate_jacobians(states, matrices, self.roots, self.nodal, self.mesh.matrices)
         return out.swapaxes(-1, -2)
 
     def tip_motion(self, z: Array, direction: Array) -> tuple[Array, Array]:

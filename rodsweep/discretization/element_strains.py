@@ -21,7 +21,7 @@ from .nodal_rod import NodalRod
 
 
 @compiled
-def place_before(node: int, order: int) -> int:
+def index_before_jump(node: int, order: int) -> int:
     """Index, among the nodes of every element, of the side before the jump at `node`; the side behind is the
     next.
     """
@@ -42,7 +42,7 @@ def write_element_strains(S: Array, rod: NodalRod, order: int, out: Array) -> No
     for j in range(len(rod.jumps)):
         node = rod.jumps[j]
         sides = rod.sides[j]
-        before = place_before(node, order)
+        before = index_before_jump(node, order)
         for k in range(S.shape[1]):
             q = Unknowns(S[0, k, node], S[2, k, node])
             first = unknowns_before_jump(rod.law, sides, q)
@@ -67,7 +67,7 @@ def write_element_rates(S: Array, rates: Array, rod: NodalRod, order: int, out: 
     for j in range(len(rod.jumps)):
         node = rod.jumps[j]
         sides = rod.sides[j]
-        before = place_before(node, order)
+        before = index_before_jump(node, order)
         c1 = rod.compliance[0, node]
         c2 = rod.compliance[1, node]
         c3 = rod.compliance[2, node]

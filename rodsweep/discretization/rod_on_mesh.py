@@ -17,7 +17,7 @@ from ..model.material.laws import LINEAR
 from ..model.material.response import LocalSection, tangent
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on, material_on
-from .at_jumps import carried_stress, stresses_beside_jumps
+from .at_jumps import interpolate_stress, stresses_beside_jumps
 from .element_strains import write_element_rates, write_element_strains
 from .elements.mesh import Mesh, configuration
 from .nodal_rod import NodalRod, nodal_rod
@@ -33,7 +33,7 @@ class RodOnMesh(ABC):
 
     @property
     @abstractmethod
-    def kept(self) -> tuple[int, ...]:
+    def unknown_velocities(self) -> tuple[int, ...]:
         """Indices of the components of V that are unknowns."""
 
     @abstractmethod
@@ -54,7 +54,7 @@ class RodOnMesh(ABC):
     @cached_property
     def layout(self) -> StateLayout:
         """Positions of the fields in a state."""
-        return plane_layout(self.mesh.nodes, self.kept)
+        return plane_layout(self.mesh.nodes, self.unknown_velocities)
 
     @property
     def unknowns(self) -> int:
@@ -67,7 +67,7 @@ class RodOnMesh(ABC):
         mesh = self.mesh
         law = rod.build.law_number
         jumps = jumps_on(rod, mesh)
-        return nodal_rod(material_on(rod, mesh), mesh, self.kept, law, jumps)
+        return nodal_rod(material_on(rod, mesh), mesh, self.unknown_velocities, law, jumps)
 
     @property
     def smooth_stresses(self) -> bool:
@@ -144,7 +144,7 @@ class RodOnMesh(ABC):
 
     def stresses_on(self, grid: Mesh, x: Array) -> Array:
         """Stresses S of states x at all nodes of the mesh `grid`, (3, ..., grid.nodes + 1)."""
-        return carried_stress(self.rod, self.stresses(x), self.mesh, grid)
+        return interpolate_stress(self.rod, self.stresses(x), self.mesh, grid)
 
     def least_stretch(self, x: Array) -> float:
         """Smallest stretch h1 of all nodes and states x; the model is valid while it is positive.

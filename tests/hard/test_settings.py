@@ -339,7 +339,7 @@ def on_mesh(accuracy: float) -> Answer:
     beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), mesh(1, 16))
     u = beam.mesh.positions
     rest = beam.strains(np.zeros(beam.layout.unknowns))
-    z = beam.unknown(rest + (1 - u) * np.array([0 * u, 0.1 * np.sin(2 * u), 4 * np.cos(u)]))
+    z = beam.state_of_strains(rest + (1 - u) * np.array([0 * u, 0.1 * np.sin(2 * u), 4 * np.cos(u)]))
     numbers = [*beam.tip(z), *beam.tip_velocity(z, 0.1 * z), beam.energy(z)]
     return {f"number {i}": (float(value), 1e-12) for i, value in enumerate(numbers)}
 
@@ -371,7 +371,7 @@ def motion(accuracy: float) -> Answer:
     u = beam.mesh.positions
     rest = beam.strains(np.zeros(beam.layout.unknowns))
     wave = np.array([0 * u, 0.1 * np.sin(2 * u), np.cos(4 * u)])
-    start = beam.unknown(rest + 0.1 * (1 - u) * wave)
+    start = beam.state_of_strains(rest + 0.1 * (1 - u) * wave)
     forget_integrators()
     run = integrator(beam.mesh, TimeScheme(tolerance=accuracy)).run(beam, start, 0.05)
     if run.ending is not RunEnding.reached:

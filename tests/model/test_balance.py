@@ -181,6 +181,6 @@ def test_compiled_rate_of_a_smooth_rod_is_that_of_the_balance(elements, order):
     u = beam.mesh.positions
     Sigma, dSigma, ddSigma = stresses(u, 3)
     _, exact = rates(PLANE, Sigma, dSigma, ddSigma)
-    z = beam.unknown(PLANE.strain(Sigma))
+    z = beam.state_of_strains(PLANE.strain(Sigma))
     rate = beam.rate(z).reshape(3, -1) * beam.roots[:, :-1]
     assert np.abs(rate - exact[:, :-1])[:, 1:].max() <= 1e-7 * np.abs(exact).max()

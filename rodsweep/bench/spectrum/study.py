@@ -158,8 +158,8 @@ def best(measurements: Sequence[Measurement]) -> str:
 
 
 def mesh_of(order: int) -> Resolution:
-    """One element of the given order, or several equal elements of at most RESOLUTION.largest_order."""
-    elements = ceil(order / RESOLUTION.largest_order)
+    """One element of the given order, or several equal elements of at most RESOLUTION.max_order."""
+    elements = ceil(order / RESOLUTION.max_order)
     return Resolution(elements, ceil(order / elements))
 
 

@@ -18,7 +18,7 @@ from ..roots.settings import ROOTS
 from ..value import DETERMINANT, DeterminantValue
 from .determinant import ArmDeterminant, arm_determinant
 from .family import ARM_FAMILY, ArmFamily, eigenvalue_in, value_in
-from .newton import refined_root
+from .newton import refine_eigenvalue_and_error
 
 CENTRAL_DIFFERENCE = ((1, 0.5), (-1, -0.5))
 FORWARD_DIFFERENCE = ((0, -1.5), (1, 2.0), (2, -0.5))
@@ -73,7 +73,7 @@ class ArmAlongPath:
             if error <= ROOTS.double_root_correction * abs(w):
                 return w, slope, error
         here = self.determinant(p)
-        w, error = refined_root(guess, here)
+        w, error = refine_eigenvalue_and_error(guess, here)
         value = here.value(w)
         return w, -self.derivative(w, p, value.S) / value.D_w, error
 

@@ -34,36 +34,36 @@ from .value import chain_value
 class CompletenessSettings(CompiledSettings):
     """Settings for proofs of completeness, and for the points x_j at which D'/D is summed."""
 
-    spare: int = 2
+    spare_eigenvalues: int = 2
     """Number of eigenvalues requested beyond the modes to prove: with two, 59 of 100 random arms still need a
     count, without 73. A count costs more than two eigenvalues."""
-    powers: tuple[int, ...] = (3, 6)
-    """Numbers k of points x_j of successive trials. Fewer points lie closer to the hull; more points suffice
-    for a wider hull."""
-    farthest: tuple[float, ...] = (1.5, 6.0)
-    """Largest x_k, for each number of `powers`, in units of the largest known |w|. Most proofs with a larger
+    point_counts: tuple[int, ...] = (3, 6)
+    """Numbers k of points x_j of successive trials: few lie closer to the hull, many suffice for a wider
+    hull."""
+    max_last_point: tuple[float, ...] = (1.5, 6.0)
+    """Largest x_k, for each of `point_counts`, in units of the largest known |w|. Most proofs with a larger
     x_k fail, because unknown eigenvalues contribute like known ones; most that succeed have a smaller x_k."""
-    first_point: float = 0.35
+    min_first_point: float = 0.35
     """Smallest x_1, in units of the distance of the line from the imaginary axis."""
-    least_point: float = 1e-6
+    min_first_distance: float = 1e-6
     """Smallest x_1, in 1/tau2, for a line and a hull near 0."""
     spread: float = 1.0
     """x_k - x_1, in units of x_1."""
-    wider: float = 1.3
+    widening_factor: float = 1.3
     """Factor on all points x_j, applied until every term of R has a real part >= 0."""
-    slabs: int = 24
+    strip_count: int = 24
     """Number of vertical strips of the hull right of the line, each with its own bound of Re phi."""
-    allowed: float = 0.7
+    max_remainder: float = 0.7
     """Largest |R| of a proof, rounding error included, over the least contribution of an unknown
     eigenvalue."""
     rounding_of_slope: float = 10.0
     """Relative rounding error of D'/D, in units of the relative `noise` of D: at most 0.08 between two sets
     of elements, over 45 random arms."""
-    ranges: ClassVar = {"wider": (1.0, math.inf), "allowed": (0.0, 1.0)}
+    ranges: ClassVar = {"widening_factor": (1.0, math.inf), "max_remainder": (0.0, 1.0)}
 
-    def tried(self) -> list[tuple[int, float]]:
+    def trials(self) -> list[tuple[int, float]]:
         """(k, largest x_k in units of the largest known |w|) of each trial, in order."""
-        return list(zip(self.powers, self.farthest, strict=True))
+        return list(zip(self.point_counts, self.max_last_point, strict=True))
 
 
 COMPLETENESS = CompletenessSettings()
@@ -83,8 +83,7 @@ class Remainder(NamedTuple):
 def none_is_missing(
     line: float, known: Complex, error: Array, determinant: ArmDeterminant, hull: Hull
 ) -> tuple[bool, int]:
-    """(whether every eigenvalue with Re w >= line is proved to be among the known ones, number of evaluations
-    of D).
+    """(whether all eigenvalues with Re w >= line are proved to be known, number of evaluations of D).
 
     known, error: known eigenvalues, (n,), and their absolute errors, (n,). Known eigenvalues without their
     conjugate are ignored.
@@ -95,8 +94,8 @@ def none_is_missing(
     pairs = has_conjugate(known)
     largest = float(np.abs(known).max())
     examined = 0
-    for k, farthest in COMPLETENESS.tried():
-        points = right_of_hull(line, hull.a, hull.c, k)
+    for k, farthest in COMPLETENESS.trials():
+        points = points_right_of_hull(line, hull.a, hull.c, k)
         if _last(points) <= farthest * largest:
             found = remainder_of_sum(
                 line, known[pairs], error[pairs], hull, points, determinant.level(points[-1])
@@ -115,11 +114,11 @@ def has_conjugate(known: Complex) -> Array:
 
 def largest_w_of_proof(line: float, hull: Hull, known: Complex) -> float:
     """Largest |w| at which the first trial of `none_is_missing` evaluates D; inf if no trial is possible.
-
-    known: eigenvalues, (n,), or approximations.
+    known: (n,).
     """
     largest = float(np.abs(known).max())
-    tried = ((_last(right_of_hull(line, hull.a, hull.c, k)), most) for k, most in COMPLETENESS.tried())
+    trials = COMPLETENESS.trials()
+    tried = ((_last(points_right_of_hull(line, hull.a, hull.c, k)), most) for k, most in trials)
     return next((last for last, most in tried if last <= most * largest), math.inf)
 
 
@@ -133,8 +132,8 @@ def cheapest_proof(line: float, hull: Hull, known: Complex, modes: int) -> tuple
     best = 0, math.inf
     sizes = np.maximum.accumulate(np.abs(known)).tolist()
     whole = [*(known[1:] != known[:-1].conj()).tolist(), True]
-    for k, farthest in COMPLETENESS.tried():
-        last = _last(right_of_hull(line, hull.a, hull.c, k))
+    for k, farthest in COMPLETENESS.trials():
+        last = _last(points_right_of_hull(line, hull.a, hull.c, k))
         for number in range(modes, len(sizes) + 1):
             largest = sizes[number - 1]
             if last <= farthest * largest and max(last, largest) < best[1] and whole[number - 1]:
@@ -153,25 +152,25 @@ def proves_completeness(found: Remainder) -> bool:
 
     It does not if R is far below 0: a known eigenvalue is then no root of D.
     """
-    allowed = COMPLETENESS.allowed * found.least_contribution
+    allowed = COMPLETENESS.max_remainder * found.least_contribution
     return found.R + found.rounding < allowed and -allowed < found.R
 
 
 @compiled
-def right_of_hull(line: float, a: float, c: float, k: int) -> Array:
+def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
     """Points x_1 < ... < x_k, (k,), so far right that every term of R has a real part >= 0; may be empty.
 
     a, c: constants of the hull.
     """
     # As close to the hull as allowed: from farther away all eigenvalues contribute alike.
-    x = max(COMPLETENESS.first_point * abs(line), a * a, COMPLETENESS.least_point)
+    x = max(COMPLETENESS.min_first_point * abs(line), a * a, COMPLETENESS.min_first_distance)
     points = np.empty(k)
     for j in range(k):
         points[j] = x * (1 + COMPLETENESS.spread * j / max(k - 1, 1))
     while not _turn_of_hull(points, a, c) < math.pi / 2:
         if not points[0] < 1 / EXPONENTS.least_divisor:
             return points[:0]
-        points *= COMPLETENESS.wider
+        points *= COMPLETENESS.widening_factor
     return points
 
 
@@ -234,9 +233,9 @@ def _least_right_of(line: float, points: Array, a: float, c: float) -> float:
     least = 1.0
     for x in points:
         least /= x - line
-    for i in range(COMPLETENESS.slabs):
-        start = line + (right - line) * i / COMPLETENESS.slabs
-        stop = line + (right - line) * (i + 1) / COMPLETENESS.slabs
+    for i in range(COMPLETENESS.strip_count):
+        start = line + (right - line) * i / COMPLETENESS.strip_count
+        stop = line + (right - line) * (i + 1) / COMPLETENESS.strip_count
         depth = max(-start, 0.0)
         n = (a + math.sqrt(a * a + 4 * b * depth)) / (2 * b)
         height = a * n + c * n * n

@@ -116,12 +116,12 @@ def root_error(w: complex, determinant: ArmDeterminant) -> float:
     return _root_error(complex(w), _level(w, determinant))
 
 
-def refined(w: complex, determinant: ArmDeterminant) -> complex:
-    """The eigenvalue of an arm near w, by Newton's method (`refined_root`)."""
-    return refined_root(w, determinant)[0]
+def refine_eigenvalue(w: complex, determinant: ArmDeterminant) -> complex:
+    """The eigenvalue of an arm near w, by Newton's method (`refine_eigenvalue_and_error`)."""
+    return refine_eigenvalue_and_error(w, determinant)[0]
 
 
-def refined_root(
+def refine_eigenvalue_and_error(
     w: complex, determinant: ArmDeterminant, farthest: float = math.inf
 ) -> tuple[complex, float]:
     """(eigenvalue of an arm near w, its error), by Newton's method until rounding error stops the

@@ -19,7 +19,7 @@ from ..roots.roots import Roots
 from ..roots.settings import ROOTS
 from .determinant import ArmDeterminant
 from .hull.region import Hull
-from .newton import ARM_ROOTS, refined_root, root_error, second_derivative, two_roots
+from .newton import ARM_ROOTS, refine_eigenvalue_and_error, root_error, second_derivative, two_roots
 
 T = TypeVar("T")
 
@@ -137,7 +137,7 @@ def _refined_all(guesses: list[tuple[complex, float]], determinant: ArmDetermina
         if place > 0 and w.imag != 0 and w == guesses[place - 1][0].conjugate():
             found.append(_LocatedRoot(found[-1].w.conjugate(), found[-1].error, place))
         else:
-            found.append(_LocatedRoot(*refined_root(w, determinant, reach), place))
+            found.append(_LocatedRoot(*refine_eigenvalue_and_error(w, determinant, reach), place))
     return found
 
 

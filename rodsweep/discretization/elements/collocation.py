@@ -51,7 +51,7 @@ class Collocation(NamedTuple):
 
 
 @cache
-def radau(stages: int) -> Collocation:
+def radau_method(stages: int) -> Collocation:
     """The Radau IIA method with s = `stages` stages; its nodes are the zeros of P_(s-1) - P_s, mapped to [0,
     1].
     """

@@ -18,15 +18,15 @@ class ElementSettings:
     memory.
     """
 
-    inside: float = 1e-15
+    end_distance: float = 1e-15
     """Distance of `Elements.points_inside` from the ends of an element, in L: a few rounding errors of u.
     With 1e-9 instead, the largest y of cycles next to the Hopf point of a cone was off by 1e-8 on every
     mesh."""
-    meshes_kept: int = 64
+    max_meshes: int = 64
     """Maximum number of meshes, and of matrices of each kind, that are cached; a sweep needs about ten."""
-    pencils_kept: int = 16
+    max_pencils: int = 16
     """Maximum number of pencils that are cached; for 300 growing modes each takes 10 MB."""
-    pairs_kept: int = 256
+    max_mesh_pairs: int = 256
     """Maximum number of pairs of meshes whose interpolation matrix is cached, and of cached lists of
     edges."""
 
@@ -82,7 +82,7 @@ class Elements:
         """
         edges: Array = np.array(self.edges)[:, None]
         points = edges[:-1] + self.lengths[:, None] * (gauss_lobatto(self.order)[0] + 1) / 2
-        return np.clip(points, edges[:-1] + ELEMENTS.inside, edges[1:] - ELEMENTS.inside)
+        return np.clip(points, edges[:-1] + ELEMENTS.end_distance, edges[1:] - ELEMENTS.end_distance)
 
     def evaluation(self, points: Array) -> Array:
         """Matrix from values at all nodes to values at `points` in [0, 1], (n,): shape (n, nodes + 1)."""
@@ -116,13 +116,13 @@ class Elements:
             yield int(e) * self.order, inside, 2 * (points[inside] - self.edges[e]) / self.lengths[e] - 1
 
 
-@lru_cache(maxsize=ELEMENTS.pairs_kept)
+@lru_cache(maxsize=ELEMENTS.max_mesh_pairs)
 def equal_edges(elements: int) -> tuple[float, ...]:
     """Edges of `elements` elements of equal length on [0, 1]."""
     return tuple(k / elements for k in range(elements + 1))
 
 
-def halved(edges: tuple[float, ...]) -> tuple[float, ...]:
+def halve_elements(edges: tuple[float, ...]) -> tuple[float, ...]:
     """The edges of the elements after halving every element."""
     middles = [(a + b) / 2 for a, b in zip(edges[:-1], edges[1:], strict=True)]
     return tuple(sorted([*edges, *middles]))

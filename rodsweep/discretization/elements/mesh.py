@@ -66,7 +66,7 @@ def mesh(elements: int, order: int) -> Mesh:
     return mesh_on(equal_edges(elements), order)
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
     """The mesh of elements between `edges`, all of order `order`, cached."""
     x, w = gauss_lobatto(order)
@@ -87,7 +87,7 @@ def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
     return Mesh(edges, order, NodeMatrices(*map(np.ascontiguousarray, parts)))
 
 
-@lru_cache(maxsize=ELEMENTS.pairs_kept)
+@lru_cache(maxsize=ELEMENTS.max_mesh_pairs)
 def transfer(source: Mesh, target: Mesh) -> Array:
     """Matrix from values at all nodes of `source` to values at all nodes of `target`, by interpolation.
 
@@ -137,7 +137,7 @@ class Reconstruction(NamedTuple):
     ends: Array
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def reconstruction(order: int) -> Reconstruction:
     """The `Reconstruction` matrices of elements of order `order`, cached."""
     x = gauss_lobatto(order)[0]

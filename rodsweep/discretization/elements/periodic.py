@@ -22,9 +22,9 @@ class MaximumSettings(CompiledSettings):
 
     max_steps: int = 8
     """Maximum number of Newton steps from the largest sample to the maximum."""
-    found: float = 1e-9
+    converged_step: float = 1e-9
     """Newton step, in periods, that ends the iteration; the error of the maximum is about its square."""
-    bisections: int = 50
+    max_bisections: int = 50
     """Number of bisections of the interval between two samples for a zero, down to rounding error."""
 
 
@@ -109,15 +109,15 @@ def _waves(count: int) -> Array:
     return waves
 
 
-def samples_of(c: Complex, count: int) -> Array:
+def series_samples(c: Complex, count: int) -> Array:
     """Re sum_k c_k exp(2 pi i k t) at `count` equidistant t, (count, ...); c: (harmonics, ...)."""
-    samples: Array = sampled_columns(np.ascontiguousarray(c).reshape(len(c), -1), count)
+    samples: Array = series_samples_of_columns(np.ascontiguousarray(c).reshape(len(c), -1), count)
     return samples.reshape(count, *c.shape[1:])
 
 
 @compiled_for_vectors
-def sampled_columns(c: Complex, count: int) -> Array:
-    """`samples_of` of columns, (count, columns), from coefficients c, (harmonics, columns).
+def series_samples_of_columns(c: Complex, count: int) -> Array:
+    """`series_samples` of columns, (count, columns), from coefficients c, (harmonics, columns).
 
     For an even count, samples of the second half of the period come from the first half: even harmonics are
     equal, odd harmonics change their sign.
@@ -157,12 +157,12 @@ def sampled_columns(c: Complex, count: int) -> Array:
     return samples
 
 
-def resampled(samples: Array, at: NDArray[np.floating]) -> Array:
+def interpolate_samples(samples: Array, at: NDArray[np.floating]) -> Array:
     """The interpolant of samples, (N, ...), at the times `at` in periods, (m,): shape (m, ...)."""
-    return sampled_at(fourier_coefficients(samples), at)
+    return series_at(fourier_coefficients(samples), at)
 
 
-def sampled_at(c: Complex, at: NDArray[np.floating]) -> Array:
+def series_at(c: Complex, at: NDArray[np.floating]) -> Array:
     """Re sum_k c_k exp(2 pi i k t), c: (harmonics, ...), at times `at` in periods, (m,): shape (m, ...)."""
     waves = np.exp(2j * np.pi * np.outer(at, np.arange(len(c))))
     return (waves @ c.reshape(len(c), -1)).real.reshape(len(at), *c.shape[1:])
@@ -195,7 +195,7 @@ def maxima(c: Complex, samples: Array) -> Array:
             # The extremum lies beside the largest sample, within one distance of samples.
             step = min(max(slope / curvature, -1 / n), 1 / n)
             t -= step
-            if abs(step) < MAXIMA.found:
+            if abs(step) < MAXIMA.converged_step:
                 break
         highest[column] = _expansion(c[:, column], t)[0]
     return highest
@@ -227,7 +227,7 @@ def _expansion(c: Complex, t: float) -> tuple[float, float, float]:
     return value, slope, curvature
 
 
-def rise_through_mean(samples: Array) -> float:
+def time_of_rise_through_mean(samples: Array) -> float:
     """Time, in periods, at which the interpolant of samples, (N,), rises through its mean after a minimum."""
     n = len(samples)
     deviation = samples - samples.mean()
@@ -239,7 +239,7 @@ def rise_through_mean(samples: Array) -> float:
 @compiled_for_vectors
 def _rise(c: Complex, low: float, high: float) -> float:
     """The zero of Re sum_k c_k exp(2 pi i k t) between low and high, by bisection; c: (harmonics,)."""
-    for _ in range(MAXIMA.bisections):
+    for _ in range(MAXIMA.max_bisections):
         middle = (low + high) / 2
         if _expansion(c, middle)[0] < 0:
             low = middle

@@ -25,7 +25,7 @@ class ResolutionSettings:
     """Increase of the order for each further digit, at |q| = 0."""
     digit_slope: float = 0.02
     """Increase of `digit_intercept` per unit of |q|."""
-    digit_slope_end: float = 35.0
+    digit_slope_max_wave_number: float = 35.0
     """|q| above which the increase of the order for each further digit is constant."""
     wave_factor: float = 1.4
     """Safety factor on the wave number of the most amplified wave, in the estimate of the largest |q|."""
@@ -33,14 +33,14 @@ class ResolutionSettings:
     """Mode n of a rod at rest has |q| near (n - 1/2) pi; (n - mode_offset) pi is an upper estimate."""
     start_accuracy: float = 1e-4
     """Relative accuracy of a mesh whose eigenvalues are then refined to roots of D."""
-    largest_order: int = 32
+    max_order: int = 32
     """Maximum order of an element; beyond it, one more element costs less than a higher order."""
-    smallest_order: int = 6
+    min_order: int = 6
     """Minimum order of an element."""
-    most_unknowns: int = 10_000
+    max_unknowns: int = 10_000
     """Maximum number of unknowns of a mesh, which takes a few seconds with a sparse factorisation; a rod that
     needs more fails."""
-    refinement: float = 4 / 3
+    refinement_ratio: float = 4 / 3
     """Ratio of the number of unknowns of the next finer mesh to that of its predecessor."""
 
 
@@ -84,33 +84,33 @@ def required_order(wave_number: float, accuracy: float) -> float:
     """
     fit = RESOLUTION
     further_digits = max(-log10(accuracy), fit.base_digits) - fit.base_digits
-    per_digit = fit.digit_intercept + fit.digit_slope * min(wave_number, fit.digit_slope_end)
+    per_digit = fit.digit_intercept + fit.digit_slope * min(wave_number, fit.digit_slope_max_wave_number)
     return fit.order_intercept + fit.order_slope * wave_number + further_digits * per_digit
 
 
 def resolution_for(wave_number: float, accuracy: float, largest_order: int | None = None) -> Resolution:
     """The fewest elements, and then the lowest order, that resolve a wave number to a relative accuracy.
 
-    largest_order: maximum order of an element, `RESOLUTION.largest_order` by default.
+    largest_order: maximum order of an element, `RESOLUTION.max_order` by default.
     """
-    largest_order = largest_order or RESOLUTION.largest_order
-    max_elements = RESOLUTION.most_unknowns // (3 * largest_order) + 2  # more unknowns fail anyway
+    largest_order = largest_order or RESOLUTION.max_order
+    max_elements = RESOLUTION.max_unknowns // (3 * largest_order) + 2  # more unknowns fail anyway
     elements = 1
     while elements < max_elements and required_order(wave_number / elements, accuracy) > largest_order:
         elements += 1
     if elements == max_elements:
         return Resolution(elements, largest_order)
-    order = max(RESOLUTION.smallest_order, ceil(required_order(wave_number / elements, accuracy)))
+    order = max(RESOLUTION.min_order, ceil(required_order(wave_number / elements, accuracy)))
     return Resolution(elements, order + (1 if elements > 1 else 0))
 
 
-def finer(resolution: Resolution) -> Resolution:
+def finer_resolution(resolution: Resolution) -> Resolution:
     """The next finer resolution, with a third more unknowns: a higher order or, beyond the largest order,
     more elements.
     """
-    order = ceil(resolution.order * RESOLUTION.refinement)
-    if order <= RESOLUTION.largest_order:
+    order = ceil(resolution.order * RESOLUTION.refinement_ratio)
+    if order <= RESOLUTION.max_order:
         return Resolution(resolution.elements, order)
-    elements = ceil(resolution.elements * RESOLUTION.refinement)
-    nodes = RESOLUTION.refinement * resolution.elements * resolution.order
+    elements = ceil(resolution.elements * RESOLUTION.refinement_ratio)
+    nodes = RESOLUTION.refinement_ratio * resolution.elements * resolution.order
     return Resolution(elements, ceil(nodes / elements))

@@ -140,7 +140,7 @@ def _filled(F: float, local: Array, pieces: _Pieces) -> tuple[Array, Array, Arra
             mass = pieces.lumped[e, i]
             push[e * order + i] += mass * local[3, e, order + i]
             turn[e * order + i] += mass * local[4, e, order + i]
-            least[e * order + i] += mass * PENCIL_NORM.least_angle_weight**2
+            least[e * order + i] += mass * PENCIL_NORM.min_angle_weight**2
     scale = np.empty(3 * nodes)
     B = np.zeros(3 * nodes)
     for k in range(nodes):

@@ -16,10 +16,10 @@ from ..elements.resolution import RESOLUTION, required_order
 class ArmResolutionSettings:
     """Settings for the mesh of an arm that varies along its length."""
 
-    largest_ratio: float = 2.2
+    max_radius_ratio: float = 2.2
     """Largest ratio of the radii of a cone at both ends of an element; order 12 then gives eigenvalues to
     1e-4."""
-    for_profiles: int = 2
+    profile_order_increase: int = 2
     """Increase of the order for coefficients that vary within an element."""
 
 
@@ -41,7 +41,7 @@ def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
     _, amplified = local_growth(rod)
     at_rest = (modes - RESOLUTION.mode_offset) * pi * _local_share(rod)
     waves = np.hypot(RESOLUTION.wave_factor * amplified, at_rest)
-    elements = _resolving(rod, waves * weights, accuracy, RESOLUTION.largest_order)
+    elements = _resolving(rod, waves * weights, accuracy, RESOLUTION.max_order)
     return ArmMesh(elements.edges, elements.order)
 
 
@@ -49,10 +49,10 @@ def arm_elements(rod: Rod, wave_number: float, accuracy: float, largest_order: i
     """Elements that resolve a field along an arm with the mean wave number `wave_number`, in 1/L, to an
     accuracy.
 
-    largest_order: maximum order, `RESOLUTION.largest_order` by default.
+    largest_order: maximum order, `RESOLUTION.max_order` by default.
     """
     waves = wave_number * _local_share(rod)
-    return _resolving(rod, waves * sampled(rod).weights, accuracy, largest_order or RESOLUTION.largest_order)
+    return _resolving(rod, waves * sampled(rod).weights, accuracy, largest_order or RESOLUTION.max_order)
 
 
 def _local_share(rod: Rod) -> Array:
@@ -75,24 +75,24 @@ def _resolving(rod: Rod, turns: Array, accuracy: float, largest_order: int) -> E
     for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
         ratio = abs(log(_radius(rod, stop) / _radius(rod, start)))
         needed = _elements_for(float(share), accuracy, largest_order)
-        count = max(1, ceil(ratio / log(ARM_RESOLUTION.largest_ratio)), needed)
+        count = max(1, ceil(ratio / log(ARM_RESOLUTION.max_radius_ratio)), needed)
         edges += _edges(rod, start, stop, count)
         largest = max(largest, float(share) / count)
-    order = max(RESOLUTION.smallest_order, ceil(required_order(hypot(largest, 1.0), accuracy)))
-    return Elements(tuple(edges), order + (0 if rod.uniform else ARM_RESOLUTION.for_profiles))
+    order = max(RESOLUTION.min_order, ceil(required_order(hypot(largest, 1.0), accuracy)))
+    return Elements(tuple(edges), order + (0 if rod.uniform else ARM_RESOLUTION.profile_order_increase))
 
 
 def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
     """The next finer mesh of an arm: 4/3 of the order or, beyond the largest order, twice the elements of 2/3
     of it.
     """
-    order = ceil(mesh.order * RESOLUTION.refinement)
-    if order <= RESOLUTION.largest_order:
+    order = ceil(mesh.order * RESOLUTION.refinement_ratio)
+    if order <= RESOLUTION.max_order:
         return ArmMesh(mesh.edges, order)
     edges = [0.0]
     for start, stop in zip(mesh.edges[:-1], mesh.edges[1:], strict=True):
         edges += _edges(rod, start, stop, 2)
-    return ArmMesh(tuple(edges), ceil(RESOLUTION.refinement / 2 * mesh.order))
+    return ArmMesh(tuple(edges), ceil(RESOLUTION.refinement_ratio / 2 * mesh.order))
 
 
 def _elements_for(share: float, accuracy: float, largest_order: int) -> int:

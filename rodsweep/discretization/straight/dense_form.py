@@ -12,7 +12,7 @@ from ...arrays import Array, Complex
 from ...model.rod import Rod
 from ..elements.elements import ELEMENTS, Elements
 from .arm_pencil import ArmPencil
-from .pencil import Pencil, derivatives_at, fields_of, shear_force
+from .pencil import Pencil, derivatives_at, fields_of_vectors, shear_force
 
 AnyPencil = Pencil | ArmPencil
 """The pencil of a uniform rod of linear material, or of any arm."""
@@ -34,7 +34,7 @@ class DenseForm:
 
     def fields(self, vectors: Complex) -> tuple[NDArray, NDArray]:
         """(y, theta) at all nodes, clamp included, (nodes + 1, k) each, of k eigenvectors, (unknowns, k)."""
-        return fields_of(vectors, self.scale)
+        return fields_of_vectors(vectors, self.scale)
 
     def strains(self, vectors: Complex, points: Array) -> Complex:
         """Strains (h2, Pi) = (Y' - nu Theta, Theta') of k eigenvectors, (unknowns, k), at points,
@@ -75,5 +75,7 @@ def _inside(mesh: Elements, points: Array) -> Array:
     for first, inside, local in mesh.by_element(points):
         e = first // mesh.order
         place = mesh.edges[e] + mesh.lengths[e] * (local + 1) / 2
-        moved[inside] = np.clip(place, mesh.edges[e] + ELEMENTS.inside, mesh.edges[e + 1] - ELEMENTS.inside)
+        moved[inside] = np.clip(
+            place, mesh.edges[e] + ELEMENTS.end_distance, mesh.edges[e + 1] - ELEMENTS.end_distance
+        )
     return moved

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..elements.elements import ELEMENTS
-from ..state_layout import COMPONENTS
+from ..state_layout import PLANE_COMPONENTS
 
 Indices = NDArray[np.int_]
 
@@ -30,16 +30,16 @@ class ElementNumbering:
     exists: NDArray[np.bool_]
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def element_numbering(elements: int, order: int, components: tuple[int, ...]) -> ElementNumbering:
     """Numbering of `elements` equal elements of an order, for the given components of stresses and
     velocities.
     """
     last = elements * order
     nodes = np.arange(elements)[:, None] * order + np.arange(order + 1)
-    unknown = COMPONENTS * (2 * last + 1)
+    unknown = PLANE_COMPONENTS * (2 * last + 1)
     stresses = [np.where(nodes == last, unknown, c * last + nodes) for c in components]
-    velocities = [COMPONENTS * last + c * (last + 1) + nodes for c in components]
+    velocities = [PLANE_COMPONENTS * last + c * (last + 1) + nodes for c in components]
     width = 2 * len(components)
     node = np.tile(np.arange(order + 1), width)
     inside = np.flatnonzero((node > 0) & (node < order)) if elements > 1 else np.array([], int)

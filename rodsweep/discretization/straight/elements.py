@@ -23,7 +23,7 @@ from ...model.balance import Values, ad, coad
 from ..elements.basis import differentiation
 from ..elements.elements import ELEMENTS
 from ..elements.quadrature import gauss_lobatto
-from ..state_layout import COMPONENTS
+from ..state_layout import PLANE_COMPONENTS
 from .element_numbering import ElementNumbering, element_numbering
 from .mixed_form import MixedForm
 
@@ -56,7 +56,7 @@ class StraightElements:
     @cached_property
     def A(self) -> Array:
         """Contribution of every element to A, (local, local)."""
-        each = np.eye(COMPONENTS)
+        each = np.eye(PLANE_COMPONENTS)
         block = np.ix_(self.components, self.components)
         material = self.form.rod.material
         E = material.rest[:, None]
@@ -89,21 +89,21 @@ class StraightElements:
 
     def times_A(self, x: Values) -> Values:
         """Product A x, (unknowns,)."""
-        return self.assembled(self.gathered(x) @ self.A.T)
+        return self.assemble(self.gather(x) @ self.A.T)
 
     def times_M(self, x: Values) -> Values:
         """Product M x, (unknowns,)."""
-        return self.assembled(self.gathered(x) * self.M)
+        return self.assemble(self.gather(x) * self.M)
 
     def size_of_product(self, p: Values, q: Values) -> float:
         """|p| |A| |q|, with the moduli of all entries: p A q has a rounding error relative to this number."""
-        return float(np.sum(np.abs(self.gathered(p)) * (np.abs(self.gathered(q)) @ np.abs(self.A).T)))
+        return float(np.sum(np.abs(self.gather(p)) * (np.abs(self.gather(q)) @ np.abs(self.A).T)))
 
-    def gathered(self, x: Values) -> Values:
+    def gather(self, x: Values) -> Values:
         """Entries of a vector x, (unknowns,), for each element, (elements, local)."""
         return np.append(x, 0)[self.numbering.unknowns]
 
-    def assembled(self, parts: Values) -> Values:
+    def assemble(self, parts: Values) -> Values:
         """Sum of the contributions of all elements, (elements, local), as a vector (unknowns,)."""
         x = np.zeros(self.form.unknowns + 1, parts.dtype)
         np.add.at(x, self.numbering.unknowns, parts)
@@ -122,7 +122,7 @@ class StraightElements:
         whole = np.zeros((len(exists), len(exists)), complex)
         for element in numbering.between:
             whole[np.ix_(element, element)] += condensed
-        between = factorised(whole[np.ix_(exists, exists)])
+        between = lu_factorisation(whole[np.ix_(exists, exists)])
         return ElementFactors(elements=self, K=K, inside=inside, between=between)
 
 
@@ -149,11 +149,11 @@ class _InteriorElimination:
         """The elimination of the interior unknowns from an element matrix K, (local, local)."""
         inside = numbering.inside
         ends = numbering.ends
-        factors = factorised(K[np.ix_(inside, inside)])
+        factors = lu_factorisation(K[np.ix_(inside, inside)])
         leaving = K[np.ix_(inside, ends)]
         entering = K[np.ix_(ends, inside)]
-        right = solved_with(factors, leaving)
-        left = solved_with(factors, entering.conj().T, adjoint=True)
+        right = solve_factorised(factors, leaving)
+        left = solve_factorised(factors, entering.conj().T, adjoint=True)
         return cls(factors=factors, leaving=leaving, entering=entering, right=right, left=left)
 
     def coupling(self, adjoint: bool) -> tuple[Complex, Complex]:
@@ -185,7 +185,7 @@ class ElementFactors:
         if self.inside is None:
             return x
         rows = self.K.conj() if adjoint else self.K.T
-        return x + self._eliminated(b - elements.assembled(elements.gathered(x) @ rows), adjoint)
+        return x + self._eliminated(b - elements.assemble(elements.gather(x) @ rows), adjoint)
 
     def _eliminated(self, b: Values, adjoint: bool) -> Complex:
         numbering = self.elements.numbering
@@ -199,22 +199,22 @@ class ElementFactors:
         right[numbering.between] = b[ends]
         if inside is not None:
             to_ends, from_ends = inside.coupling(adjoint)
-            alone = solved_with(inside.factors, b[within].T, adjoint).T
+            alone = solve_factorised(inside.factors, b[within].T, adjoint).T
             np.subtract.at(right, numbering.between, alone @ to_ends.T)
-        between[numbering.exists] = solved_with(self.between, right[numbering.exists], adjoint)
+        between[numbering.exists] = solve_factorised(self.between, right[numbering.exists], adjoint)
         x[ends] = between[numbering.between]
         if inside is not None:
             x[within] = alone - between[numbering.between] @ from_ends.T
         return x[:-1]
 
 
-def factorised(K: Complex) -> LU:
+def lu_factorisation(K: Complex) -> LU:
     """LU factorisation of K, (n, n), with partial pivoting; solutions with a singular K are inf or nan."""
     factors, pivots, _ = zgetrf(K)
     return factors, pivots
 
 
-def solved_with(factors: LU, right: Values, adjoint: bool = False) -> Complex:
+def solve_factorised(factors: LU, right: Values, adjoint: bool = False) -> Complex:
     """The solution x of K x = right, or of K^H x = right if `adjoint`, from the factors of K; right: (n,) or
     (n, m).
     """
@@ -222,7 +222,7 @@ def solved_with(factors: LU, right: Values, adjoint: bool = False) -> Complex:
     return x
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def _weighted_derivative(order: int) -> tuple[Array, Array]:
     """(W D, W) on the element [-1, 1], (order + 1, order + 1) and (order + 1,); W D is the same for every
     length.

@@ -16,7 +16,7 @@ from ..nodal_rod import NodalRod
 
 
 @dataclass(frozen=True)
-class ChangeWithForce:
+class ForceDerivatives:
     """Derivatives by the force F of the stretch nu of the straight rod, (nodes + 1,), and of the tangent,
     (3, nodes + 1).
     """
@@ -36,7 +36,7 @@ class LawAtRest:
 
     nonlinear: bool
     tangent: Array
-    change: ChangeWithForce
+    change: ForceDerivatives
     N11: Array
     N33: Array
     M13: Array
@@ -75,7 +75,7 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
     # The force compresses the arm at rest: d nu/dF = -c1/(dN/dS1).
     moved = -c1 / stiffness
     ones = np.ones_like(nu)
-    change = ChangeWithForce(moved, np.array([slope * moved, 0 * ones, bending_slope * moved]))
+    change = ForceDerivatives(moved, np.array([slope * moved, 0 * ones, bending_slope * moved]))
     found = LawAtRest(
         nonlinear=law is not LINEAR,
         tangent=np.array([stiffness, ones, bending]),
@@ -121,12 +121,12 @@ def _fill_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> None:
     found.M333[at] = third[:, 1, 1, 1, 1]
 
 
-Derivatives = tuple[Array, Array, Array]
+LawDerivatives = tuple[Array, Array, Array]
 """First, second and third derivatives of two functions of two variables: (..., 2, 2), (..., 2, 2, 2),
 (..., 2, 2, 2, 2). The index after the leading axes is the function; the others are the variables."""
 
 
-def stress_at_rest(law: Law, sides: Array) -> Derivatives:
+def stress_at_rest(law: Law, sides: Array) -> LawDerivatives:
     """Derivatives of N and M at rest by the mean unknowns q1 and q3, at k jumps; sides: (k, 2, 7).
 
     On each side the unknowns are functions of N and M, and so is their mean. N and M are the inverse
@@ -138,7 +138,7 @@ def stress_at_rest(law: Law, sides: Array) -> Derivatives:
     return inverse_derivatives((mean[0], mean[1], mean[2]))
 
 
-def _on_sides(law: Law, nu: Array, c1: Array, c3: Array) -> Derivatives:
+def _on_sides(law: Law, nu: Array, c1: Array, c3: Array) -> LawDerivatives:
     """Derivatives of N and M by q1 and q3 at rest, on each side of a jump; nu, c1, c3: of any equal shape."""
     first, second, third = (np.zeros((*nu.shape, *(2,) * order)) for order in (2, 3, 4))
     first[..., 0, 0] = law.stiffness(nu)
@@ -155,7 +155,7 @@ def _on_sides(law: Law, nu: Array, c1: Array, c3: Array) -> Derivatives:
     return first, second, third
 
 
-def inverse_derivatives(of: Derivatives) -> Derivatives:
+def inverse_derivatives(of: LawDerivatives) -> LawDerivatives:
     """Derivatives of the inverse function g of f, from those of f: f(g(y)) = y is differentiated three
     times."""
     f1, f2, f3 = of

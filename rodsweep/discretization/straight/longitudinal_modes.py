@@ -31,17 +31,17 @@ from .arm_resolution import arm_elements
 class LongitudinalSettings:
     """Settings for the mesh of longitudinal modes, and for errors from two orders of its elements."""
 
-    first_accuracy: float = 1e-12
+    mesh_accuracy: float = 1e-12
     """Relative accuracy for which the first mesh is chosen."""
-    more_orders: int = 4
+    order_increase: int = 4
     """Increase of the order of the elements whose eigenvalues are compared with those of the order before."""
     max_order: int = 60
     """Maximum order of an element; the error at this order is returned even if it is large."""
-    converged: float = 1e-13
+    converged_difference: float = 1e-13
     """Relative difference between the eigenvalues of two orders at which the order is no longer increased."""
     rounding: float = 5e-14
     """Relative rounding error of an eigenvalue, added to the difference between two orders."""
-    more_points: int = 6
+    extra_points: int = 6
     """Number of quadrature points of an element for displacements, minus the number for strains."""
 
 
@@ -55,15 +55,15 @@ def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
     """
     if not rod.c1 > 0:
         raise ValueError("an inextensible rod (k1 = inf) has no longitudinal modes")
-    mesh = arm_elements(rod, np.pi * modes, LONGITUDINAL_MODES.first_accuracy)
+    mesh = arm_elements(rod, np.pi * modes, LONGITUDINAL_MODES.mesh_accuracy)
     order = max(mesh.order, -(-(modes + 1) // mesh.elements))
     found = _rates(rod, mesh, order, modes)
     while True:
-        order += LONGITUDINAL_MODES.more_orders
+        order += LONGITUDINAL_MODES.order_increase
         # No a-priori bound of the error holds for every profile, so a second order shows it.
         finer = _rates(rod, mesh, order, modes)
         error = np.abs(finer / found - 1)
-        if error.max() <= LONGITUDINAL_MODES.converged or order >= LONGITUDINAL_MODES.max_order:
+        if error.max() <= LONGITUDINAL_MODES.converged_difference or order >= LONGITUDINAL_MODES.max_order:
             return finer, error + LONGITUDINAL_MODES.rounding
         found = finer
 
@@ -80,7 +80,7 @@ def _displacements(rod: Rod, edges: Array, order: int) -> Array:
     (elements + 1,).
     """
     strains, of_strains = gauss(order)
-    points, weights = gauss(order + LONGITUDINAL_MODES.more_points)
+    points, weights = gauss(order + LONGITUDINAL_MODES.extra_points)
     halves = np.diff(edges)[:, None] / 2
     middles = (edges[1:] + edges[:-1])[:, None] / 2
     here, there = (rod.sections((middles + halves * x).ravel()) for x in (strains, points))

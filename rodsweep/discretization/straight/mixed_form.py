@@ -30,7 +30,7 @@ from ...model.rod import Rod
 from ..arm_on_mesh import jumps_on, material_on
 from ..elements.mesh import Mesh, reconstruction
 from ..nodal_rod import NodalRod, nodal_rod
-from ..state_layout import COMPONENTS, StateLayout, plane_layout
+from ..state_layout import PLANE_COMPONENTS, StateLayout, plane_layout
 from .law_at_rest import LawAtRest, law_at_rest
 
 MIRROR_SIGNS = np.array([1.0, -1.0, -1.0])
@@ -52,7 +52,7 @@ class MixedForm:
     @cached_property
     def layout(self) -> StateLayout:
         """Indices of the fields in X; all components of V are unknowns."""
-        return plane_layout(self.mesh.nodes, tuple(range(COMPONENTS)))
+        return plane_layout(self.mesh.nodes, tuple(range(PLANE_COMPONENTS)))
 
     @property
     def stresses(self) -> int:
@@ -66,9 +66,9 @@ class MixedForm:
     @cached_property
     def nodal(self) -> NodalRod:
         """The rod at all nodes: compliance, drag, strain at rest, and stress of the tip."""
-        kept = tuple(range(COMPONENTS))
+        unknown_velocities = tuple(range(PLANE_COMPONENTS))
         jumps = jumps_on(self.rod, self.mesh)
-        return nodal_rod(material_on(self.rod, self.mesh), self.mesh, kept, jumps=jumps)
+        return nodal_rod(material_on(self.rod, self.mesh), self.mesh, unknown_velocities, jumps=jumps)
 
     @cached_property
     def law(self) -> LawAtRest:
@@ -96,7 +96,7 @@ class MixedForm:
         stresses = slice(self.stresses)
         velocities = slice(self.stresses, None)
         WD = -self.mesh.matrices.weak.T
-        each = np.eye(COMPONENTS)
+        each = np.eye(PLANE_COMPONENTS)
         A = self._coupling()
         A[stresses, velocities] -= np.kron(each, WD.T[:N])
         A[velocities, stresses] += np.kron(each, WD[:, :N]) * self.law.tangent[:, :N].ravel()
@@ -125,7 +125,7 @@ class MixedForm:
         """
         W = self.mesh.quadrature[:-1]
         c = self.nodal.compliance[:, :-1]
-        return self.layout.row(
+        return self.layout.vector(
             {"n2": c[1] * W, "m3": c[2] * integral_to_tip(self.mesh, self.nodal.rest[0])[:-1] * W}
         )
 
@@ -188,13 +188,13 @@ class MixedForm:
         """
         N = self.mesh.nodes
         W = self.mesh.quadrature[:-1]
-        each = np.eye(COMPONENTS)[:, :, None]
+        each = np.eye(PLANE_COMPONENTS)[:, :, None]
         E = self.nodal.rest[:, None, :N]
         C = self.nodal.compliance[:, None, :N]
         T = self.law.tangent[:, None, :N]
         Sigma = self.nodal.tip_stress[:, None, None]
-        s = np.arange(self.stresses).reshape(COMPONENTS, N)
-        v = np.arange(self.stresses, self.unknowns).reshape(COMPONENTS, N + 1)[:, :N]
+        s = np.arange(self.stresses).reshape(PLANE_COMPONENTS, N)
+        v = np.arange(self.stresses, self.unknowns).reshape(PLANE_COMPONENTS, N + 1)[:, :N]
         matrix = np.zeros((self.unknowns, self.unknowns))
         # The tip contributes nothing: s = 0, and E enters only the equation of S(1), which is not solved.
         matrix[s[:, None], v[None]] = W * ad(E, each)
@@ -206,7 +206,7 @@ class MixedForm:
 
 def axial_field(values: Array) -> Array:
     """The field with components (values, 0, 0), (3, nodes + 1); values: (nodes + 1,)."""
-    field = np.zeros((COMPONENTS, len(values)))
+    field = np.zeros((PLANE_COMPONENTS, len(values)))
     field[0] = values
     return field
 

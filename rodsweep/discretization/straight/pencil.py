@@ -41,9 +41,9 @@ class PencilNormSettings(CompiledSettings):
     shear_weight: float = 1e-9
     """Weight of s in the norm. Eigenvalues of nearly crushed rods lose seven digits at a weight of 1e-3, none
     below 1e-8."""
-    least_angle_weight: float = 1e-4
+    min_angle_weight: float = 1e-4
     """Least weight of theta in the norm, for gamma3 -> 0, where theta has no time derivative."""
-    no_tip: float = 1e-10
+    min_tip_displacement: float = 1e-10
     """Smallest |y(1)|, in units of the largest |y| or |theta| of a mode, at which the mode is normalised to
     y(1) = 1."""
 
@@ -124,7 +124,7 @@ def finite_eigenvalues(rod: Rod, nodes: int) -> int:
     return nodes if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * nodes
 
 
-def fields_of(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
+def fields_of_vectors(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
     """(y, theta) at all nodes, clamp included, (nodes + 1, k) each, of k eigenvectors, (unknowns, k).
 
     scale: factors from unknowns to y and theta at the nodes, (2, nodes).
@@ -136,14 +136,14 @@ def fields_of(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
 
 
 def angle_weight(gamma3: float) -> float:
-    """Weight of theta in the norm: sqrt(gamma3), at least `PENCIL_NORM.least_angle_weight`."""
-    return max(sqrt(gamma3), PENCIL_NORM.least_angle_weight)
+    """Weight of theta in the norm: sqrt(gamma3), at least `PENCIL_NORM.min_angle_weight`."""
+    return max(sqrt(gamma3), PENCIL_NORM.min_angle_weight)
 
 
 def tip_scale(y: Complex, theta: Complex) -> Complex:
     """Factors, (k,), that normalise k modes, (nodes + 1, k), to y(1) = 1; NaN for a mode whose y(1) is 0."""
     size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
-    return np.where(np.abs(y[-1]) > PENCIL_NORM.no_tip * size, 1 / y[-1], np.nan + 0j)
+    return np.where(np.abs(y[-1]) > PENCIL_NORM.min_tip_displacement * size, 1 / y[-1], np.nan + 0j)
 
 
 def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
@@ -170,8 +170,8 @@ def derivatives_at(mesh: Elements, values: Complex, points: Array) -> Complex:
     return result
 
 
-@lru_cache(maxsize=ELEMENTS.pencils_kept)
-def assemble(elements: int, order: int) -> Pencil:
+@lru_cache(maxsize=ELEMENTS.max_pencils)
+def assemble_pencil(elements: int, order: int) -> Pencil:
     """The pencil on `elements` equal elements of order `order`."""
     n = elements * order
     h = 1 / elements

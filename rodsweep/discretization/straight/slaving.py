@@ -22,32 +22,32 @@ from ..elements.quadrature import gauss, gauss_lobatto
 class SlavingSettings:
     """Settings for the elements that resolve the tip layer."""
 
-    longest: float = 4.0
+    max_length: float = 4.0
     """Longest element next to the tip, in units of the layer's thickness; elements away from the tip may be
     longer."""
-    max_equal: int = 64
+    max_equal_elements: int = 64
     """Maximum number of equal elements; a thinner layer also has elements that get shorter towards the
     tip."""
-    samples: int = 33
+    samples_per_piece: int = 33
     """Number of samples of each interval between breaks of an arm, from which the thickness of the layer is
     estimated."""
 
 
 SLAVING = SlavingSettings()
-ORDER = 16
-"""Order of the elements. It resolves exp(kappa u) over `SLAVING.longest`/kappa to rounding, because T is
+TIP_LAYER_ORDER = 16
+"""Order of the elements. It resolves exp(kappa u) over `SLAVING.max_length`/kappa to rounding, because T is
 returned without an error. Order 8 would cause an error of 4e-11 of a numerical abscissa."""
 
 
-def slaving_of(rod: Rod) -> float:
+def tip_layer_ratio(rod: Rod) -> float:
     """T = d(1)/m(1) of a rod without rotational drag; 0 for a rod with rotational drag or without shear."""
     if rod.rotational_drag > 0 or rod.c2 == 0:
         return 0.0
     if rod.standard:
         return slaving_layer(rod)
     edges = _edges(rod)
-    x, _ = gauss_lobatto(ORDER)
-    points, weights = gauss(ORDER + 2)
+    x, _ = gauss_lobatto(TIP_LAYER_ORDER)
+    points, weights = gauss(TIP_LAYER_ORDER + 2)
     value = interpolation(x, points)
     slope = value @ differentiation(x)
     lengths = np.diff(edges)
@@ -83,11 +83,11 @@ def _edges(rod: Rod) -> Array:
     """
     breaks = rod.build.breaks
     pieces = zip(breaks, breaks[1:], strict=False)
-    middles = np.concatenate([np.linspace(a, b, SLAVING.samples + 2)[1:-1] for a, b in pieces])
+    middles = np.concatenate([np.linspace(a, b, SLAVING.samples_per_piece + 2)[1:-1] for a, b in pieces])
     local = rod.local(middles)
     waves = sqrt(float(np.abs(local.g * local.nu / local.c2 * local.c3).max()))
-    count = min(max(1, ceil(waves / SLAVING.longest)), SLAVING.max_equal)
+    count = min(max(1, ceil(waves / SLAVING.max_length)), SLAVING.max_equal_elements)
     equal = np.linspace(0.0, 1.0, count + 1)
-    halvings = max(0, ceil(np.log2(max(waves / SLAVING.longest / count, 1.0))))
+    halvings = max(0, ceil(np.log2(max(waves / SLAVING.max_length / count, 1.0))))
     towards_tip = 1 - 0.5 ** np.arange(1, halvings + 1) / count
     return np.unique(np.concatenate([breaks, equal, towards_tip]))

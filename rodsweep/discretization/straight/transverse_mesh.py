@@ -8,11 +8,11 @@ from functools import lru_cache
 
 from ...model.rod import Rod
 from ..elements.elements import ELEMENTS
-from ..elements.resolution import Resolution, finer, resolution_for
+from ..elements.resolution import Resolution, finer_resolution, resolution_for
 from .arm_pencil import ArmPencil
 from .arm_resolution import ArmMesh, arm_elements, finer_arm_mesh
 from .dense_form import AnyPencil
-from .pencil import assemble
+from .pencil import assemble_pencil
 
 AnyMesh = Resolution | ArmMesh
 """Mesh of the transverse eigenproblem of a uniform rod or of an arm."""
@@ -28,14 +28,14 @@ def mesh_for(rod: Rod, wave_number: float, accuracy: float) -> AnyMesh:
 
 def finer_mesh(rod: Rod, mesh: AnyMesh) -> AnyMesh:
     """The next finer mesh after `mesh`."""
-    return finer(mesh) if isinstance(mesh, Resolution) else finer_arm_mesh(rod, mesh)
+    return finer_resolution(mesh) if isinstance(mesh, Resolution) else finer_arm_mesh(rod, mesh)
 
 
 def pencil_on(mesh: AnyMesh) -> AnyPencil:
     """The pencil of the transverse eigenproblem on a mesh, cached for later rods on equal meshes."""
-    return assemble(mesh.elements, mesh.order) if isinstance(mesh, Resolution) else _arm_pencil(mesh)
+    return assemble_pencil(mesh.elements, mesh.order) if isinstance(mesh, Resolution) else _arm_pencil(mesh)
 
 
-@lru_cache(maxsize=ELEMENTS.pencils_kept)
+@lru_cache(maxsize=ELEMENTS.max_pencils)
 def _arm_pencil(mesh: ArmMesh) -> ArmPencil:
     return ArmPencil(mesh)

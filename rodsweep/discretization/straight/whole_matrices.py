@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...model.balance import Values
-from ..state_layout import COMPONENTS
-from .elements import LU, StraightElements, factorised, solved_with
+from ..state_layout import PLANE_COMPONENTS
+from .elements import LU, StraightElements, lu_factorisation, solve_factorised
 from .mixed_form import MixedForm
 
 
@@ -31,7 +31,7 @@ class WholeMatrices:
     def places(self) -> NDArray[np.int_]:
         """Indices in a state of the unknowns of the given components, (places,)."""
         size = self.form.mesh.nodes + 1
-        marks = np.isin(np.arange(COMPONENTS), self.components)[:, None] * np.ones(size)
+        marks = np.isin(np.arange(PLANE_COMPONENTS), self.components)[:, None] * np.ones(size)
         return np.flatnonzero(self.form.layout.state(marks, marks))
 
     @cached_property
@@ -58,7 +58,7 @@ class WholeMatrices:
 
     def factors(self, shift: complex) -> "WholeFactors":
         """LU factorisation of A - shift M."""
-        return WholeFactors(self, factorised(self.A - np.diag(shift * self.M).astype(complex)))
+        return WholeFactors(self, lu_factorisation(self.A - np.diag(shift * self.M).astype(complex)))
 
     def _spread(self, values: Values) -> Values:
         """A state, (unknowns,), with `values`, (places,), in the given components and 0 in all others."""
@@ -77,7 +77,7 @@ class WholeFactors:
     def solve(self, b: Values, adjoint: bool = False) -> Complex:
         """The solution x of K x = b, or of K^H x = b if `adjoint`; both (unknowns,)."""
         matrices = self.matrices
-        x: Complex = matrices._spread(solved_with(self.factors, b[matrices.places], adjoint))
+        x: Complex = matrices._spread(solve_factorised(self.factors, b[matrices.places], adjoint))
         return x
 
 

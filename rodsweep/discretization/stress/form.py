@@ -13,14 +13,14 @@ from ..arm_on_mesh import jump_change_on, material_change_on
 from ..elements.mesh import Mesh, transfer
 from ..nodal_rod import NodalChange, NodalRod, nodal_change
 from ..rod_on_mesh import RodOnMesh
-from ..state_layout import COMPONENTS, plane_layout
+from ..state_layout import PLANE_COMPONENTS, plane_layout
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StressFormSettings:
     """Settings for the choice of the unknowns of a `StressForm`."""
 
-    least_eliminated_drag: float = 1e-5
+    min_eliminated_drag: float = 1e-5
     """Rotational drag from which on the angular velocity Omega is eliminated; with a smaller drag Omega is an
     unknown. Division by a smaller drag costs Floquet multipliers their digits (errors of 2e-9 at 1e-6, of
     2e-7 at 1e-8), and cycles of soft rods are not found. Omega as an unknown takes 2.4 times as long."""
@@ -44,10 +44,10 @@ class StressForm(RodOnMesh):
     @property
     def omega_unknown(self) -> bool:
         """Whether the angular velocity Omega is among the unknowns."""
-        return self.rod.least_rotational_drag < STRESS_FORM.least_eliminated_drag
+        return self.rod.least_rotational_drag < STRESS_FORM.min_eliminated_drag
 
     @property
-    def kept(self) -> tuple[int, ...]:
+    def unknown_velocities(self) -> tuple[int, ...]:
         return OMEGA_COMPONENT if self.omega_unknown else ()
 
     def stresses(self, x: Array) -> Array:
@@ -57,11 +57,11 @@ class StressForm(RodOnMesh):
         """States x interpolated to the mesh `grid`, (..., unknowns on grid)."""
         E = transfer(self.mesh, grid)
         if self.smooth_stresses:
-            return self.layout.carried(x, E)
-        layout = plane_layout(grid.nodes, self.kept)
+            return self.layout.interpolate(x, E)
+        layout = plane_layout(grid.nodes, self.unknown_velocities)
         # Velocities are continuous also where stresses jump, so they are interpolated as they are.
-        V = np.zeros((COMPONENTS, *x.shape[:-1], grid.nodes + 1))
-        V[list(self.kept)] = self.layout.velocities(x) @ E.T
+        V = np.zeros((PLANE_COMPONENTS, *x.shape[:-1], grid.nodes + 1))
+        V[list(self.unknown_velocities)] = self.layout.velocities(x) @ E.T
         return layout.state(self.stresses_on(grid, x), V)
 
     def change(self, name: str) -> NodalChange:

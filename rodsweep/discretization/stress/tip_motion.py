@@ -30,7 +30,7 @@ class TipMatrices(NamedTuple):
     lengths: Array
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def tip_matrices(grid: Elements) -> TipMatrices:
     """The `TipMatrices` of a mesh, cached."""
     m = reconstruction(grid.order)

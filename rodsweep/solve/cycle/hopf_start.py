@@ -12,7 +12,7 @@ from math import isfinite, isnan
 import numpy as np
 
 from ...determinant.parameter_path import Path
-from ...discretization.at_jumps import carried_stress
+from ...discretization.at_jumps import interpolate_stress
 from ...discretization.elements.mesh import transfer
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
@@ -233,5 +233,7 @@ def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, f
     S, V = normal.form.fields(X)
     source = normal.form.mesh
     target = form.mesh
-    states = form.layout.state(carried_stress(form.rod, S, source, target), V @ transfer(source, target).T)
+    states = form.layout.state(
+        interpolate_stress(form.rod, S, source, target), V @ transfer(source, target).T
+    )
     return Orbit.of(form, REFLECTION, 2 * np.pi / frequency, states, HOPF_START.stages)

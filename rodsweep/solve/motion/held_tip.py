@@ -96,7 +96,7 @@ class _Bending:
 
     def state(self, Pi: Array) -> Array:
         """The state z, (unknowns,), for curvatures at all nodes, (nodes + 1,)."""
-        return self._beam.unknown(np.stack([self.h1, self.h2, Pi]))
+        return self._beam.state_of_strains(np.stack([self.h1, self.h2, Pi]))
 
     def placed(self, Pi: Array, force: Array, place: Array) -> tuple[Array, Array] | None:
         """(curvatures, (nodes + 1,); force, (2,)) with the tip at a place, (2,); None where Newton fails."""

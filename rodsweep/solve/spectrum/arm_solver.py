@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from ...arrays import Complex
 from ...discretization.straight.arm_pencil import ArmPencil
 from ...discretization.straight.arm_resolution import ArmMesh
-from ...discretization.straight.pencil import Matrices, fields_of, finite_eigenvalues
+from ...discretization.straight.pencil import Matrices, fields_of_vectors, finite_eigenvalues
 from ...model.rod import Rod
 from ..backend.kept import LruPool
 from .shift_invert import KRYLOV, LoadedPencil, ShiftInvertSolver
@@ -44,7 +44,7 @@ class ArmSolver(ShiftInvertSolver):
         """(y, theta) at all nodes, (nodes + 1, k) each, from eigenvectors of the last solved arm,
         (unknowns, k).
         """
-        return fields_of(vectors, self.matrices.scale)
+        return fields_of_vectors(vectors, self.matrices.scale)
 
 
 _kept = LruPool(ArmSolver, KRYLOV.max_arm_solvers)

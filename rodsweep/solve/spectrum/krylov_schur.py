@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...discretization.elements.resolution import Resolution
-from ...discretization.straight.pencil import Pencil, assemble, fields_of, finite_eigenvalues
+from ...discretization.straight.pencil import Pencil, assemble_pencil, fields_of_vectors, finite_eigenvalues
 from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
 from ..backend.kept import LruPool
@@ -30,7 +30,7 @@ class EigenSolver(ShiftInvertSolver):
     """Krylov-Schur for all uniform rods on one mesh of equal elements."""
 
     def __init__(self, resolution: Resolution):
-        self.pencil: Pencil = assemble(resolution.elements, resolution.order)
+        self.pencil: Pencil = assemble_pencil(resolution.elements, resolution.order)
         super().__init__(self.pencil, self.pencil.mass)
         if self.dense:
             self.pieces = self.pencil.dense_pieces()
@@ -59,7 +59,7 @@ class EigenSolver(ShiftInvertSolver):
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
         """(y, theta) at all nodes, (nodes + 1, k) each, from eigenvectors of the last solve, (unknowns,
         k)."""
-        return fields_of(vectors, self.pencil.scale(rod))
+        return fields_of_vectors(vectors, self.pencil.scale(rod))
 
 
 def _as_filament(rod: Rod) -> tuple[Rod, float]:

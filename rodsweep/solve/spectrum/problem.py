@@ -22,7 +22,12 @@ from ...determinant.arm.roots import roots as roots_of_arm
 from ...determinant.certificate.box import squared_amplification
 from ...determinant.certificate.winding_number import Count, count_right_of
 from ...determinant.roots.roots import Roots, roots
-from ...discretization.elements.resolution import Resolution, expected_wave_number, finer, resolution_for
+from ...discretization.elements.resolution import (
+    Resolution,
+    expected_wave_number,
+    finer_resolution,
+    resolution_for,
+)
 from ...discretization.straight.arm_resolution import ArmMesh, arm_mesh, finer_arm_mesh
 from ...discretization.straight.transverse_mesh import AnyMesh, finer_mesh
 from ...model.dispersion import local_growth, most_amplified_wave
@@ -111,7 +116,7 @@ class UniformProblem(TransverseProblem):
         finer mesh.
         """
         asked = resolution_for(float(waves.max()), accuracy)
-        return max(asked, finer(mesh), key=lambda each: each.unknowns)
+        return max(asked, finer_resolution(mesh), key=lambda each: each.unknowns)
 
     def roots(self, raw: Complex, most_waves: float) -> Roots:
         """Roots of D refined from the eigenvalues `raw` of a mesh, (n,)."""
@@ -135,7 +140,7 @@ class ArmProblem(TransverseProblem):
         self._hull = hull_of(rod)
         self._determinant = arm_determinant(rod)
         self.bounded = isfinite(self._hull.a)
-        self.spare = COMPLETENESS.spare if to_prove and self.bounded else 0
+        self.spare = COMPLETENESS.spare_eigenvalues if to_prove and self.bounded else 0
         growth, _ = local_growth(rod)
         self.shift = KRYLOV.shift_above_growth * float(growth.max())
 

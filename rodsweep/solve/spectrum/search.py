@@ -91,7 +91,7 @@ class Search:
     def outcome(self) -> Spectrum:
         """The spectrum, from attempts on meshes until the candidates are accepted or improve no more."""
         for turn in range(SEARCH.max_meshes):
-            if self.mesh.unknowns > RESOLUTION.most_unknowns or self.failures > SEARCH.max_failures:
+            if self.mesh.unknowns > RESOLUTION.max_unknowns or self.failures > SEARCH.max_failures:
                 break
             tight = self.with_vectors or turn > 0
             found = candidates_on(self.problem, self.mesh, self.wanted, self.with_vectors, tight)
@@ -184,7 +184,7 @@ class Search:
         number."""
         while (
             wanted > self.mesh.unknowns // SEARCH.min_unknowns_per_mode
-            and self.mesh.unknowns <= RESOLUTION.most_unknowns
+            and self.mesh.unknowns <= RESOLUTION.max_unknowns
         ):
             self.mesh = self.problem.finer(self.mesh)
         self.wanted = wanted

@@ -71,7 +71,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
     best: Spectrum | None = None
     for _ in range(TWO_MESHES.max_finer_meshes):
         mesh = problem.finer(mesh)
-        if mesh.unknowns > RESOLUTION.most_unknowns:
+        if mesh.unknowns > RESOLUTION.max_unknowns:
             break
         found = _leading(problem, mesh, modes)
         if len(found.w) >= modes and len(before.w):

@@ -10,7 +10,7 @@ from reference.displaced_segments import Segments
 from reference.strain_collocation import Arm, Law
 from surveyed import survey_only
 
-from rodsweep.discretization.at_jumps import carried_stress, stresses_beside_jumps
+from rodsweep.discretization.at_jumps import interpolate_stress, stresses_beside_jumps
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh_on
 from rodsweep.discretization.plane import balance, balance_change
@@ -296,7 +296,7 @@ def test_fields_with_a_jump_are_carried_to_other_meshes():
             for component, share in ((0, 3), (2, 4)):
                 S[component, node] = sides[:, share] @ [before(u[node]), behind(u[node])]
             fields.append(S)
-        errors.append(np.abs(carried_stress(rod, fields[0], source.mesh, target.mesh) - fields[1]).max())
+        errors.append(np.abs(interpolate_stress(rod, fields[0], source.mesh, target.mesh) - fields[1]).max())
     assert errors[0] < 1e-2
     assert errors[1] < 1e-7
 

@@ -40,7 +40,7 @@ def bent(beam, size=1.0):
     u = beam.mesh.positions
     E = beam.strains(np.zeros(beam.layout.unknowns))
     wave = np.array([0.01 * np.cos(3 * u), 0.3 * np.sin(2 * u + 1), 2 * np.cos(4 * u)])
-    return beam.unknown(E + size * (1 - u) * wave)
+    return beam.state_of_strains(E + size * (1 - u) * wave)
 
 
 def rough(beam):

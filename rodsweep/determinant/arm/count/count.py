@@ -72,10 +72,10 @@ def count_right_of(
         return Count(None, 0, "no a-priori bound on the eigenvalues applies")
     if line >= hull.box(max(-line, 0.0))[0]:
         return Count(0, 0)
-    known = known[error < ARM_COUNT.sharp * np.abs(known.real - line)]
+    known = known[error < ARM_COUNT.max_known_error * np.abs(known.real - line)]
     known = known[has_conjugate(known)]
     height = np.maximum(np.abs(known.imag), abs(line))
-    known = known[np.abs(known.real - line) < ARM_COUNT.close_to_line * height]
+    known = known[np.abs(known.real - line) < ARM_COUNT.max_known_distance * height]
     try:
         total, nodes = _phase_change(line, determinant, hull, known)
     except PhaseLost as lost:
@@ -95,7 +95,7 @@ def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
     if not math.isfinite(hull.a):
         return False
     try:
-        determinant.level(abs(_corner(0.0, hull)), ARM_COUNT.highest)
+        determinant.level(abs(_corner(0.0, hull)), ARM_COUNT.max_level_ratio)
     except FloatingPointError:
         return False
     return True
@@ -124,7 +124,7 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # Elements for the largest |w| first: they serve most others.
     largest = largest_w_of_count(line, determinant, hull)
-    level = determinant.level(largest, ARM_COUNT.highest)
+    level = determinant.level(largest, ARM_COUNT.max_level_ratio)
     samples = determinant.samples, determinant.gauss_samples
     unit = determinant.length(corners[0])
     trial = unit, min(ARM_COUNT.first_radius * unit, level[0] - abs(corners[0]))
@@ -136,7 +136,7 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
             break
         if walk.needed == math.inf:
             raise PhaseLost(walk.nodes)
-        level = determinant.level(walk.needed, ARM_COUNT.highest)
+        level = determinant.level(walk.needed, ARM_COUNT.max_level_ratio)
     return walk.total, walk.nodes
 
 
@@ -163,7 +163,7 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
         if t == length:
             side, t, growth = side + 1, 0.0, 0.0
             continue
-        if not here.reach > ARM_COUNT.smallest_reach * abs(here.w) or nodes > ARM_COUNT.max_nodes:
+        if not here.reach > ARM_COUNT.min_reach * abs(here.w) or nodes > ARM_COUNT.max_nodes:
             return BoxWalk(side, t, total, nodes, here, growth, ahead, math.inf)
         if ahead == 0:
             ahead = min(_stride(here.reach, growth), length - t)
@@ -171,10 +171,10 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
         unit = scales_at(w, samples[0])[1]
         first = ARM_COUNT.first_radius * unit
         radius = min(2 * here.radius, ARM_COUNT.largest_radius * unit) if here.radius > 0 else first
-        radius = max(radius, ARM_COUNT.of_height * w.imag)
-        enough = max(first, min(ARM_COUNT.of_height * w.imag, largest - abs(w)))
+        radius = max(radius, ARM_COUNT.max_wave_radius * w.imag)
+        enough = max(first, min(ARM_COUNT.max_wave_radius * w.imag, largest - abs(w)))
         needed = abs(w) + min(radius, enough)
-        if not needed <= level[0] <= ARM_COUNT.highest * max(needed, ARM_ELEMENTS.smallest_level):
+        if not needed <= level[0] <= ARM_COUNT.max_level_ratio * max(needed, ARM_ELEMENTS.smallest_level):
             return BoxWalk(side, t, total, nodes, here, growth, ahead, needed)
         there = phase_node(w, known, (unit, min(radius, level[0] - abs(w))), hull, (samples[1], level))
         nodes += 1
@@ -194,7 +194,7 @@ def _stride(reach: float, growth: float) -> float:
     """Distance of the next node at which the reaches of both nodes just overlap, if the reach grows by
     `growth` per distance.
     """
-    overlap = ARM_COUNT.overlap
+    overlap = ARM_COUNT.reach_overlap
     return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), ARM_COUNT.largest_growth))
 
 
@@ -203,8 +203,8 @@ def _nearer(reach: float, growth: float, ahead: float) -> float:
     """A smaller distance of the next node than `ahead`; repeated calls end within the reach of the present
     node.
     """
-    nearer = min(_stride(reach, growth), ARM_COUNT.closer * ahead)
-    return nearer if nearer > reach else min(ARM_COUNT.within_reach * reach, ahead / 2)
+    nearer = min(_stride(reach, growth), ARM_COUNT.max_step_ratio * ahead)
+    return nearer if nearer > reach else min(ARM_COUNT.safe_step * reach, ahead / 2)
 
 
 @compiled

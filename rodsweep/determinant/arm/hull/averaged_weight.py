@@ -31,13 +31,13 @@ class AveragedWeightSettings(CompiledSettings):
     """Values of the factor f of l in the weight t."""
     half_widths: tuple[float, ...] = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
     """Values of the half-width h of the window, in L."""
-    close: float = 1e-6
+    jump_distance: float = 1e-6
     """Distance of two successive points, in L, below which a jump lies between them."""
-    beside: float = 1e-12
+    point_distance: float = 1e-12
     """Distance, in L, of two points added on both sides of every u at which the slope of alpha jumps."""
 
     @property
-    def trials(self) -> int:
+    def trial_count(self) -> int:
         """Number of trial regions: two for each pair of f and h."""
         return 2 * len(self.factors) * len(self.half_widths)
 
@@ -45,7 +45,7 @@ class AveragedWeightSettings(CompiledSettings):
 AVERAGED_WEIGHT = AveragedWeightSettings()
 
 
-class GridPlaces(NamedTuple):
+class GridPositions(NamedTuple):
     """Positions of n points in a grid: index of the grid interval, (n,), and fraction of its length, (n,)."""
 
     interval: NDArray[np.int64]
@@ -59,7 +59,7 @@ def averaged_regions(u: Array, local: Array, F: float) -> Array:
     u: points of an arm from clamp to tip, (points,), two at a jump. local: `LocalCoefficients` at the points,
     (6, points), with c2 > 0 and g > 0. F: force.
     """
-    regions = np.full((AVERAGED_WEIGHT.trials, 2), math.inf)
+    regions = np.full((AVERAGED_WEIGHT.trial_count, 2), math.inf)
     row = 0
     for h in AVERAGED_WEIGHT.half_widths:
         points = _with_places_beside_jumps(u, h)
@@ -83,9 +83,9 @@ def _with_places_beside_jumps(u: Array, h: float) -> Array:
     count = len(u)
     points[:count] = u
     for i in range(len(u) - 1):
-        if u[i + 1] - u[i] < AVERAGED_WEIGHT.close:
+        if u[i + 1] - u[i] < AVERAGED_WEIGHT.jump_distance:
             for side in (-h, h):
-                for at in (-AVERAGED_WEIGHT.beside, AVERAGED_WEIGHT.beside):
+                for at in (-AVERAGED_WEIGHT.point_distance, AVERAGED_WEIGHT.point_distance):
                     place = (u[i + 1] + u[i]) / 2 + side + at
                     if u[0] < place < u[-1]:
                         points[count] = place
@@ -94,7 +94,7 @@ def _with_places_beside_jumps(u: Array, h: float) -> Array:
 
 
 @compiled
-def _places(x: Array, grid: Array) -> GridPlaces:
+def _places(x: Array, grid: Array) -> GridPositions:
     """Positions of x, (n,), increasing, in the intervals of a grid; values outside the grid get its end."""
     interval = np.empty(len(x), np.int64)
     share = np.empty(len(x))
@@ -105,11 +105,11 @@ def _places(x: Array, grid: Array) -> GridPlaces:
         width = grid[i + 1] - grid[i]
         interval[n] = i
         share[n] = min(max((x[n] - grid[i]) / width, 0.0), 1.0) if width > 0 else 0.0
-    return GridPlaces(interval, share)
+    return GridPositions(interval, share)
 
 
 @compiled
-def _interpolated(places: GridPlaces, values: Array) -> Array:
+def _interpolated(places: GridPositions, values: Array) -> Array:
     """Values at positions in a grid, (n,), interpolated linearly from `values` at the grid points."""
     out = np.empty(len(places.share))
     for n in range(len(out)):
@@ -123,7 +123,7 @@ def _fill(
     regions: Array,
     u: Array,
     local: Array,
-    window: tuple[GridPlaces, GridPlaces],
+    window: tuple[GridPositions, GridPositions],
     trial: tuple[float, float, float],
 ) -> None:
     """Writes the two regions (a, c) of a trial (F, f, h): (t - alpha) nu is bounded by the clamp, and by the
@@ -167,7 +167,7 @@ def _fill(
 
 @compiled
 def _averaged(
-    u: Array, log_t: Array, integral: Array, window: tuple[GridPlaces, GridPlaces], h: float
+    u: Array, log_t: Array, integral: Array, window: tuple[GridPositions, GridPositions], h: float
 ) -> tuple[Array, Array, Array]:
     """(log t at u - h, log t at u + h, 2 h times the mean of log t over [u - h, u + h]), (points,) each.
 

@@ -56,7 +56,7 @@ def hulls_along(rods: Sequence[Rod], places: Array) -> PathHulls:
 
 
 def _hull(arms: "SampledArms") -> Hull:
-    largest = 1 - HULL.least_remainder
+    largest = 1 - HULL.min_remainder
     a, c = _smallest(arms.F, arms.lengths, arms.local, arms.averaged, _chebyshev(), largest)
     return Hull((1 + HULL.margin) * a, c) if isfinite(a) else NO_BOUND
 
@@ -84,13 +84,13 @@ def _arms(rods: Sequence[Rod]) -> SampledArms:
     return SampledArms(F, lengths, local, averaged)
 
 
-@lru_cache(maxsize=HULL.builds_kept)
+@lru_cache(maxsize=HULL.max_builds)
 def _points_of(build: Build) -> tuple[Array, Array]:
     """(lengths of the intervals between breaks, (pieces,); Chebyshev points u in these, (pieces, points))."""
-    x = (1 - 2 * HULL.inside) * _chebyshev().points
+    x = (1 - 2 * HULL.end_distance) * _chebyshev().points
     lengths = np.diff(build.breaks)
     u = build.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
-    return lengths * (1 - 2 * HULL.inside), u
+    return lengths * (1 - 2 * HULL.end_distance), u
 
 
 def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:
@@ -98,10 +98,10 @@ def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:
     everywhere.
     """
     starts = np.cumsum(lengths) - lengths
-    x = (1 - 2 * HULL.inside) * _chebyshev().points
+    x = (1 - 2 * HULL.end_distance) * _chebyshev().points
     u = (starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
     along = local.reshape(6, len(F), -1)
-    regions = np.full((len(F), AVERAGED_WEIGHT.trials, 2), inf)
+    regions = np.full((len(F), AVERAGED_WEIGHT.trial_count, 2), inf)
     for i in np.flatnonzero(((along[5] > 0) & (along[1] > 0)).all(axis=1)).tolist():
         regions[i] = averaged_regions(u, along[:, i], float(F[i]))
     return regions
@@ -180,6 +180,6 @@ def _smaller(best: tuple[float, float], other: tuple[float, float], largest: flo
     """
     if not other[1] < largest:
         return best
-    here = best[0] ** 2 * (1 + (best[1] / HULL.wide) ** 4)
-    there = other[0] ** 2 * (1 + (other[1] / HULL.wide) ** 4)
+    here = best[0] ** 2 * (1 + (best[1] / HULL.wide_c) ** 4)
+    there = other[0] ** 2 * (1 + (other[1] / HULL.wide_c) ** 4)
     return other if there < here else best

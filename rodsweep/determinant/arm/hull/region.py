@@ -19,23 +19,23 @@ class HullSettings(CompiledSettings):
     evaluated and alpha is differentiated."""
     margin: float = 0.05
     """Relative excess of the constants of a hull, for extremes between the points and for rounding."""
-    inside: float = 1e-9
+    end_distance: float = 1e-9
     """Distance of the first and last Chebyshev point from the ends of an interval between breaks, over its
     length, so that no point lies on a jump."""
-    least_remainder: float = 0.1
+    min_remainder: float = 0.1
     """Least 1 - c of a hull; hulls with c closer to 1 are too large to be useful."""
-    wide: float = 0.15
+    wide_c: float = 0.15
     """Value of c at which the measure a^2 (1 + (c/wide)^4), by which the smallest hull is chosen, is twice
     that of c = 0."""
-    weights: int = 41
+    constant_weights: int = 41
     """Number of constant weights alpha tried, from the smallest to the largest |g/nu| along the arm."""
-    least_ratio: float = 1e-3
+    min_weight: float = 1e-3
     """Smallest constant weight alpha tried, if |g/nu| is smaller somewhere."""
-    directions: int = 48
+    supporting_lines: int = 48
     """Number of supporting lines of the hull tried for the distance of a point w from the hull."""
-    builds_kept: int = 16
+    max_builds: int = 16
     """Maximum number of builds whose points are cached: it bounds the memory and changes no number."""
-    middles: tuple[float, ...] = (0.0, 0.5, 1.0)
+    weight_factors: tuple[float, ...] = (0.0, 0.5, 1.0)
     """Factors of |F| sqrt(c2 c3 gamma3/gamma2) in the varying weights alpha that are tried."""
 
 
@@ -80,9 +80,9 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
     b = 1 - c
     best = -inf
     normal = 1 + 0j
-    for k in range(HULL.directions):
+    for k in range(HULL.supporting_lines):
         # Close to the imaginary axis the support function grows without bound.
-        T = (k / (HULL.directions - k)) ** 2
+        T = (k / (HULL.supporting_lines - k)) ** 2
         if not c * T < b:
             break
         size = sqrt(1 + T * T)

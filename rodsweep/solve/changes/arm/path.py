@@ -8,7 +8,7 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....determinant.arm.along_path import ArmAlongPath
-from ....determinant.arm.count.beside_axis import modes_beside_axis
+from ....determinant.arm.count.beside_axis import modes_near_axis
 from ....determinant.arm.determinant import arm_determinant
 from ....determinant.arm.family import ArmFamily, family_of
 from ....determinant.arm.hull.hull import hull_of
@@ -184,7 +184,7 @@ class ArmPath(PathProblem):
         known: some of them, (k,), which come first. Raises FloatingPointError if no elements resolve the arm.
         """
         rod = self.path.at(p)
-        return modes_beside_axis(arm_determinant(rod), min(highest, hull_of(rod).box()[1]), known)
+        return modes_near_axis(arm_determinant(rod), min(highest, hull_of(rod).box()[1]), known)
 
     def relaxation(self, p: float) -> tuple[float, float]:
         return 1.0, 0.0

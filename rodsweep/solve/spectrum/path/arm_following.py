@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from ....arrays import Array, Complex
 from ....determinant.arm.completeness import (
     COMPLETENESS,
+    points_right_of_hull,
     proves_completeness,
     remainder_of_sum,
-    right_of_hull,
 )
 from ....determinant.arm.family import ARM_FAMILY, ArmFamily, propagators_at
 from ....determinant.arm.hull.region import Hull, PathHulls, hull_at
@@ -127,8 +127,8 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level
         if abs(w[j].real - line) <= 2 * error[j]:
             return 0
         here += w[j].real > line
-    for power in COMPLETENESS.powers:
-        points = right_of_hull(line, hull.a, hull.c, power)
+    for power in COMPLETENESS.point_counts:
+        points = points_right_of_hull(line, hull.a, hull.c, power)
         if len(points) == 0 or points[-1] > level[0]:
             continue
         if proves_completeness(remainder_of_sum(line, w, error, hull, points, (level[0], level[1]))):

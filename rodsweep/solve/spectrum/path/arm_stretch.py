@@ -13,7 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array, Complex
-from ....determinant.arm.completeness import COMPLETENESS, has_conjugate, none_is_missing, right_of_hull
+from ....determinant.arm.completeness import (
+    COMPLETENESS,
+    has_conjugate,
+    none_is_missing,
+    points_right_of_hull,
+)
 from ....determinant.arm.count.count import count_right_of
 from ....determinant.arm.determinant import ArmDeterminant, arm_determinant
 from ....determinant.arm.family import ArmFamily, family_of, is_smooth, level_at
@@ -174,7 +179,11 @@ def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[
         W = ARM_STRETCH.headroom * float(np.abs(first).max())
         line = min(ARM_STRETCH.headroom * float(first[modes - 1].real), 0.0)
         hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
-        ends = [points[-1] for k in COMPLETENESS.powers if len(points := right_of_hull(line, *hull, k))]
+        ends = [
+            points[-1]
+            for k in COMPLETENESS.point_counts
+            if len(points := points_right_of_hull(line, *hull, k))
+        ]
         near = [end for end in ends if end <= ARM_STRETCH.headroom * W]
         family = family_of(path, low, high, max([W, *near]))
     except (ValueError, FloatingPointError):

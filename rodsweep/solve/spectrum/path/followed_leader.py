@@ -16,7 +16,7 @@ from ....determinant.arm.count.count import count_right_of as count_of_arm
 from ....determinant.arm.count.count import largest_w_of_count
 from ....determinant.arm.determinant import arm_determinant
 from ....determinant.arm.hull.hull import hull_of
-from ....determinant.arm.newton import refined_root
+from ....determinant.arm.newton import refine_eigenvalue_and_error
 from ....determinant.certificate.winding_number import count_right_of
 from ....determinant.roots.newton import refine_eigenvalue
 from ....determinant.roots.roots import root_error
@@ -78,7 +78,7 @@ def _of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | Non
     if not isfinite(size):
         size = largest_w_of_count(next(_lines(first)), determinant, hull)
     determinant.level(size)  # elements for the proof, which serve the eigenvalues too
-    found = [refined_root(value, determinant) for value in near.tolist()]
+    found = [refine_eigenvalue_and_error(value, determinant) for value in near.tolist()]
     w = np.array([root for root, _ in found])
     error = np.array([error for _, error in found])
     order = np.argsort(-w.real, kind="stable")
