@@ -31,7 +31,7 @@ class EvenFunctionSettings(CompiledSettings):
         n = self.series_terms
         if self.by_series_below**n > ROUND_OFF * math.factorial(2 * n + 2):
             raise ValueError(
-                f"{n} terms leave more than rounding error of a series at {self.by_series_below}"
+                f"a series of {n} terms is not accurate to rounding at |M| + 2 |P| = {self.by_series_below}"
             )
 
 

@@ -57,6 +57,11 @@ class CountSettings(CompiledSettings):
 
 COUNT = CountSettings()
 
+PHASE_LOST = (
+    "an eigenvalue lies too close to the line of the count, or the box of all eigenvalues is too large"
+)
+"""Reason of a failed count: the change of arg D along the contour could not be proved."""
+
 
 @dataclass(frozen=True, slots=True)
 class Count:
@@ -175,17 +180,17 @@ def count_right_of(line: float, rod: Rod) -> Count:
     if line == 0.0:  # D(0) = 1, and D is near 1 up to `foot`, so this part of the line needs no nodes
         foot = zero_free_radius_of_rod(rod.coefficients, imag)
         if foot == 0.0:
-            return Count(None, 0, "the pull is so strong that numbers underflow")
+            return Count(None, 0, "the pull (F < 0) is so strong that a bound of D near w = 0 underflows")
         # Downwards from the foot to w = 0, where D = 1 is real, arg D changes by minus its value at the foot.
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
     real = COUNT.width_factor * real + COUNT.width_added
     imag = max(imag, COUNT.min_height * abs(line))
     change, nodes = contour_phase_change(line, foot, complex(real, imag), rod.coefficients)
     if nodes < 0:
-        return Count(None, -nodes, "an eigenvalue lies too close to the line, or the box is too large")
+        return Count(None, -nodes, PHASE_LOST)
     total += change
     # Half the box has half the winding number: 2 pi times the count over both halves.
     number = round(total / math.pi)
     if abs(total / math.pi - number) > COUNT.integer_tolerance:
-        return Count(None, nodes, "the winding number is not an integer within rounding")
+        return Count(None, nodes, "the computed winding number is not an integer within rounding errors")
     return Count(number, nodes)

@@ -86,7 +86,7 @@ class Search:
         """The last count that disagrees with the eigenvalues found."""
         self.unresolved = False
         """Whether neither a mesh nor a count could decide which eigenvalue leads."""
-        self.why = "no mesh within the limit resolves the requested modes"
+        self.why = f"no mesh of at most {RESOLUTION.max_unknowns} unknowns resolves the requested modes"
 
     def outcome(self) -> Spectrum:
         """The spectrum, from attempts on meshes until the candidates are accepted or improve no more."""
@@ -207,12 +207,13 @@ class Search:
         if self.best is not None:
             return _result(self.best, self.problem, self.request)
         if self.disagreement is not None:
-            counted = f"the winding number counts {self.disagreement.count.number}"
+            number = self.disagreement.count.number
+            found = self.disagreement.found_count
+            counted = f"the winding number counts {number} eigenvalues, but {found} are found"
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, counted)
         if self.unresolved:
-            return failed_spectrum(
-                SpectrumStatus.modes_missing, self.request, "no mesh resolves all eigenvalues that may lead"
-            )
+            why = "no mesh resolves all eigenvalues that may be among the leading modes"
+            return failed_spectrum(SpectrumStatus.modes_missing, self.request, why)
         return failed_spectrum(SpectrumStatus.failed, self.request, self.why)
 
 

@@ -82,7 +82,8 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
             best = here if best is None else min(best, here, key=_worst)
         before = found
     if best is None:
-        raise Unsolvable("no mesh within the limit gives the requested number of eigenvalues")
+        most = RESOLUTION.max_unknowns
+        raise Unsolvable(f"no mesh of at most {most} unknowns gives the requested number of eigenvalues")
     # If rounding dominates, the error of either mesh may exceed the difference of both.
     return replace(best, error_estimate=TWO_MESHES.mesh_error_factor * best.error_estimate)
 

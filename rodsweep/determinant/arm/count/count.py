@@ -17,7 +17,7 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
-from ...certificate.winding_number import COUNT, Count
+from ...certificate.winding_number import COUNT, PHASE_LOST, Count
 from ..completeness import has_conjugate
 from ..determinant import ArmDeterminant, Level
 from ..elements.settings import ARM_ELEMENTS
@@ -34,7 +34,7 @@ class PhaseLost(ArithmeticError):
     """The change of arg D along the contour could not be determined; nodes: number of nodes used."""
 
     def __init__(self, nodes: int):
-        super().__init__("an eigenvalue lies too close to the line, or the box is too large")
+        super().__init__(PHASE_LOST)
         self.nodes = nodes
 
 
@@ -84,7 +84,7 @@ def count_right_of(
         return Count(None, 0, str(unresolved))
     number = round(total / math.pi)
     if abs(total / math.pi - number) > COUNT.integer_tolerance:
-        return Count(None, nodes, "the winding number is not an integer within rounding")
+        return Count(None, nodes, "the computed winding number is not an integer within rounding errors")
     return Count(number + int((known.real > line).sum()), nodes)
 
 

@@ -47,5 +47,7 @@ def element_propagators(F: Sequence[float], local: Array, lengths: Array, W: flo
     """
     terms = propagator_terms(np.array(F, float), W, local, lengths, _method())
     if not terms.size:
-        raise FloatingPointError(f"{ARM_ELEMENTS.max_terms} powers of w are too few for these elements")
+        raise FloatingPointError(
+            f"{ARM_ELEMENTS.max_terms} powers of w are too few for the propagators of these elements"
+        )
     return terms
