@@ -81,7 +81,7 @@ class Boundary:
         _, jacobian, error = self.equations(v)
         return BoundarySolution(v, jacobian, error).tangent
 
-    def corrected(self, guess: Array, normal: NDArray[np.floating]) -> BoundarySolution | None:
+    def point_near(self, guess: Array, normal: NDArray[np.floating]) -> BoundarySolution | None:
         """The point of the boundary on the plane through `guess`, (3,), that is perpendicular to `normal`,
         (3,).
 

@@ -127,10 +127,10 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def _end_from_inside(order: int, starts: bool, stops: bool, first: bool) -> Array:
-    """Row that extrapolates from an element's nodes to its first or last node, without nodes at jumps,
-    (p + 1,).
+    """Weights, (p + 1,), that extrapolate from the nodes of an element, without those at jumps, to one end.
 
-    starts, stops: whether the element starts, and stops, at a jump. first: whether to its first node.
+    starts, stops: whether the element starts, and stops, at a jump. first: whether to its first node, else
+    the last.
     """
     x = gauss_lobatto(order)[0]
     # Nodes at jumps hold means over both sides, which belong to neither polynomial.

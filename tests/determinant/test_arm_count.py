@@ -161,5 +161,5 @@ def test_eigenvalues_that_are_no_roots_are_left_out():
     w = eigenvalues(rod)[:4]
     raw = np.array([*w, -1000.0, np.inf, 1e9, w[0] + 40])
     found = roots(raw, ArmDeterminant(rod), hull_of(rod), 100.0)
-    assert sorted(found.chosen.tolist()) == [0, 1, 2, 3]
-    np.testing.assert_allclose(found.w, w[found.chosen], rtol=1e-6)
+    assert sorted(found.indices.tolist()) == [0, 1, 2, 3]
+    np.testing.assert_allclose(found.w, w[found.indices], rtol=1e-6)

@@ -17,7 +17,7 @@ from ..roots.newton import FAILED, ROOT_NEWTON, LocatedZero
 from ..roots.settings import ROOTS
 from ..value import DETERMINANT, DeterminantValue
 from .determinant import ArmDeterminant, arm_determinant
-from .family import ARM_FAMILY, ArmFamily, eigenvalue_in, value_in
+from .family import ARM_FAMILY, ArmFamily, determinant_in_family, eigenvalue_in_family
 from .newton import refine_eigenvalue_and_error
 
 CENTRAL_DIFFERENCE = ((1, 0.5), (-1, -0.5))
@@ -37,7 +37,8 @@ class ArmDoubleSettings:
     """Multiples of |w|. D on the elements for each multiple is compared to estimate its rounding error at a
     double eigenvalue."""
     spread_factor: float = 3.0
-    """Safety factor on the largest difference between these values of D."""
+    """Safety factor on the largest difference between values of D on different elements, as an estimate of
+    rounding."""
     max_shortenings: int = 20
     """Maximum number of times that a difference step is divided by `shortening`, down to 1e-12 of the first
     step."""
@@ -68,7 +69,7 @@ class ArmAlongPath:
         family = self.family(p)
         # The family holds for |w| <= W: half of W leaves Newton's method room.
         if family is not None and abs(guess) < family.W / 2:
-            w, slope, error = eigenvalue_in(family, guess, p)
+            w, slope, error = eigenvalue_in_family(family, guess, p)
             # Beside a double eigenvalue the interpolation errors of the family are magnified.
             if error <= ROOTS.double_root_correction * abs(w):
                 return w, slope, error
@@ -147,7 +148,7 @@ class ArmAlongPath:
         """D and D_w at real w = x, for the arm at p."""
         family = self.family(p)
         if family is not None and abs(x) < family.W:
-            return value_in(family, complex(x, 0.0), p)
+            return determinant_in_family(family, complex(x, 0.0), p)
         return self.determinant(p).value(complex(x, 0.0))
 
     def _real(self, x: float, p: float, S: float) -> tuple[float, float]:

@@ -178,7 +178,7 @@ def propagators_at(family: ArmFamily, p: float, polynomials: Array, changes: Arr
 
 @compiled_for_vectors
 def _sum_series(series: Array, T: Array, rates: Array, values: Array, slopes: Array) -> None:
-    """values = T series and slopes = rates series, (n,) each; series: (nodes, n); T, rates: (nodes,)."""
+    """values = sum_k T[k] series[k], slopes = sum_k rates[k] series[k], (n,) each; series: (nodes, n)."""
     nodes, n = series.shape
     values[:] = 0.0
     slopes[:] = 0.0
@@ -201,7 +201,7 @@ def _sum_series(series: Array, T: Array, rates: Array, values: Array, slopes: Ar
 
 
 @compiled
-def level_at(family: ArmFamily, p: float) -> tuple[float, Array]:
+def propagators_in_family(family: ArmFamily, p: float) -> tuple[float, Array]:
     """(W, propagators for |w| <= W, (elements, terms, ENTRIES)) of the arm at p, from a family."""
     polynomials = np.empty(family.coefficients.shape[1:])
     propagators_at(family, p, polynomials, np.empty_like(polynomials))
@@ -209,8 +209,8 @@ def level_at(family: ArmFamily, p: float) -> tuple[float, Array]:
 
 
 @compiled
-def value_in(family: ArmFamily, w: complex, p: float) -> DeterminantValue:
-    """D and dD/dw times exp(-S) of the arm at p, from a family, at w with |w| <= W."""
+def determinant_in_family(family: ArmFamily, w: complex, p: float) -> DeterminantValue:
+    """D and dD/dw times exp(-S) of the arm at p of a family, at w with |w| <= W."""
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)
     changes = np.empty(shape)
@@ -219,7 +219,7 @@ def value_in(family: ArmFamily, w: complex, p: float) -> DeterminantValue:
 
 
 @compiled
-def eigenvalue_in(family: ArmFamily, guess: complex, p: float) -> tuple[complex, complex, float]:
+def eigenvalue_in_family(family: ArmFamily, guess: complex, p: float) -> tuple[complex, complex, float]:
     """(w, dw/dp, error of w) of the eigenvalue near the guess, for the arm at p of a family.
 
     The eigenvalue must not be nearly double. Newton's method ends where rounding keeps its steps from getting

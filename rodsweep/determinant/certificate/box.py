@@ -46,7 +46,8 @@ class ZeroFreeDiscSettings:
     """Settings for the disc about w = 0 in which D has no zero."""
 
     max_departure: float = 0.5
-    """Bound of |D - 1| in this disc: D has no zero where |D - 1| < 1, so any bound below 1 would do."""
+    """Largest |D - 1| in the disc about w = 0. D has no zero where |D - 1| < 1, so any bound below 1 would
+    do."""
 
 
 ZERO_FREE_DISC = ZeroFreeDiscSettings()

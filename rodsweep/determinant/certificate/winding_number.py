@@ -33,7 +33,7 @@ class CountSettings(CompiledSettings):
     """Factor on the width of the box. A wider box is cheaper, because one exponential dominates D far from
     the eigenvalues."""
     width_added: float = 50.0
-    """Length added to the width of the box, in 1/tau2, for the same reason."""
+    """Length added to the width of the box, in 1/tau2, because a wider box is cheaper to walk around."""
     min_height: float = 0.5
     """Smallest height of the box, in units of the line's distance from the imaginary axis."""
     integer_tolerance: float = 1e-3

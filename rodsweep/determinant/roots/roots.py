@@ -27,20 +27,20 @@ class Roots(NamedTuple):
     """Eigenvalues of a mesh refined to roots w of D, sorted by descending real part, then frequency; all
     arrays are (k,).
 
-    chosen: index of each root in the list of the mesh. error: absolute error estimates. displacement:
+    indices: index of each root in the list of the mesh. error: absolute error estimates. displacement:
     distance of the mesh's eigenvalue from the root, in units of |w| or of the length over which D changes,
-    whichever is larger. wave: largest |q|, in 1/L. on_the_axis: whether the root is imaginary within its
-    error. ahead: number of eigenvalues of the mesh inside the a-priori box and right of all roots that
-    approximate no root.
+    whichever is larger. wave_number: largest |q|, in 1/L. on_the_axis: whether the root is imaginary within
+    its error. unmatched_ahead: number of eigenvalues of the mesh inside the a-priori box and right of all
+    roots that approximate no root.
     """
 
-    chosen: NDArray[np.int64]
+    indices: NDArray[np.int64]
     w: Complex
     error: Array
     displacement: Array
-    wave: Array
+    wave_number: Array
     on_the_axis: NDArray[np.bool_]
-    ahead: int
+    unmatched_ahead: int
 
 
 @compiled

@@ -13,13 +13,14 @@ class RootSettings(CompiledSettings):
     """Largest Newton correction |D/D'| of an eigenvalue of the mesh that approximates a root of D, in units
     of the length over which D changes. Eigenvalues with a larger correction are artefacts of the mesh."""
     largest_of_pair: float = 0.1
-    """Largest Newton correction, in the same unit, of an eigenvalue that approximates a root together with a
-    close second eigenvalue."""
+    """Largest Newton correction |D/D'| of an eigenvalue of the mesh that, with a close second one,
+    approximates two roots of D; in units of the length over which D changes."""
     pair_distance: float = 4.0
     """Distance of two eigenvalues of the mesh, over the sum of their Newton corrections, below which both are
-    moved to the two roots of one parabola before Newton's method."""
+    moved to the two roots of a quadratic Taylor polynomial of D before Newton's method."""
     parabolas_per_pair: int = 2
-    """Number of times this parabola is renewed, each about the middle of the two roots of its predecessor."""
+    """Number of successive quadratic Taylor polynomials of D for two close eigenvalues, each about the middle
+    of the two roots of its predecessor."""
     axis_tolerance: float = 1e-13
     """|Re w|/|w| below which an eigenvalue is taken to be imaginary, whatever its error estimate."""
     axis_errors: float = 4.0

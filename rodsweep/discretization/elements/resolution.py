@@ -20,7 +20,7 @@ class ResolutionSettings:
     order_intercept: float = 4.0
     """Order of a single element for `base_digits` digits at |q| = 0."""
     order_slope: float = 0.49
-    """Increase of this order per unit of |q|."""
+    """Increase of the order for `base_digits` digits per unit of |q|."""
     digit_intercept: float = 0.7
     """Increase of the order for each further digit, at |q| = 0."""
     digit_slope: float = 0.02

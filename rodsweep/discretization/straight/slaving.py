@@ -35,8 +35,9 @@ class SlavingSettings:
 
 SLAVING = SlavingSettings()
 TIP_LAYER_ORDER = 16
-"""Order of the elements. It resolves exp(kappa u) over `SLAVING.max_length`/kappa to rounding, because T is
-returned without an error. Order 8 would cause an error of 4e-11 of a numerical abscissa."""
+"""Order of the elements of the tip layer. It resolves exp(kappa u) over `SLAVING.max_length`/kappa to
+rounding, because T is returned without an error. Order 8 would cause an error of 4e-11 of a numerical
+abscissa."""
 
 
 def tip_layer_ratio(rod: Rod) -> float:

@@ -130,7 +130,7 @@ class HopfCurve:
 
     def at(self, guess: Array, normal: Array, accuracy: float) -> _HopfNormalForm:
         """The Hopf point in the plane through a guess, (3,), with a normal, (3,); raises Unsolvable."""
-        there = self.boundary.corrected(guess, normal)
+        there = self.boundary.point_near(guess, normal)
         if there is None:
             raise Unsolvable("no Hopf point is found between two points of the curve")
         x, y, h = map(float, there.v)

@@ -49,7 +49,8 @@ class CandidateSettings(CompiledSettings):
     """Distance of the line of a proof without a count left of the last wanted eigenvalue, in units of the
     error of this eigenvalue."""
     proof_line_distance: float = 1e-9
-    """Distance added to that of `proof_line_errors`, in units of |w| of the last wanted eigenvalue."""
+    """Further distance of the line of a proof left of the last wanted eigenvalue, besides
+    `proof_line_errors`, in units of |w|."""
 
 
 CANDIDATES = CandidateSettings()
@@ -113,7 +114,7 @@ def candidates_on(
         forget_all()
         failure = cause_of(error)
     kept_roots = problem.roots(raw, CANDIDATES.max_waves_per_node * mesh.elements * mesh.order)
-    kept = kept[:, kept_roots.chosen] if kept is not None else None
+    kept = kept[:, kept_roots.indices] if kept is not None else None
     return Candidates(mesh, kept_roots, kept, failure)
 
 

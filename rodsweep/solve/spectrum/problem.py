@@ -41,15 +41,15 @@ from .shift_invert import KRYLOV
 class TransverseProblem(ABC):
     """Meshes, solver and determinant D of one rod.
 
-    shift: target of Krylov-Schur, right of most spectra, in 1/tau2. bounded: whether an a-priori bound of the
-    eigenvalues exists. is_count_slow: whether one count costs more than several eigenproblems.
+    shift: target of Krylov-Schur, right of most spectra, in 1/tau2. has_bound: whether an a-priori bound of
+    the eigenvalues exists. is_count_slow: whether one count costs more than several eigenproblems.
     """
 
     rod: Rod
     shift: float
-    bounded: bool
+    has_bound: bool
     is_count_slow: ClassVar[bool]
-    spare: int = 0
+    spare_eigenvalues: int = 0
     """Number of eigenvalues requested from the first mesh beyond the modes, to make a proof without a count
     possible."""
 
@@ -57,7 +57,7 @@ class TransverseProblem(ABC):
     def mesh_for(self, modes: int, accuracy: float) -> Any:
         """The mesh expected to give `modes` leading eigenvalues to the relative `accuracy`."""
 
-    def finer(self, mesh: AnyMesh) -> AnyMesh:
+    def finer_mesh(self, mesh: AnyMesh) -> AnyMesh:
         """The next finer mesh after `mesh`."""
         return finer_mesh(self.rod, mesh)
 
@@ -91,7 +91,7 @@ class TransverseProblem(ABC):
         return False, 0
 
     @cached_property
-    def countable(self) -> bool:
+    def is_countable(self) -> bool:
         """Whether a count can succeed; False if the count fails for every line at real part <= 0."""
         return True
 
@@ -106,7 +106,7 @@ class UniformProblem(TransverseProblem):
         growth, self._wave = most_amplified_wave(rod)
         self.shift = KRYLOV.shift_above_growth * growth
         self._amplification = sqrt(squared_amplification(rod))
-        self.bounded = isfinite(self._amplification)
+        self.has_bound = isfinite(self._amplification)
 
     def mesh_for(self, modes: int, accuracy: float) -> Resolution:
         return resolution_for(expected_wave_number(modes, self._wave), accuracy)
@@ -139,8 +139,8 @@ class ArmProblem(TransverseProblem):
         self._to_prove = to_prove
         self._hull = hull_of(rod)
         self._determinant = arm_determinant(rod)
-        self.bounded = isfinite(self._hull.a)
-        self.spare = COMPLETENESS.spare_eigenvalues if to_prove and self.bounded else 0
+        self.has_bound = isfinite(self._hull.a)
+        self.spare_eigenvalues = COMPLETENESS.spare_eigenvalues if to_prove and self.has_bound else 0
         growth, _ = local_growth(rod)
         self.shift = KRYLOV.shift_above_growth * float(growth.max())
 
@@ -163,7 +163,7 @@ class ArmProblem(TransverseProblem):
         The largest |w| is 0 if it is unknown.
         """
         wanted = np.isfinite(raw)
-        if not self._to_prove or not self.bounded or wanted.sum() < self._to_prove:
+        if not self._to_prove or not self.has_bound or wanted.sum() < self._to_prove:
             return wanted, 0.0
         finite = np.flatnonzero(wanted)
         order = finite[np.lexsort((-raw.imag[finite], -raw.real[finite]))]
@@ -179,7 +179,7 @@ class ArmProblem(TransverseProblem):
         return count_of_arm(line, self._determinant, self._hull, *known)
 
     @cached_property
-    def countable(self) -> bool:
+    def is_countable(self) -> bool:
         return is_countable(self._determinant, self._hull)
 
     def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:

@@ -68,7 +68,7 @@ def warm_up() -> None:
 class Search:
     """Search for the leading eigenvalues of one rod: the next mesh, the best candidates, the failures so far.
 
-    wanted: number of eigenvalues in the first request, by default `request.modes` and `problem.spare`.
+    wanted: number of eigenvalues in the first request; default: the modes and `spare_eigenvalues`.
     """
 
     def __init__(self, rod: Rod, request: SpectrumRequest, wanted: int | None = None):
@@ -76,10 +76,10 @@ class Search:
         self.request = request
         self.modes = request.modes
         self.with_vectors = request.vector_nodes > 0
-        bounded = self.problem.bounded
+        bounded = self.problem.has_bound
         self.aim = mesh_accuracy(request.accuracy, self.with_vectors) if bounded else request.accuracy
         self.mesh = self.problem.mesh_for(request.modes, self.aim)
-        self.wanted = request.modes + self.problem.spare if wanted is None else wanted
+        self.wanted = request.modes + self.problem.spare_eigenvalues if wanted is None else wanted
         self.best: JudgedCandidates | None = None
         self.stalled = self.failures = 0
         self.disagreement: CountComparison | None = None
@@ -104,13 +104,13 @@ class Search:
                 or self.stalled >= SEARCH.max_stalled_refinements
             ):
                 break
-            self.mesh = self.problem.next_mesh_for(found.mesh, found.roots.wave[: self.modes], self.aim)
+            self.mesh = self.problem.next_mesh_for(
+                found.mesh, found.roots.wave_number[: self.modes], self.aim
+            )
         return self.conclude()
 
     def judge(self, found: Candidates) -> JudgedCandidates | None:
-        """The candidates if no eigenvalue is missing; otherwise None, after the mesh or `wanted` has been
-        raised.
-        """
+        """The candidates if no eigenvalue is missing; else None, and the mesh or `wanted` is raised."""
         if len(found.roots.w) < self.modes:
             # Too few converged, or converged to no root, or SLEPc failed: a finer mesh.
             self.failures += bool(found.failure)
@@ -118,7 +118,7 @@ class Search:
             # Where hardly any is a root the mesh is too coarse: further eigenvalues would be no roots either.
             if len(found.roots.w) >= SEARCH.min_resolved_fraction * self.modes:
                 self.wanted += self.modes
-            self.mesh = self.problem.finer(self.mesh)
+            self.mesh = self.problem.finer_mesh(self.mesh)
             return None
         if self.needs_beyond_axis(found):
             self.request_beyond_axis(len(found.roots.w))
@@ -126,9 +126,9 @@ class Search:
         comparison = (
             compare_with_count(self.problem, found.roots, self.modes) if self.request.certify else None
         )
-        if comparison is not None and comparison.count.number is None and found.roots.ahead:
+        if comparison is not None and comparison.count.number is None and found.roots.unmatched_ahead:
             self.unresolved = True
-            self.mesh = self.problem.finer(self.mesh)
+            self.mesh = self.problem.finer_mesh(self.mesh)
             return None
         if comparison is not None and comparison.count.number is not None and not comparison.agrees:
             self.disagreement = comparison
@@ -145,7 +145,7 @@ class Search:
         error = found.worst_error(self.modes) / self.request.accuracy
         if comparison is not None and comparison.agrees and not self.with_vectors:
             return error
-        allowed = SEARCH.largest_displacement if self.problem.bounded else SEARCH.unbounded_displacement
+        allowed = SEARCH.largest_displacement if self.problem.has_bound else SEARCH.unbounded_displacement
         coarseness = float(found.roots.displacement[: self.modes].max())
         return max(error, coarseness / (self.request.accuracy if self.with_vectors else allowed))
 
@@ -154,21 +154,19 @@ class Search:
         found.
         """
         if number <= here:  # spurious eigenvalues, or a line within the errors
-            self.mesh = self.problem.finer(self.mesh)
+            self.mesh = self.problem.finer_mesh(self.mesh)
             return
         more = number + SEARCH.spare_modes
         if more <= self.wanted:  # the missing ones are further from the shift, or unresolved
             more = self.wanted + number - here + SEARCH.spare_modes
-            self.mesh = self.problem.finer(self.mesh)
+            self.mesh = self.problem.finer_mesh(self.mesh)
         self.request_more(more)
 
     def needs_beyond_axis(self, found: Candidates) -> bool:
-        """Whether eigenvalues with Re w <= 0 must be found too, for a count or, without a proof, for the list
-        of modes.
-        """
+        """Whether eigenvalues with Re w <= 0 are needed too, for a count or for a list without a proof."""
         if not (self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all()):
             return False
-        return len(found.roots.w) < SEARCH.max_unproved_modes or self.problem.countable
+        return len(found.roots.w) < SEARCH.max_unproved_modes or self.problem.is_countable
 
     def request_beyond_axis(self, number: int) -> None:
         """Requests more eigenvalues, because all `number` found ones grow and a count needs decaying ones
@@ -176,7 +174,7 @@ class Search:
         """
         self.unresolved = True
         if number < self.wanted:
-            self.mesh = self.problem.finer(self.mesh)
+            self.mesh = self.problem.finer_mesh(self.mesh)
         self.request_more(max(self.wanted, 2 * number + SEARCH.spare_modes))
 
     def request_more(self, wanted: int) -> None:
@@ -186,7 +184,7 @@ class Search:
             wanted > self.mesh.unknowns // SEARCH.min_unknowns_per_mode
             and self.mesh.unknowns <= RESOLUTION.max_unknowns
         ):
-            self.mesh = self.problem.finer(self.mesh)
+            self.mesh = self.problem.finer_mesh(self.mesh)
         self.wanted = wanted
 
     def keep_if_better(self, judged: JudgedCandidates) -> None:

@@ -104,7 +104,7 @@ class LoadedPencil(NamedTuple):
     pace^2, and the y of the pencil times `pace`.
     """
 
-    finite: int
+    finite_eigenvalues: int
     shift: float
     pace: float = 1.0
 
@@ -180,7 +180,7 @@ class ShiftInvertSolver(ABC):
         self.loaded = self.load(rod, shift)
         self.A.assemble()
         self.eps.setOperators(self.A, self.B)
-        most = self.loaded.finite
+        most = self.loaded.finite_eigenvalues
         wanted = min(wanted, most - 1)  # a conjugate pair may add one
         spare = KRYLOV.tight_spare_vectors if tight else KRYLOV.loose_spare_vectors
         tolerance = KRYLOV.tight_tolerance if tight else KRYLOV.loose_tolerance

@@ -25,7 +25,7 @@ class SpectrumRequest:
     accuracy: float
     """Relative accuracy of every eigenvalue, and of every eigenmode if requested."""
     certify: bool
-    """Whether the winding number of D must prove that no eigenvalue is missing."""
+    """Whether it must be proved that no eigenvalue is missing."""
     vector_nodes: int = 0
     """Number of Lobatto nodes at which eigenmodes (Y, Theta) are stored; 0 for no eigenmodes."""
 
@@ -92,13 +92,14 @@ class Spectrum:
 class FollowedPoints:
     """Leading eigenvalues w and their absolute errors, (n, modes), at the next n points of a stretch.
 
-    unstable: number of unstable modes, (n,). good: whether the point is certified and accurate, (n,).
+    unstable_count: number of unstable modes, (n,). accepted: whether the point is certified and accurate,
+    (n,).
     """
 
     w: Complex
     error: Array
-    unstable: NDArray[np.int64]
-    good: NDArray[np.bool_]
+    unstable_count: NDArray[np.int64]
+    accepted: NDArray[np.bool_]
 
 
 def vectors_on_nodes(

@@ -70,7 +70,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
     before = _leading(problem, mesh, modes)
     best: Spectrum | None = None
     for _ in range(TWO_MESHES.max_finer_meshes):
-        mesh = problem.finer(mesh)
+        mesh = problem.finer_mesh(mesh)
         if mesh.unknowns > RESOLUTION.max_unknowns:
             break
         found = _leading(problem, mesh, modes)

@@ -32,7 +32,7 @@ class ArmCountSettings(CompiledSettings):
     line."""
     max_known_distance: float = 1.0
     """Largest distance from the line of known eigenvalues that are divided out of D, in units of |Im w| or
-    |line|, whichever is larger. Without eigenvalues farther away, D would no longer follow its dominant
+    |line|, whichever is larger. If farther ones were divided out too, D would no longer follow its dominant
     wave."""
     min_reach: float = 1e-12
     """Reach of a node, in units of |w|, below which the contour is taken to meet a zero of D, and the count
@@ -53,9 +53,10 @@ class ArmCountSettings(CompiledSettings):
     """Radius of the first circle at the first node of a side of the box, without the dominant wave, in units
     of the length over which D changes."""
     smallest_radius: float = 0.75
-    """Radius of the smallest circle at any node, in the same unit. Every further trial halves the radius."""
+    """Radius of the smallest circle at any node, in units of the length over which D changes. Every trial
+    halves the radius."""
     largest_radius: float = 48.0
-    """Radius of the largest circle at any node, in the same unit."""
+    """Radius of the largest circle at any node, in units of the length over which D changes."""
     max_wave_radius: float = 0.8
     """Largest radius of a circle with the dominant wave, in units of Im w: the wave may have branch points on
     the real axis."""

@@ -203,7 +203,11 @@ def _integrate_eliminated(turning: Array, rates: Array, out: Array) -> None:
 
 @compiled
 def _end_values(weights: Array, rates: Array, n: int, terms: Array) -> bool:
-    """Fills term n, (LANES, MAX_TERMS, ENTRIES), from rates; whether it is negligible in all elements."""
+    """Writes the propagators' coefficients of w^n into terms[:, n] and returns whether all of them are
+    negligible.
+
+    terms: (LANES, MAX_TERMS, ENTRIES). rates: of the minors, (MINORS, STAGES, WIDTH). weights: Gauss weights.
+    """
     end = np.zeros((MINORS, ARM_ELEMENTS.width))
     _add_ends(weights, rates, end)
     done = True

@@ -88,7 +88,7 @@ class ChangeCurveProblem:
 
     def near(self, guess: Array, normal: Array) -> BoundarySolution:
         """The point in the plane through a guess with a normal, both (3,); raises Unsolvable."""
-        there = self.boundary.corrected(guess, normal)
+        there = self.boundary.point_near(guess, normal)
         if there is None:
             raise Unsolvable("no point of the boundary is near")
         return there
@@ -111,7 +111,7 @@ class ChangeCurveProblem:
         axis, limit = divmod(margin, 2)
         inner = behind[-1].v
         share = (limit - inner[axis]) / (outer.v[axis] - inner[axis])
-        found = self.boundary.corrected(inner + share * (outer.v - inner), np.eye(3)[axis])
+        found = self.boundary.point_near(inner + share * (outer.v - inner), np.eye(3)[axis])
         if (
             found is None
             or not -CHANGE_CURVES.beside_an_edge <= found.v[1 - axis] <= 1 + CHANGE_CURVES.beside_an_edge

@@ -21,7 +21,7 @@ from ....determinant.arm.completeness import (
 )
 from ....determinant.arm.count.count import count_right_of
 from ....determinant.arm.determinant import ArmDeterminant, arm_determinant
-from ....determinant.arm.family import ArmFamily, family_of, is_smooth, level_at
+from ....determinant.arm.family import ArmFamily, family_of, is_smooth, propagators_in_family
 from ....determinant.arm.hull.hull import hulls_along
 from ....determinant.arm.hull.region import PathHulls, hull_at
 from ....determinant.parameter_path import Path
@@ -40,8 +40,8 @@ from .prediction import Track, slice_track, start_track
 class ArmInterval(NamedTuple):
     """Points p of a path, (n,), whose eigenvalues were followed with one family of arms.
 
-    track, known: as in `follow_eigenvalues_of_arms`. arms: number of given points inside the family, of which
-    the first n were reached. further: number of modes followed beyond the wanted modes.
+    track, known: as in `follow_eigenvalues_of_arms`. arm_count: number of given points inside the family, of
+    which the first n were reached. further_modes: number of modes followed beyond the wanted modes.
     """
 
     p: Array
@@ -49,10 +49,10 @@ class ArmInterval(NamedTuple):
     known: NDArray[np.int64]
     family: ArmFamily
     hulls: PathHulls
-    arms: int
-    further: int
+    arm_count: int
+    further_modes: int
 
-    def proved(self, modes: int) -> int:
+    def proved_points(self, modes: int) -> int:
         """Number of points at which at least `modes` leading modes are proved complete."""
         return int((self.known >= modes).sum())
 
@@ -80,16 +80,16 @@ def follow_interval(
     """
     best: ArmInterval | None = None
     for further in (
-        number for number in ARM_STRETCH.further_modes if before is None or number >= before.further
+        number for number in ARM_STRETCH.further_modes if before is None or number >= before.further_modes
     ):
         if best is not None and not (_too_few(best) or _proves_more(path, best, request, further)):
             break
         found = _followed(path, p, request, further, before) if len(p) >= ARM_STRETCH.min_points else None
         if found is not None and (best is None or _is_better(found, best, request.modes)):
             best = found
-        enough = best is not None and best.proved(request.modes) >= ARM_STRETCH.min_proved_fraction * len(
-            best.p
-        )
+        enough = best is not None and best.proved_points(
+            request.modes
+        ) >= ARM_STRETCH.min_proved_fraction * len(best.p)
         if best is not None and enough and not _too_few(best):
             break
     return best
@@ -105,8 +105,8 @@ def _is_better(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
     """Whether `found` has more proved points than `other`, or equally many where `other` follows too few
     modes.
     """
-    here = found.proved(modes)
-    there = other.proved(modes)
+    here = found.proved_points(modes)
+    there = other.proved_points(modes)
     return here > there or (here == there and _too_few(other))
 
 
@@ -156,16 +156,17 @@ def _followed(
     reached = follow_eigenvalues_of_arms(track, family, hulls, p[:n], request.modes, known)
     if reached == 0:
         return None
-    arms = before.arms if before is not None and family is before.family else n
+    arms = before.arm_count if before is not None and family is before.family else n
     return ArmInterval(
         p[:reached], slice_track(track, 0, reached), known[:reached], family, hulls, arms, further
     )
 
 
 def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmFamily, PathHulls] | None:
-    """(family of the arms at all p, (n,), their hulls); None if the arms do not vary smoothly or D overflows.
+    """(family of the arms at all p, (n,); their hulls), or None.
 
-    first: eigenvalues at the first point, (m,), leading first.
+    first: eigenvalues at the first point, (m,), leading first. None if all p are equal, if the arms are not
+    smooth in p, or if no elements resolve an arm.
     """
     low = float(p.min())
     high = float(p.max())
@@ -195,9 +196,9 @@ def _carried(before: ArmInterval | None, p: float, request: SpectrumRequest, fur
     """Eigenvalues, (m,), at p, the last point of the previous interval; None unless all its points are proved
     complete.
     """
-    if before is None or before.further != further or before.p[-1] != p:
+    if before is None or before.further_modes != further or before.p[-1] != p:
         return None
-    if before.proved(request.modes) < len(before.p):
+    if before.proved_points(request.modes) < len(before.p):
         return None
     return before.track.w[-1][before.track.order[-1]]
 
@@ -234,7 +235,7 @@ def count_at(path: Path, found: ArmInterval, p: float, modes: int, here: Track) 
     w, error = leading_eigenvalues(here, here.w.shape[1])
     if w[0, -1].real > 0:  # there are further growing modes, which the count would find as well
         return 0
-    determinant = ArmDeterminant(path.at(p), level_at(found.family, p))
+    determinant = ArmDeterminant(path.at(p), propagators_in_family(found.family, p))
     hull = hull_at(found.hulls, p)
     for line in lines_for_count(w[0].tolist(), modes):
         number = count_right_of(line, determinant, hull, w[0], error[0]).number

@@ -24,10 +24,11 @@ class CarriedCountSettings(CompiledSettings):
     """Settings for a count that is carried from point to point of a path."""
 
     base_rectangles: int = 60
-    """Maximum number of rectangles of one proof, besides `rectangles_per_point`."""
+    """Maximum number of rectangles of one proof is this number plus `rectangles_per_point` for each point
+    covered."""
     rectangles_per_point: int = 20
-    """Increase of this maximum with each point that the proof covers: a new count at a point costs as much as
-    twenty rectangles."""
+    """Number of rectangles that a proof may use for each point that it covers: a new count at a point costs
+    as much as twenty."""
     wide_gap: float = 0.2
     """Half-width of a gap, relative to the distance of its middle from the imaginary axis, above which a
     wider gap is not preferred. Of several such gaps the one farthest left is taken."""

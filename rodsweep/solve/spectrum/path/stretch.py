@@ -34,8 +34,8 @@ class StretchSettings:
     """Settings for eigenvalues followed along a stretch of rods."""
 
     further_modes: int = 2
-    """Number of modes followed beyond the requested modes; the line of a count lies in a gap between
-    these."""
+    """Number of modes followed beyond the requested modes. The line of a count lies in a gap between these
+    further modes."""
 
 
 STRETCH = StretchSettings()
@@ -84,17 +84,17 @@ def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
     patience = 1
     while place < n:
         found = _followed(stretch, place, request)
-        end = place + (len(found.good) if found else min(patience, n - place))
+        end = place + (len(found.accepted) if found else min(patience, n - place))
         # If no proof succeeds, as without a bound, following is tried less and less often.
         patience = 1 if found else 2 * patience
         if found:
             here = slice(place, end)
             columns["eigenvalues"][here] = found.w
             columns["error_estimate"][here] = errors_with_rounding(found.w, found.error, stretch.path.rod)
-            columns["unstable_count"][here] = found.unstable
+            columns["unstable_count"][here] = found.unstable_count
             columns["certified"][here] = True
         for i in range(place, end):
-            if not (found and found.good[i - place]):
+            if not (found and found.accepted[i - place]):
                 alone = solve_spectrum(stretch.rod(i), request)
                 for name, column in columns.items():
                     column[i] = getattr(alone, name)
