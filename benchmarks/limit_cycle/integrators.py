@@ -55,7 +55,7 @@ def by_scipy(method: str, tolerance: float, leg: IntegrationTask) -> Trajectory:
 def by_cvode(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
     """CVODE's BDF with its dense solver, through scikit-sundae."""
     beam, z, duration = leg
-    arguments = beam.roots, beam.nodal, beam.mesh.matrices
+    arguments = beam.sqrt_compliance, beam.nodal, beam.mesh.matrices
     buffer = np.empty((len(z), len(z)))
 
     def right_side(_: float, x: Array, out: Array) -> None:

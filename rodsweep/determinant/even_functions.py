@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from ..model.compiled.compilation import compiled
 from ..model.compiled.settings import CompiledSettings
-from .exponents import ROUND_OFF, Hyperbolic, hyperbolic, modulus
+from .exponents import ROUND_OFF, HyperbolicFunctions, hyperbolic_functions, modulus
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,8 +56,8 @@ class EvenFunctions(NamedTuple):
 def _noise_by_roots(
     squares: tuple[complex, complex, complex, complex],
     apart: complex,
-    of_u: Hyperbolic,
-    of_v: Hyperbolic,
+    of_u: HyperbolicFunctions,
+    of_v: HyperbolicFunctions,
     results: tuple[complex, complex],
     blurs: tuple[float, float, float],
 ) -> tuple[float, float]:
@@ -118,8 +118,8 @@ def even_functions_by_roots(
     S = q1.real + q2.real
     # The 1 that is subtracted from cosh q1 cosh q2, scaled by exp(-S) like the product.
     one = math.exp(-S)
-    of_u = hyperbolic(u, q1)
-    of_v = hyperbolic(v, q2)
+    of_u = hyperbolic_functions(u, q1)
+    of_v = hyperbolic_functions(v, q2)
     cosh1, first1, second1 = of_u
     cosh2, first2, second2 = of_v
     # With z+- = (q1 +- q2)^2 the even functions of P are symmetric functions of q1^2 and q2^2.

@@ -15,7 +15,7 @@ import math
 from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
 from .even_functions import EVEN_FUNCTIONS, EvenFunctions, even_functions_by_roots, even_functions_by_series
-from .exponents import EXPONENTS, NOISE_UNIT, entire_cosh, exponents, modulus
+from .exponents import EXPONENTS, NOISE_UNIT, entire_cosh, modulus, squared_exponents
 
 EvenSum = tuple[EvenFunctions, complex, float]
 """(s and d with derivatives, sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error). `even_parts` returns
@@ -71,14 +71,14 @@ def _noise_by_squares(
 
 @compiled
 def even_sum_by_squares(w: complex, coefficients: Coefficients, blur_M: float, blur_square: float) -> EvenSum:
-    """s and d with derivatives, the sum of D and its rounding error, if one of z+ and z- is much smaller than
-    the other.
+    """s and d with derivatives, the sum z+' E(z+) + z-' E(z-), and its rounding error, if one of z+ and z- is
+    much smaller.
 
     The derivative of the smaller one follows from the derivative of the product z+ z-, because T +- P' would
     cancel for large w. blur_M, blur_square: rounding errors of M and P^2.
     """
     F, nu, c2, gamma3 = coefficients
-    P, plus, minus = exponents(w, coefficients)
+    P, plus, minus = squared_exponents(w, coefficients)
     g = nu + F * c2
     T = c2 + gamma3
     X = c2 * gamma3

@@ -40,7 +40,7 @@ NOISE_UNIT = 2 * ROUND_OFF
 """Unit in which rounding errors of D and of its terms are summed: two relative rounding errors."""
 
 
-class Hyperbolic(NamedTuple):
+class HyperbolicFunctions(NamedTuple):
     """cosh q, sinh(q)/q and its slope (1/q) d(sinh(q)/q)/dq, all times exp(-Re q) and, but for this factor,
     entire in q^2.
     """
@@ -57,7 +57,7 @@ def modulus(z: complex) -> float:
 
 
 @compiled
-def exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex, complex]:
+def squared_exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex, complex]:
     """(P, z+, z-) of a uniform rod at w != 0, in the notation of `rodsweep.determinant.value`.
 
     The smaller of z+ and z- follows from their product, without cancellation.
@@ -94,14 +94,14 @@ def entire_cosh(z: complex, root: complex, scale: float) -> tuple[complex, compl
 
 
 @compiled
-def hyperbolic(v: complex, root: complex) -> Hyperbolic:
+def hyperbolic_functions(v: complex, root: complex) -> HyperbolicFunctions:
     """cosh q, sinh(q)/q and its slope, for q = `root` and v = q^2, times exp(-Re q)."""
     if modulus(v) < EXPONENTS.sinh_series_below:
         first = 1 + v / 6 * (1 + v / 20 * (1 + v / 42 * (1 + v / 72 * (1 + v / 110 * (1 + v / 156)))))
         second = 1 + v / 28 * (1 + v / 54 * (1 + v / 88 * (1 + v / 130 * (1 + v / 180))))
         second = (1 + v / 10 * second) / 3
         size = math.exp(-root.real)
-        return Hyperbolic(size * (first + v * second), size * first, size * second)
+        return HyperbolicFunctions(size * (first + v * second), size * first, size * second)
     # cosh and sinh times exp(-Re q), which cannot overflow.
     decay = math.exp(-2 * root.real)
     even = (1 + decay) / 2
@@ -110,4 +110,4 @@ def hyperbolic(v: complex, root: complex) -> Hyperbolic:
     sine = math.sin(root.imag)
     cosh = complex(even * cosine, odd * sine)
     first = complex(odd * cosine, even * sine) / root
-    return Hyperbolic(cosh, first, (cosh - first) / v)
+    return HyperbolicFunctions(cosh, first, (cosh - first) / v)

@@ -66,14 +66,14 @@ class Strip(NamedTuple):
     """A part of the strip (y, p) that is not yet proved free of zeros of D: everything above y for an
     interval of p.
 
-    start, stop: ends of the interval, as fractions of the whole interval of p. half_y: half-height of the
+    p_start, p_stop: ends of the interval, as fractions of the whole interval of p. half_y: half-height of the
     next rectangle to try.
     """
 
-    start: float
-    stop: float
+    p_start: float
+    p_stop: float
     y: float
-    half_y: float
+    half_height: float
 
 
 @compiled

@@ -27,7 +27,7 @@ from ..model.compiled.compilation import compiled
 from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
 from .even_parts import EvenSum, even_parts
-from .exponents import EXPONENTS, exponents
+from .exponents import EXPONENTS, squared_exponents
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,7 +71,7 @@ class ExponentDerivatives(NamedTuple):
 def exponent_derivatives(w: complex, coefficients: Coefficients) -> ExponentDerivatives:
     """P, P', P'', z+ and z- of a uniform rod at w != 0."""
     F, nu, c2, gamma3 = coefficients
-    P, plus, minus = exponents(w, coefficients)
+    P, plus, minus = squared_exponents(w, coefficients)
     P1 = 0j
     P2 = 0j
     if P != 0:  # P is zero for every w if g = gamma3 = 0; then z+ = z- has no branch point
@@ -124,7 +124,7 @@ def second_derivative(w: complex, S: float, coefficients: Coefficients) -> compl
 
 
 @compiled
-def distance_to_next(w: complex, coefficients: Coefficients) -> float:
+def distance_to_next_root(w: complex, coefficients: Coefficients) -> float:
     """Estimated distance 2 |D'/D''| from an eigenvalue w to the nearest other one; accurate if both are
     close.
     """

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..model.balance import Values
-from .elements.mesh import configuration
+from .elements.mesh import shape_from_strains
 from .rod_on_mesh import RodOnMesh
 from .stress.rates import write_rate_jacobians, write_rates
 
@@ -42,21 +42,21 @@ class Beam(RodOnMesh):
         return ()
 
     @cached_property
-    def roots(self) -> Array:
-        """Square roots of C, (3, nodes + 1): z = roots S, and E - E0 = roots z."""
+    def sqrt_compliance(self) -> Array:
+        """Square roots of C, (3, nodes + 1): z = sqrt(C) S, and E - E0 = sqrt(C) z."""
         return np.sqrt(self.nodal.compliance)
 
     @cached_property
-    def crushed(self) -> Array:
+    def crushing_z1(self) -> Array:
         """Values of z1 at which the stretch h1 is 0, at all nodes except the tip, (nodes,).
 
         At a jump h1 vanishes on one side first if the law is linear, and on both sides at once otherwise.
         """
-        crushed = -self.nodal.rest[0, :-1] / self.roots[0, :-1]
+        crushed = -self.nodal.rest[0, :-1] / self.sqrt_compliance[0, :-1]
         if self.smooth_stresses:
             for node, sides in zip(self.nodal.jumps, self.nodal.sides, strict=True):
                 # The side that is crushed first counts.
-                crushed[node] = self.roots[0, node] * (-sides[:, 0] / sides[:, 1]).max()
+                crushed[node] = self.sqrt_compliance[0, node] * (-sides[:, 0] / sides[:, 1]).max()
         return np.ascontiguousarray(crushed)
 
     def stresses(self, z: Values) -> Values:
@@ -70,13 +70,13 @@ class Beam(RodOnMesh):
     def state_of_strains(self, strains: Array) -> Array:
         """The state z of strains (h1, h2, Pi) at all nodes, (3, nodes + 1); strains at the tip are
         ignored."""
-        return self.layout.state((strains - self.nodal.rest) / self.roots, strains)
+        return self.layout.state((strains - self.nodal.rest) / self.sqrt_compliance, strains)
 
     def rate(self, z: Array) -> Array:
         """dz/dt of states z, both (..., unknowns), with time in tau2."""
         out = np.empty(z.shape)
         flat = z.reshape(-1, self.unknowns), out.reshape(-1, self.unknowns)
-        write_rates(*flat, self.roots, self.nodal, self.mesh.matrices)
+        write_rates(*flat, self.sqrt_compliance, self.nodal, self.mesh.matrices)
         return out
 
     def jacobian(self, z: Array) -> Array:
@@ -86,7 +86,7 @@ class Beam(RodOnMesh):
         out = np.empty((*z.shape, size))
         states = z.reshape(-1, size)
         matrices = out.reshape(-1, size, size)
-        write_rate_jacobians(states, matrices, self.roots, self.nodal, self.mesh.matrices)
+        write_rate_jacobians(states, matrices, self.sqrt_compliance, self.nodal, self.mesh.matrices)
         return out.swapaxes(-1, -2)
 
     def tip_motion(self, z: Array, direction: Array) -> tuple[Array, Array]:
@@ -95,7 +95,7 @@ class Beam(RodOnMesh):
         z, direction: (..., unknowns). A small imaginary step gives the velocity without cancellation.
         """
         change = self.element_strain_changes(z, BEAM.tip_step * direction)
-        moved = configuration(self.mesh, self.element_strains(z) + 1j * change, np.zeros(3))[..., -1]
+        moved = shape_from_strains(self.mesh, self.element_strains(z) + 1j * change, np.zeros(3))[..., -1]
         # Complex step: the imaginary part is the derivative times the step, without a difference.
         return moved.real, moved.imag / BEAM.tip_step
 
@@ -104,5 +104,5 @@ class Beam(RodOnMesh):
         return self.tip_motion(z, direction)[1]
 
     def _along(self, field: Values) -> Array:
-        """`roots` reshaped to broadcast against a field (3, ..., nodes + 1)."""
-        return self.roots.reshape(3, *(1,) * (field.ndim - 2), -1)
+        """`sqrt_compliance` reshaped to broadcast against a field (3, ..., nodes + 1)."""
+        return self.sqrt_compliance.reshape(3, *(1,) * (field.ndim - 2), -1)

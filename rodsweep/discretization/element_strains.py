@@ -54,7 +54,7 @@ def write_element_strains(S: Array, rod: NodalRod, order: int, out: Array) -> No
 
 
 @compiled_for_vectors
-def write_element_rates(S: Array, rates: Array, rod: NodalRod, order: int, out: Array) -> None:
+def write_element_strain_changes(S: Array, rates: Array, rod: NodalRod, order: int, out: Array) -> None:
     """Writes changes of strains at the nodes of every element into out, (3, m, elements (order + 1)).
 
     S: stresses of m states at all nodes, (3, m, nodes + 1). rates: changes of the (mean) strains there, same

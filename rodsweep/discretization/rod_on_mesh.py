@@ -18,8 +18,8 @@ from ..model.material.response import LocalSection, tangent
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on, material_on
 from .at_jumps import interpolate_stress, stresses_beside_jumps
-from .element_strains import write_element_rates, write_element_strains
-from .elements.mesh import Mesh, configuration
+from .element_strains import write_element_strain_changes, write_element_strains
+from .elements.mesh import Mesh, shape_from_strains
 from .nodal_rod import NodalRod, nodal_rod
 from .state_layout import StateLayout, plane_layout
 
@@ -97,14 +97,14 @@ class RodOnMesh(ABC):
         dS = self.stresses(change)
         moved = _along(self.nodal.compliance, dS) * dS
         out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
-        write_element_rates(_listed(S), _listed(moved), self.nodal, self.mesh.order, _listed(out))
+        write_element_strain_changes(_listed(S), _listed(moved), self.nodal, self.mesh.order, _listed(out))
         return out
 
     def shape(self, x: Array) -> Array:
         """Shape (x, y, theta) at all nodes in L and rad, (3, ..., nodes + 1), clamped at the origin along
         e_x.
         """
-        return configuration(self.mesh, self.element_strains(x), np.zeros(3))
+        return shape_from_strains(self.mesh, self.element_strains(x), np.zeros(3))
 
     def tip(self, x: Array) -> Array:
         """(x, y, theta) of the tip in L and rad, (3, ...)."""

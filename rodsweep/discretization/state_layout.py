@@ -46,7 +46,7 @@ class StateLayout:
         """Index in a state of the stress `name` at a node; node 0 is the clamp."""
         return STRESS_NAMES[self.components].index(name) * self.nodes + node
 
-    def at(self, x: Values, name: str, node: int = 0) -> Values:
+    def stress_at(self, x: Values, name: str, node: int = 0) -> Values:
         """The stress `name` of states x at one node, (...)."""
         at: Values = x[..., self.index(name, node)]
         return at

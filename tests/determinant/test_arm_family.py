@@ -95,6 +95,6 @@ def test_errors_of_double_eigenvalues_hold_where_minors_are_large_amid_the_arm()
     build = Build("neo_hookean", "fixed", Profile(u, tuple((*row, 1.0, 1.0, 1.0) for row in factors)))
     path = Path(Rod(F=20.0, k1=151.37, k2=10.358, gamma3=0.08934, build=build), "F")
     family = family_of(path, 0.0, 60.0, 4.0**8)
-    of_family = ArmAlongPath(path, lambda p: family).double(254.4652, 22.71770, 0.5)
-    of_arms = ArmAlongPath(path).double(254.4652, 22.71770, 0.5)
+    of_family = ArmAlongPath(path, lambda p: family).double_eigenvalue(254.4652, 22.71770, 0.5)
+    of_arms = ArmAlongPath(path).double_eigenvalue(254.4652, 22.71770, 0.5)
     assert abs(of_family.p - of_arms.p) <= of_family.error_of_p + of_arms.error_of_p < 1e-9

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.elements.basis import differentiation, interpolation
-from rodsweep.discretization.elements.mesh import configuration, mesh
+from rodsweep.discretization.elements.mesh import mesh, shape_from_strains
 from rodsweep.discretization.elements.quadrature import gauss, gauss_lobatto
 from rodsweep.discretization.elements.resolution import (
     RESOLUTION,
@@ -98,6 +98,6 @@ def test_the_compiled_motion_of_the_tip_is_that_of_the_whole_shape(elements, ord
     tip, velocity = np.empty((2, 4, 3))
     tip_motion(strains, rates, tip_matrices(grid), tip, velocity)
     tiny = 1e-30
-    exact = configuration(grid, strains + 1j * tiny * rates, np.zeros(3))[..., -1].T
+    exact = shape_from_strains(grid, strains + 1j * tiny * rates, np.zeros(3))[..., -1].T
     assert np.abs(tip - exact.real).max() < 1e-13 * np.abs(exact.real).max()
     assert np.abs(velocity - exact.imag / tiny).max() < 1e-13 * np.abs(exact.imag / tiny).max()

@@ -42,8 +42,8 @@ def test_a_field_is_known_by_its_name():
     x = states(layout, 2)
     for number, name in enumerate(("n1", "n2", "m3")):
         assert np.array_equal(layout.field(x, name), layout.stresses(x)[number, :, :-1])
-        assert np.array_equal(layout.at(x, name, 3), layout.field(x, name)[:, 3])
-        assert np.array_equal(x[:, layout.index(name, 2)], layout.at(x, name, 2))
+        assert np.array_equal(layout.stress_at(x, name, 3), layout.field(x, name)[:, 3])
+        assert np.array_equal(x[:, layout.index(name, 2)], layout.stress_at(x, name, 2))
     row = layout.vector({"m3": np.arange(4.0)})
     assert x @ row == pytest.approx(layout.field(x, "m3") @ np.arange(4.0))
     layout.field(x, "n2")[:] = 0

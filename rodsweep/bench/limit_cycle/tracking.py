@@ -93,7 +93,7 @@ def on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
     """The beam for the integrators, and its state z on the cycle where y is largest, shape (unknowns,)."""
     form = orbit.form
     beam = Beam(form.rod, form.mesh)
-    return beam, (orbit.start.reshape(3, -1) * beam.roots[:, :-1]).ravel()
+    return beam, (orbit.start.reshape(3, -1) * beam.sqrt_compliance[:, :-1]).ravel()
 
 
 def reference() -> ReferenceCycle:

@@ -13,7 +13,7 @@ import numpy as np
 from ...arrays import Complex
 from ...discretization.elements.resolution import RESOLUTION, Resolution
 from ...model.rod import Rod
-from ...solve.spectrum.krylov_schur import eigen_solver
+from ...solve.spectrum.krylov_schur import uniform_solver
 from ...solve.spectrum.problem import transverse_problem
 from ...solve.spectrum.search import warm_up
 from ..peers import Peers
@@ -165,7 +165,7 @@ def mesh_of(order: int) -> Resolution:
 
 def krylov_schur(rod: Rod, size: int) -> Complex:
     """SLEPc's Krylov-Schur, converged to rounding, without refinement on D, shape (modes,)."""
-    w = eigen_solver(mesh_of(size)).solve(rod, transverse_problem(rod).shift, WANTED_MODES, tight=True)
+    w = uniform_solver(mesh_of(size)).solve(rod, transverse_problem(rod).shift, WANTED_MODES, tight=True)
     return leading(w, WANTED_MODES + 1)
 
 

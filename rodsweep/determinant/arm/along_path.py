@@ -27,26 +27,26 @@ value."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ArmDoubleSettings:
+class ArmDoubleEigenvalueSettings:
     """Settings for double eigenvalues of arms along a path, and for differences by the path variable."""
 
-    noise: float = 5.0
-    """Rounding error of D at a double eigenvalue, in units of its `noise`: at most 4.7 at 44 double
-    eigenvalues of stepped arms, compared with 19 digits."""
-    compared_levels: tuple[int, ...] = (1, 4, 16)
+    rounding_over_noise: float = 5.0
+    """Rounding error of D at a double eigenvalue, in units of its `noise`: at most 4.7 at 44
+    double eigenvalues of stepped arms, compared with 19 digits."""
+    compared_level_factors: tuple[int, ...] = (1, 4, 16)
     """Multiples of |w|. D on the elements for each multiple is compared to estimate its rounding error at a
     double eigenvalue."""
     spread_factor: float = 3.0
     """Safety factor on the largest difference between values of D on different elements, as an estimate of
     rounding."""
     max_shortenings: int = 20
-    """Maximum number of times that a difference step is divided by `shortening`, down to 1e-12 of the first
+    """Maximum number of times that a difference step is divided by `step_divisor`, down to 1e-12 of the first
     step."""
-    shortening: float = 4.0
+    step_divisor: float = 4.0
     """Divisor of a difference step whose neighbour is not a valid arm."""
 
 
-ARM_DOUBLES = ArmDoubleSettings()
+ARM_DOUBLE_EIGENVALUES = ArmDoubleEigenvalueSettings()
 
 
 class ArmAlongPath:
@@ -87,7 +87,7 @@ class ArmAlongPath:
             slope += weight * neighbour.D * math.exp(neighbour.S - S)
         return slope / h
 
-    def double(self, x: float, p: float, reach: float) -> LocatedZero:
+    def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
         """The double real eigenvalue D = D_w = 0 near the guess (x, p), by Newton's method.
 
         `FAILED` if p moves by more than twice `reach`, if the sign of x changes, or without convergence.
@@ -111,10 +111,14 @@ class ArmAlongPath:
                 return FAILED
             in_x = (D_p * D_w - D_wp * D) / cross
             in_p = (D_ww * D - D_w * D_w) / cross
-            blur = ARM_DOUBLES.noise * noise + ROUND_OFF * abs(p * D_p)
+            blur = ARM_DOUBLE_EIGENVALUES.rounding_over_noise * noise + ROUND_OFF * abs(p * D_p)
             e_p = blur * abs(D_ww) / abs(cross)
             e_x = (
-                blur * abs(D_wp) + ARM_DOUBLES.noise * noise / max(abs(x), EXPONENTS.least_divisor) * abs(D_p)
+                blur * abs(D_wp)
+                + ARM_DOUBLE_EIGENVALUES.rounding_over_noise
+                * noise
+                / max(abs(x), EXPONENTS.least_divisor)
+                * abs(D_p)
             ) / abs(cross)
             x += in_x
             p += in_p
@@ -133,16 +137,16 @@ class ArmAlongPath:
         """Estimated rounding error of D exp(-S) at real w = x: the spread of D over different elements, times
         a factor.
 
-        Minors that are large in the middle of an arm have rounding errors that the `noise` of D does not
-        contain.
+        Minors that are large in the middle of an arm have rounding errors that the `noise` of D
+        does not contain.
         """
         arm = self.determinant(p)
         values = [
             self._value(x, p),
-            *(arm.value_at_level(x, factor) for factor in ARM_DOUBLES.compared_levels),
+            *(arm.value_at_level(x, factor) for factor in ARM_DOUBLE_EIGENVALUES.compared_level_factors),
         ]
         D = [value.D.real * math.exp(value.S - S) for value in values]
-        return ARM_DOUBLES.spread_factor * (max(D) - min(D))
+        return ARM_DOUBLE_EIGENVALUES.spread_factor * (max(D) - min(D))
 
     def _value(self, x: float, p: float) -> DeterminantValue:
         """D and D_w at real w = x, for the arm at p."""
@@ -166,10 +170,10 @@ class ArmAlongPath:
         step = min(ROOT_NEWTON.jacobian_step * max(abs(p), 1.0), largest)
         if p == 0 and self.path.name != "F":
             return FORWARD_DIFFERENCE, step
-        for _ in range(ARM_DOUBLES.max_shortenings):
+        for _ in range(ARM_DOUBLE_EIGENVALUES.max_shortenings):
             if self._exists(p + step) and self._exists(p - step):
                 break
-            step /= ARM_DOUBLES.shortening
+            step /= ARM_DOUBLE_EIGENVALUES.step_divisor
         return CENTRAL_DIFFERENCE, step
 
     def _exists(self, p: float) -> bool:

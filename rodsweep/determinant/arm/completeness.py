@@ -50,7 +50,7 @@ class CompletenessSettings(CompiledSettings):
     spread: float = 1.0
     """x_k - x_1, in units of x_1."""
     widening_factor: float = 1.3
-    """Factor on all points x_j, applied until every term of R has a real part >= 0."""
+    """Factor by which the points x_j move outwards until every term of R has a real part >= 0."""
     strip_count: int = 24
     """Number of vertical strips of the hull right of the line, each with its own bound of Re phi."""
     max_remainder: float = 0.7

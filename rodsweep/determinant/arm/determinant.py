@@ -23,7 +23,7 @@ from .elements.settings import ARM_ELEMENTS
 from .local_waves import ArmSamples, arm_samples, scales_at, scales_at_all
 from .value import chain_value
 
-Level = tuple[float, Array]
+BoundedPropagators = tuple[float, Array]
 """(W, propagators that hold for |w| <= W, (elements, terms, 25))."""
 
 
@@ -35,9 +35,9 @@ class ArmDeterminant:
     elements do not resolve the arm.
     """
 
-    def __init__(self, rod: Rod, known: Level | None = None):
+    def __init__(self, rod: Rod, known: BoundedPropagators | None = None):
         self.rod = rod
-        self._levels: list[Level] = [] if known is None else [known]
+        self._levels: list[BoundedPropagators] = [] if known is None else [known]
         points, weights, local = sampled(rod)
         self.samples = arm_samples(float(rod.F), local, weights)
         each = LocalCoefficients(*(x[None] for x in local))
@@ -85,7 +85,7 @@ class ArmDeterminant:
         local = self.rod.local((self.rod.build.breaks[:-1, None] + lengths * points).ravel())
         return arm_samples(float(self.rod.F), local, (lengths * weights).ravel())
 
-    def level(self, size: float, highest: float | None = None) -> Level:
+    def level(self, size: float, highest: float | None = None) -> BoundedPropagators:
         """(W, propagators for |w| <= W, (elements, terms, 25)) with the smallest W >= size that exists, or a
         new one.
 

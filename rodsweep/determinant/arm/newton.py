@@ -14,7 +14,7 @@ from ..roots.newton import ROOT_NEWTON
 from ..roots.roots import roots_of_parabola
 from ..roots.settings import ROOTS
 from ..value import DETERMINANT, DeterminantValue, second_difference
-from .determinant import ArmDeterminant, Level
+from .determinant import ArmDeterminant, BoundedPropagators
 from .value import ARM_VALUE, chain_value
 
 
@@ -35,7 +35,7 @@ ARM_ROOTS = ArmRootSettings()
 
 
 @compiled
-def _second_derivative(w: complex, S: float, level: Level) -> complex:
+def _second_derivative(w: complex, S: float, level: BoundedPropagators) -> complex:
     """D'' exp(-S) at w, by a central difference of D', from the propagators of `level`."""
     h = DETERMINANT.second_difference_step * abs(w)
     after = chain_value(w + h, level[0], level[1])
@@ -45,7 +45,7 @@ def _second_derivative(w: complex, S: float, level: Level) -> complex:
 
 
 @compiled
-def _error(w: complex, value: DeterminantValue, level: Level) -> float:
+def _error(w: complex, value: DeterminantValue, level: BoundedPropagators) -> float:
     """`root_error` at w, from the value of D at w and the propagators of `level`."""
     e = ARM_VALUE.root_residual * abs(value.D) + ARM_VALUE.root_noise * value.noise
     size = abs(value.D_w)
@@ -60,13 +60,13 @@ def _error(w: complex, value: DeterminantValue, level: Level) -> float:
 
 
 @compiled
-def _root_error(w: complex, level: Level) -> float:
+def _root_error(w: complex, level: BoundedPropagators) -> float:
     """`root_error` at w, from the propagators of `level`."""
     return _error(w, chain_value(w, level[0], level[1]), level)
 
 
 @compiled
-def _refined(guess: complex, level: Level, last: float) -> tuple[complex, float, float]:
+def _refined(guess: complex, level: BoundedPropagators, last: float) -> tuple[complex, float, float]:
     """(w, error of w, length of the last step) after Newton's method from `guess`, with the propagators of
     `level`.
 
@@ -91,7 +91,7 @@ def _refined(guess: complex, level: Level, last: float) -> tuple[complex, float,
 
 
 @compiled
-def _two_roots(middle: complex, level: Level) -> tuple[complex, complex]:
+def _two_roots(middle: complex, level: BoundedPropagators) -> tuple[complex, complex]:
     """`two_roots` with the propagators of `level`."""
     D, D_w, S, _ = chain_value(middle, level[0], level[1])
     if middle.imag == 0:
@@ -100,7 +100,7 @@ def _two_roots(middle: complex, level: Level) -> tuple[complex, complex]:
     return roots_of_parabola(middle, D, D_w, _second_derivative(middle, S, level))
 
 
-def _level(w: complex, determinant: ArmDeterminant) -> Level:
+def _level(w: complex, determinant: ArmDeterminant) -> BoundedPropagators:
     """(W, propagators) that hold for D and D'' at w."""
     return determinant.level((1 + DETERMINANT.second_difference_step) * abs(w))
 

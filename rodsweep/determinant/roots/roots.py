@@ -18,7 +18,13 @@ from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
 from ..certificate.box import box_from_amplification
-from ..value import DETERMINANT, distance_to_next, newton_correction, scaled_determinant, second_derivative
+from ..value import (
+    DETERMINANT,
+    distance_to_next_root,
+    newton_correction,
+    scaled_determinant,
+    second_derivative,
+)
 from .newton import ROOT_NEWTON, refine_eigenvalue
 from .settings import ROOTS
 
@@ -227,7 +233,7 @@ def _raise_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coeffic
         for j in range(i + 1, len(w)):
             apart = abs(w[i] - w[j])
             if apart <= ROOTS.same_root_distance * (error[i] + error[j]):
-                next_root = distance_to_next(w[i], coefficients)
+                next_root = distance_to_next_root(w[i], coefficients)
                 if apart < ROOTS.same_root_fraction * next_root:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)

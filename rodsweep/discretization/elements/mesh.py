@@ -96,7 +96,7 @@ def transfer(source: Mesh, target: Mesh) -> Array:
     return source.evaluation(target.positions)
 
 
-def configuration(grid: Mesh, strains: Array, clamp: Array) -> Array:
+def shape_from_strains(grid: Mesh, strains: Array, clamp: Array) -> Array:
     """Shape (x, y, theta) of a rod at all nodes, (3, ..., nodes + 1), from strains (h1, h2, Pi).
 
     strains: at the nodes of every element, (3, ..., elements (order + 1)). clamp: (x, y, theta) at u = 0,

@@ -18,7 +18,7 @@ from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
 from ..elements.quadrature import gauss, gauss_lobatto
 from .arm_resolution import ArmMesh
-from .pencil import PENCIL_NORM, Matrices
+from .pencil import PENCIL_NORM, PencilMatrices
 
 
 class _Pieces(NamedTuple):
@@ -88,9 +88,9 @@ class ArmPencil:
         """Material coordinate u of all nodes, both ends included, (nodes + 1,)."""
         return self.mesh.positions
 
-    def matrices(self, rod: Rod) -> Matrices:
+    def matrices(self, rod: Rod) -> PencilMatrices:
         """The matrices of the pencil of an arm."""
-        return Matrices(*_filled(float(rod.F), np.array(rod.local(self._points)), self._pieces))
+        return PencilMatrices(*_filled(float(rod.F), np.array(rod.local(self._points)), self._pieces))
 
     def evaluation(self, points: Array) -> Array:
         """Matrix from values at all nodes to values at `points` in [0, 1], (n,): shape (n, nodes + 1)."""
@@ -129,7 +129,8 @@ def _keys(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> NDA
 
 @compiled
 def _filled(F: float, local: Array, pieces: _Pieces) -> tuple[Array, Array, Array]:
-    """A, B and scale of the `Matrices` of an arm; local: its coefficients, (6, elements, 2 order + 1)."""
+    """A, B and scale of the `PencilMatrices` of an arm; local: its coefficients, (6, elements, 2 order +
+    1)."""
     elements, order = pieces.weight.shape
     nodes = elements * order
     push = np.zeros(nodes + 1)

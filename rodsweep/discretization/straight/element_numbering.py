@@ -15,19 +15,20 @@ Indices = NDArray[np.int_]
 
 @dataclass(frozen=True, eq=False)
 class ElementNumbering:
-    """Indices of the unknowns of every element in the state, for static condensation.
+    """Indices of the unknowns of every element, for static condensation.
 
-    An element has `local` unknowns. unknowns: indices in the state, (elements, local); stresses at the tip
-    are not unknowns, and have the index behind the state. inside, ends: local indices of interior unknowns
-    and of unknowns at both ends, the left end first. between: indices of the end unknowns among all unknowns
-    between elements, (elements, ends). exists: False for stresses at the tip, (unknowns between elements,).
+    An element has `local` unknowns. state_indices: in the state, (elements, local); stresses at the tip are
+    not unknowns, and have the index behind the state. interior, interface: local indices of interior unknowns
+    and of unknowns at both ends, the left end first. interface_indices: indices of an element's end unknowns
+    among those of all elements, (elements, ends). is_unknown: False for stresses at the tip, one entry for
+    each of the end unknowns of all elements.
     """
 
-    unknowns: Indices
-    inside: Indices
-    ends: Indices
-    between: Indices
-    exists: NDArray[np.bool_]
+    state_indices: Indices
+    interior: Indices
+    interface: Indices
+    interface_indices: Indices
+    is_unknown: NDArray[np.bool_]
 
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)

@@ -101,29 +101,29 @@ class StraightElements:
 
     def gather(self, x: Values) -> Values:
         """Entries of a vector x, (unknowns,), for each element, (elements, local)."""
-        return np.append(x, 0)[self.numbering.unknowns]
+        return np.append(x, 0)[self.numbering.state_indices]
 
     def assemble(self, parts: Values) -> Values:
         """Sum of the contributions of all elements, (elements, local), as a vector (unknowns,)."""
         x = np.zeros(self.form.unknowns + 1, parts.dtype)
-        np.add.at(x, self.numbering.unknowns, parts)
+        np.add.at(x, self.numbering.state_indices, parts)
         return x[:-1]
 
     def factors(self, shift: complex) -> "ElementFactors":
         """LU factorisation of A - shift M by static condensation."""
         numbering = self.numbering
         K = self.A - np.diag(shift * self.M).astype(complex)
-        condensed = K[np.ix_(numbering.ends, numbering.ends)]
+        condensed = K[np.ix_(numbering.interface, numbering.interface)]
         inside = None
-        if numbering.inside.size:
+        if numbering.interior.size:
             inside = _InteriorElimination.of(K, numbering)
             condensed -= inside.entering @ inside.right
-        exists = numbering.exists
+        exists = numbering.is_unknown
         whole = np.zeros((len(exists), len(exists)), complex)
-        for element in numbering.between:
+        for element in numbering.interface_indices:
             whole[np.ix_(element, element)] += condensed
         between = lu_factorisation(whole[np.ix_(exists, exists)])
-        return ElementFactors(elements=self, K=K, inside=inside, between=between)
+        return ElementFactors(elements=self, K=K, interior=inside, interface=between)
 
 
 LU = tuple[Complex, NDArray[np.int32]]
@@ -147,8 +147,8 @@ class _InteriorElimination:
     @classmethod
     def of(cls, K: Complex, numbering: ElementNumbering) -> Self:
         """The elimination of the interior unknowns from an element matrix K, (local, local)."""
-        inside = numbering.inside
-        ends = numbering.ends
+        inside = numbering.interior
+        ends = numbering.interface
         factors = lu_factorisation(K[np.ix_(inside, inside)])
         leaving = K[np.ix_(inside, ends)]
         entering = K[np.ix_(ends, inside)]
@@ -165,14 +165,14 @@ class _InteriorElimination:
 class ElementFactors:
     """Factorisation of A - shift M by static condensation.
 
-    K: matrix of one element. inside: elimination of its interior, None for a single element. between: LU
+    K: matrix of one element. interior: elimination of its interior, None for a single element. interface: LU
     factorisation of the matrix of the nodes between elements.
     """
 
     elements: StraightElements
     K: Complex
-    inside: _InteriorElimination | None
-    between: LU
+    interior: _InteriorElimination | None
+    interface: LU
 
     def solve(self, b: Values, adjoint: bool = False) -> Complex:
         """The solution x of (A - shift M) x = b, or of its adjoint system if `adjoint`; both (unknowns,).
@@ -182,29 +182,29 @@ class ElementFactors:
         """
         elements = self.elements
         x = self._eliminated(b, adjoint)
-        if self.inside is None:
+        if self.interior is None:
             return x
         rows = self.K.conj() if adjoint else self.K.T
         return x + self._eliminated(b - elements.assemble(elements.gather(x) @ rows), adjoint)
 
     def _eliminated(self, b: Values, adjoint: bool) -> Complex:
         numbering = self.elements.numbering
-        inside = self.inside
-        within = numbering.unknowns[:, numbering.inside]
-        ends = numbering.unknowns[:, numbering.ends]
-        right = np.zeros(len(numbering.exists), complex)
-        between = np.zeros(len(numbering.exists), complex)
+        inside = self.interior
+        within = numbering.state_indices[:, numbering.interior]
+        ends = numbering.state_indices[:, numbering.interface]
+        right = np.zeros(len(numbering.is_unknown), complex)
+        between = np.zeros(len(numbering.is_unknown), complex)
         b = np.append(b, 0)
         x = np.zeros(len(b), complex)
-        right[numbering.between] = b[ends]
+        right[numbering.interface_indices] = b[ends]
         if inside is not None:
             to_ends, from_ends = inside.coupling(adjoint)
             alone = solve_factorised(inside.factors, b[within].T, adjoint).T
-            np.subtract.at(right, numbering.between, alone @ to_ends.T)
-        between[numbering.exists] = solve_factorised(self.between, right[numbering.exists], adjoint)
-        x[ends] = between[numbering.between]
+            np.subtract.at(right, numbering.interface_indices, alone @ to_ends.T)
+        between[numbering.is_unknown] = solve_factorised(self.interface, right[numbering.is_unknown], adjoint)
+        x[ends] = between[numbering.interface_indices]
         if inside is not None:
-            x[within] = alone - between[numbering.between] @ from_ends.T
+            x[within] = alone - between[numbering.interface_indices] @ from_ends.T
         return x[:-1]
 
 

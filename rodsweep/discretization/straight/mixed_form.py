@@ -115,7 +115,7 @@ class MixedForm:
         # F enters by the strain and the tangent at rest and by Sigma1 = -F.
         forces = coad(self._along(E, S), self._stressed(S)) + coad(at_rest, moved)
         forces = forces + coad(self._strain(S), self._along(Sigma, S))
-        return self.unknown(W * ad(self._along(E, V), V), W * forces + self._slope(moved))
+        return self.state(W * ad(self._along(E, V), V), W * forces + self._slope(moved))
 
     @cached_property
     def tip_y(self) -> Array:
@@ -133,7 +133,7 @@ class MixedForm:
         """Stresses S and velocities V of states X at all nodes, tip included, (3, ..., nodes + 1) each."""
         return self.layout.stresses(X), self.layout.velocities(X)
 
-    def unknown(self, S: Values, V: Values) -> Values:
+    def state(self, S: Values, V: Values) -> Values:
         """States X from stresses S and velocities V at all nodes, (3, ..., nodes + 1) each; S at the tip is
         ignored.
         """
@@ -150,7 +150,7 @@ class MixedForm:
         if self.law.nonlinear:
             second = self.law.second(S, T)
             forces = forces + W * coad(self._along(self.nodal.rest, S), second) + self._slope(second)
-        return self.unknown(W * (ad(CS, V) + ad(CT, U)), forces)
+        return self.state(W * (ad(CS, V) + ad(CT, U)), forces)
 
     def trilinear(self, X: Values, Y: Values, Z: Values) -> Values:
         """The symmetric trilinear form C(X, Y, Z) of the cubic terms, (..., unknowns); 0 for a linear law."""
@@ -161,7 +161,7 @@ class MixedForm:
         forces = W * coad(self._along(self.nodal.rest, S), third) + self._slope(third)
         for one, two, three in ((S, T, R), (T, R, S), (R, S, T)):
             forces = forces + W * coad(self._strain(one), law.second(two, three))
-        return self.unknown(np.zeros_like(forces), forces)
+        return self.state(np.zeros_like(forces), forces)
 
     def _strain(self, S: Values) -> Values:
         """Strains C S minus the strain of the straight rod, at all nodes, (3, ..., nodes + 1)."""

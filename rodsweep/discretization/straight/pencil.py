@@ -51,7 +51,7 @@ class PencilNormSettings(CompiledSettings):
 PENCIL_NORM = PencilNormSettings()
 
 
-class Matrices(NamedTuple):
+class PencilMatrices(NamedTuple):
     """The matrices of the pencil A x = w B x of one rod or arm.
 
     A: entries in the order of the pattern, (nnz,). B: diagonal of B, (unknowns,). scale: factors from
@@ -67,15 +67,15 @@ class Matrices(NamedTuple):
 class Pencil(Elements):
     """The pencil A x = w B x of uniform rods on equal elements, as six constant matrices.
 
-    The matrix of one rod is A = sum_i coefficients(rod)[i] pieces[i]. pieces: entries of the constant
-    matrices, (6, nnz). rows, columns: of the entries, (nnz,), sorted by row, then column, with the diagonal.
-    B is diagonal: 1 for y, gamma3 over the squared angle weight for theta, 0 for s. mass: lumped mass of the
-    nodes, (nodes,). The unknowns are (y, theta, s), `nodes` of each, without the clamp.
+    The matrix of one rod is A = sum_i coefficients(rod)[i] term_entries[i]. term_entries: entries of the
+    constant matrices, (6, nnz). rows, columns: of the entries, (nnz,), sorted by row, then column, with the
+    diagonal. B is diagonal: 1 for y, gamma3 over the squared angle weight for theta, 0 for s. mass: lumped
+    mass of the nodes, (nodes,). The unknowns are (y, theta, s), `nodes` of each, without the clamp.
     """
 
     rows: NDArray[np.int32]
     columns: NDArray[np.int32]
-    pieces: Array
+    term_entries: Array
     mass: Array
 
     @property
@@ -89,19 +89,19 @@ class Pencil(Elements):
 
     def stiffness(self, rod: Rod) -> Array:
         """Entries of the matrix A of a rod, (nnz,)."""
-        return self.coefficients(rod) @ self.pieces
+        return self.coefficients(rod) @ self.term_entries
 
-    def dense_pieces(self) -> Array:
+    def dense_terms(self) -> Array:
         """The six constant matrices as dense matrices in column-major order, as LAPACK expects,
         (6, unknowns^2).
         """
         whole = np.zeros((6, self.unknowns**2))
-        whole[:, self.columns.astype(int) * self.unknowns + self.rows] = self.pieces
+        whole[:, self.columns.astype(int) * self.unknowns + self.rows] = self.term_entries
         return whole
 
-    def matrices(self, rod: Rod) -> Matrices:
+    def matrices(self, rod: Rod) -> PencilMatrices:
         """The matrices of the pencil of one rod."""
-        return Matrices(self.stiffness(rod), self.inertia(rod), self.scale(rod))
+        return PencilMatrices(self.stiffness(rod), self.inertia(rod), self.scale(rod))
 
     def inertia(self, rod: Rod) -> Array:
         """Diagonal of the matrix B of a rod, (unknowns,)."""

@@ -19,7 +19,7 @@ from ..elements.quadrature import gauss, gauss_lobatto
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SlavingSettings:
+class TipLayerSettings:
     """Settings for the elements that resolve the tip layer."""
 
     max_length: float = 4.0
@@ -33,9 +33,9 @@ class SlavingSettings:
     estimated."""
 
 
-SLAVING = SlavingSettings()
+TIP_LAYER = TipLayerSettings()
 TIP_LAYER_ORDER = 16
-"""Order of the elements of the tip layer. It resolves exp(kappa u) over `SLAVING.max_length`/kappa to
+"""Order of the elements of the tip layer. It resolves exp(kappa u) over `TIP_LAYER.max_length`/kappa to
 rounding, because T is returned without an error. Order 8 would cause an error of 4e-11 of a numerical
 abscissa."""
 
@@ -84,11 +84,11 @@ def _edges(rod: Rod) -> Array:
     """
     breaks = rod.build.breaks
     pieces = zip(breaks, breaks[1:], strict=False)
-    middles = np.concatenate([np.linspace(a, b, SLAVING.samples_per_piece + 2)[1:-1] for a, b in pieces])
+    middles = np.concatenate([np.linspace(a, b, TIP_LAYER.samples_per_piece + 2)[1:-1] for a, b in pieces])
     local = rod.local(middles)
     waves = sqrt(float(np.abs(local.g * local.nu / local.c2 * local.c3).max()))
-    count = min(max(1, ceil(waves / SLAVING.max_length)), SLAVING.max_equal_elements)
+    count = min(max(1, ceil(waves / TIP_LAYER.max_length)), TIP_LAYER.max_equal_elements)
     equal = np.linspace(0.0, 1.0, count + 1)
-    halvings = max(0, ceil(np.log2(max(waves / SLAVING.max_length / count, 1.0))))
+    halvings = max(0, ceil(np.log2(max(waves / TIP_LAYER.max_length / count, 1.0))))
     towards_tip = 1 - 0.5 ** np.arange(1, halvings + 1) / count
     return np.unique(np.concatenate([breaks, equal, towards_tip]))

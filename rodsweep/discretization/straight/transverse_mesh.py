@@ -27,7 +27,7 @@ def mesh_for(rod: Rod, wave_number: float, accuracy: float) -> AnyMesh:
 
 
 def finer_mesh(rod: Rod, mesh: AnyMesh) -> AnyMesh:
-    """The next finer mesh after `mesh`."""
+    """The mesh with about a third more unknowns that follows `mesh` in a refinement."""
     return finer_resolution(mesh) if isinstance(mesh, Resolution) else finer_arm_mesh(rod, mesh)
 
 

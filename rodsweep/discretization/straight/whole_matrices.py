@@ -28,42 +28,42 @@ class WholeMatrices:
     components: tuple[int, ...]
 
     @cached_property
-    def places(self) -> NDArray[np.int_]:
-        """Indices in a state of the unknowns of the given components, (places,)."""
+    def state_indices(self) -> NDArray[np.int_]:
+        """Indices in a state of the unknowns of the given components, (n,)."""
         size = self.form.mesh.nodes + 1
         marks = np.isin(np.arange(PLANE_COMPONENTS), self.components)[:, None] * np.ones(size)
         return np.flatnonzero(self.form.layout.state(marks, marks))
 
     @cached_property
     def A(self) -> Array:
-        """Rows and columns of A that belong to the given components, (places, places)."""
-        return self.form.A[np.ix_(self.places, self.places)]
+        """Rows and columns of A that belong to the given components, (n, n)."""
+        return self.form.A[np.ix_(self.state_indices, self.state_indices)]
 
     @cached_property
     def M(self) -> Array:
-        """Diagonal of M for the given components, (places,)."""
-        return self.form.M[self.places]
+        """Diagonal of M for the given components, (n,)."""
+        return self.form.M[self.state_indices]
 
     def times_A(self, x: Values) -> Values:
         """Product A x, (unknowns,)."""
-        return self._spread(self.A @ x[self.places])
+        return self._spread(self.A @ x[self.state_indices])
 
     def times_M(self, x: Values) -> Values:
         """Product M x, (unknowns,)."""
-        return self._spread(self.M * x[self.places])
+        return self._spread(self.M * x[self.state_indices])
 
     def size_of_product(self, p: Values, q: Values) -> float:
         """|p| |A| |q|, with the moduli of all entries: p A q has a rounding error relative to this number."""
-        return float(np.abs(p[self.places]) @ (np.abs(self.A) @ np.abs(q[self.places])))
+        return float(np.abs(p[self.state_indices]) @ (np.abs(self.A) @ np.abs(q[self.state_indices])))
 
     def factors(self, shift: complex) -> "WholeFactors":
         """LU factorisation of A - shift M."""
         return WholeFactors(self, lu_factorisation(self.A - np.diag(shift * self.M).astype(complex)))
 
     def _spread(self, values: Values) -> Values:
-        """A state, (unknowns,), with `values`, (places,), in the given components and 0 in all others."""
+        """A state, (unknowns,), with `values`, (n,), in the given components and 0 in all others."""
         x = np.zeros(self.form.unknowns, values.dtype)
-        x[self.places] = values
+        x[self.state_indices] = values
         return x
 
 
@@ -77,7 +77,7 @@ class WholeFactors:
     def solve(self, b: Values, adjoint: bool = False) -> Complex:
         """The solution x of K x = b, or of K^H x = b if `adjoint`; both (unknowns,)."""
         matrices = self.matrices
-        x: Complex = matrices._spread(solve_factorised(self.factors, b[matrices.places], adjoint))
+        x: Complex = matrices._spread(solve_factorised(self.factors, b[matrices.state_indices], adjoint))
         return x
 
 

@@ -64,7 +64,7 @@ class StressForm(RodOnMesh):
         V[list(self.unknown_velocities)] = self.layout.velocities(x) @ E.T
         return layout.state(self.stresses_on(grid, x), V)
 
-    def change(self, name: str) -> NodalChange:
+    def parameter_derivative(self, name: str) -> NodalChange:
         """Derivative of `nodal` by the path variable of a parameter: 1/k for a stiffness k, else the
         parameter.
         """
@@ -81,8 +81,8 @@ class StressForm(RodOnMesh):
         weighted = rod.compliance * self.mesh.quadrature
         return self.layout.state(weighted, np.zeros(weighted.shape))
 
-    def size(self, x: Array) -> Array:
+    def amplitude(self, x: Array) -> Array:
         """Amplitude sqrt(x M x) of states x, with the mass matrix M; 0 for the straight rod; (...)."""
         # x M x is twice the elastic energy of a linear rod; Omega has mass 0 and does not count.
-        size: Array = np.sqrt(x**2 @ self.mass)
-        return size
+        amplitude: Array = np.sqrt(x**2 @ self.mass)
+        return amplitude

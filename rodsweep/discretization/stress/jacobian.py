@@ -170,9 +170,9 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
 def _kept_columns(  # noqa: PLR0913, PLR0917 - as above
     g: Algebra, k: int, E: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
-    """Writes the derivative of G with respect to the k-th unknown velocity into J and tip.
+    """Writes the derivative of the strain rates G by the k-th unknown velocity into J and tip.
 
-    E: (d, nodes + 1). J: (unknowns, unknowns). tip: (d, unknowns).
+    E: strains, (d, nodes + 1). J: (unknowns, unknowns). tip: (d, unknowns).
     """
     size = len(m.weights)
     n = len(m.weights) - 1

@@ -1,7 +1,7 @@
 """Position and velocity of the tip from strains and strain rates, compiled.
 
-theta(1) = int Pi, r(1) = int R(theta) (h1, h2), and time derivatives. `mesh.configuration` computes positions
-of all nodes.
+theta(1) = int Pi, r(1) = int R(theta) (h1, h2), and time derivatives. `mesh.shape_from_strains` computes
+positions of all nodes.
 """
 
 from functools import lru_cache

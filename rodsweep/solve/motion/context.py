@@ -80,7 +80,7 @@ UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
 
 def arrays_of(beam: Beam) -> dict[str, Array]:
     """Arrays of a rod for the fields `ROD`, of any shapes."""
-    own = beam.nodal._asdict() | {"roots": beam.roots, "crushed": beam.crushed}
+    own = beam.nodal._asdict() | {"roots": beam.sqrt_compliance, "crushed": beam.crushing_z1}
     return {name: own[name] for name in ROD}
 
 

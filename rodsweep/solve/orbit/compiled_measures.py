@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...discretization.element_strains import write_element_rates, write_element_strains
+from ...discretization.element_strains import write_element_strain_changes, write_element_strains
 from ...discretization.elements.periodic import hermite_columns, maxima, minima, series_samples_of_columns
 from ...discretization.nodal_rod import NodalRod
 from ...discretization.plane import balance
@@ -72,7 +72,7 @@ def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> T
     strain_rates(states, rates, p)
     rates *= period
     write_element_strains(S, p.rod, order, strains[0])
-    write_element_rates(S, rates, p.rod, order, strains[1])
+    write_element_strain_changes(S, rates, p.rod, order, strains[1])
     tip_motion(strains[0], strains[1], m, tip, velocity)
     # Signs 0 for an orbit without symmetry: its values cover the whole period.
     c = hermite_columns(tip, velocity, REFLECTION_SIGNS * (p.parts - 1))

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...discretization.elements.elements import ELEMENTS
-from ...discretization.elements.mesh import Mesh, configuration
+from ...discretization.elements.mesh import Mesh, shape_from_strains
 from ...discretization.elements.periodic import (
     hermite_coefficients,
     hermite_columns,
@@ -143,7 +143,7 @@ class CyclePath:
         """(x, y, theta) at `count` equidistant times on `nodes` Lobatto nodes, shape (3, count, nodes)."""
         strains = self._sampled(self.strain_coefficients, count).swapaxes(0, 1)
         grid = self.orbit.form.mesh
-        return configuration(grid, np.ascontiguousarray(strains), np.zeros(3)) @ _at_lobatto(grid, nodes)
+        return shape_from_strains(grid, np.ascontiguousarray(strains), np.zeros(3)) @ _at_lobatto(grid, nodes)
 
     def _sampled(self, c: Complex, count: int) -> Array:
         """Re sum_k c_k exp(2 pi i k t) at equidistant times from `beginning`, shape (count, ...)."""

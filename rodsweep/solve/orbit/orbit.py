@@ -92,7 +92,7 @@ class Orbit:
     def size(self) -> float:
         """Largest amplitude of the motion, in units of sqrt(energy)."""
         # The reflected part of the period has the same amplitude.
-        return float(self.form.size(self.regular_states).max())
+        return float(self.form.amplitude(self.regular_states).max())
 
     def moved(self, change: Array, share: float = 1.0) -> "Orbit":
         """The orbit plus a share of a change, (N,)."""

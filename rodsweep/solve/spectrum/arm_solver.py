@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from ...arrays import Complex
 from ...discretization.straight.arm_pencil import ArmPencil
 from ...discretization.straight.arm_resolution import ArmMesh
-from ...discretization.straight.pencil import Matrices, fields_of_vectors, finite_eigenvalues
+from ...discretization.straight.pencil import PencilMatrices, fields_of_vectors, finite_eigenvalues
 from ...model.rod import Rod
 from ..backend.kept import LruPool
 from .shift_invert import KRYLOV, LoadedPencil, ShiftInvertSolver
@@ -15,7 +15,7 @@ from .shift_invert import KRYLOV, LoadedPencil, ShiftInvertSolver
 class ArmSolver(ShiftInvertSolver):
     """Krylov-Schur for all nonuniform arms on one mesh."""
 
-    matrices: Matrices
+    matrices: PencilMatrices
     """Matrices of the arm that was solved last."""
 
     def __init__(self, mesh: ArmMesh):

@@ -26,20 +26,20 @@ def _fill(A: NDArray, coefficients: NDArray, pieces: NDArray, shift: NDArray) ->
         A[j, j] -= shift[j]
 
 
-class EigenSolver(ShiftInvertSolver):
+class UniformSolver(ShiftInvertSolver):
     """Krylov-Schur for all uniform rods on one mesh of equal elements."""
 
     def __init__(self, resolution: Resolution):
         self.pencil: Pencil = assemble_pencil(resolution.elements, resolution.order)
         super().__init__(self.pencil, self.pencil.mass)
         if self.dense:
-            self.pieces = self.pencil.dense_pieces()
+            self.dense_terms = self.pencil.dense_terms()
         self.gamma3 = -1.0
         self.inertia: Array = np.ones(self.pencil.unknowns)
 
     def load(self, rod: Rod, shift: float) -> LoadedPencil:
-        rod, pace = _as_filament(rod)
-        shift *= pace**2
+        rod, deflection_ratio = _as_filament(rod)
+        shift *= deflection_ratio**2
         coefficients = self.pencil.coefficients(rod)
         if not math.isfinite(coefficients.sum() + shift):
             raise FloatingPointError("matrix entries overflow with these parameters")
@@ -49,12 +49,12 @@ class EigenSolver(ShiftInvertSolver):
             self.B.setValuesCSR(self.line, self.line[:-1], self.inertia)
             self.B.assemble()
         if self.dense:
-            _fill(self.A.getDenseArray().T, coefficients, self.pieces, shift * self.inertia)
+            _fill(self.A.getDenseArray().T, coefficients, self.dense_terms, shift * self.inertia)
         else:
-            values = coefficients @ self.pencil.pieces
+            values = coefficients @ self.pencil.term_entries
             values[self.diagonal] -= shift * self.inertia
             self.A.setValuesCSR(self.indptr, self.indices, values)
-        return LoadedPencil(finite_eigenvalues(rod, self.nodes), shift, pace)
+        return LoadedPencil(finite_eigenvalues(rod, self.nodes), shift, deflection_ratio)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
         """(y, theta) at all nodes, (nodes + 1, k) each, from eigenvectors of the last solve, (unknowns,
@@ -63,8 +63,8 @@ class EigenSolver(ShiftInvertSolver):
 
 
 def _as_filament(rod: Rod) -> tuple[Rod, float]:
-    """(equivalent rod, pace). `rod` has the eigenvalues of the equivalent rod over pace^2, and its y times
-    `pace`.
+    """(equivalent rod, deflection_ratio). `rod` has the eigenvalues of the equivalent rod over
+    deflection_ratio^2, and its y times `deflection_ratio`.
 
     A partial beam (k2 = inf, gamma3 = 0) moves like the filament under the force F nu, with times scaled by
     nu^2. Near crushing the matrices of the beam itself are too badly scaled.
@@ -74,9 +74,9 @@ def _as_filament(rod: Rod) -> tuple[Rod, float]:
     return rod, 1.0
 
 
-_kept = LruPool(EigenSolver, KRYLOV.max_uniform_solvers)
+_kept = LruPool(UniformSolver, KRYLOV.max_uniform_solvers)
 
 
-def eigen_solver(resolution: Resolution) -> EigenSolver:
+def uniform_solver(resolution: Resolution) -> UniformSolver:
     """The Krylov-Schur solver for a resolution; it is kept and reused for later rods of this resolution."""
     return _kept.get(resolution)

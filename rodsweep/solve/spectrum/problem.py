@@ -33,7 +33,7 @@ from ...discretization.straight.transverse_mesh import AnyMesh, finer_mesh
 from ...model.dispersion import local_growth, most_amplified_wave
 from ...model.rod import Rod
 from .arm_solver import ArmSolver, arm_solver
-from .krylov_schur import EigenSolver, eigen_solver
+from .krylov_schur import UniformSolver, uniform_solver
 from .path.prediction import KnownRoots
 from .shift_invert import KRYLOV
 
@@ -58,16 +58,16 @@ class TransverseProblem(ABC):
         """The mesh expected to give `modes` leading eigenvalues to the relative `accuracy`."""
 
     def finer_mesh(self, mesh: AnyMesh) -> AnyMesh:
-        """The next finer mesh after `mesh`."""
+        """The mesh with about a third more unknowns that follows `mesh` in a refinement."""
         return finer_mesh(self.rod, mesh)
 
     @abstractmethod
     def next_mesh_for(self, mesh: Any, waves: Array, accuracy: float) -> Any:
         """The mesh to try after `mesh`, chosen for the wave numbers of the leading modes found, (modes,)."""
 
-    def solver(self, mesh: AnyMesh) -> EigenSolver | ArmSolver:
+    def solver(self, mesh: AnyMesh) -> UniformSolver | ArmSolver:
         """The Krylov-Schur solver for a mesh."""
-        return eigen_solver(mesh) if isinstance(mesh, Resolution) else arm_solver(mesh)
+        return uniform_solver(mesh) if isinstance(mesh, Resolution) else arm_solver(mesh)
 
     @abstractmethod
     def roots(self, raw: Complex, most_waves: float) -> Roots:

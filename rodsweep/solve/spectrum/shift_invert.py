@@ -98,15 +98,16 @@ class PencilPattern(Protocol):
 
 
 class LoadedPencil(NamedTuple):
-    """The rod whose matrices a solver holds: its number of finite eigenvalues, the shift, and the pace.
+    """Numbers of the rod whose matrices a solver holds.
 
-    shift: in units of the eigenvalues of the pencil. pace: the rod has the eigenvalues of the pencil over
-    pace^2, and the y of the pencil times `pace`.
+    finite_eigenvalues: number of finite eigenvalues. shift: in units of the eigenvalues of the pencil.
+    deflection_ratio: the rod has the eigenvalues of the pencil over deflection_ratio^2, and the y of the
+    pencil times deflection_ratio.
     """
 
     finite_eigenvalues: int
     shift: float
-    pace: float = 1.0
+    deflection_ratio: float = 1.0
 
 
 class ShiftInvertSolver(ABC):
@@ -192,7 +193,7 @@ class ShiftInvertSolver(ABC):
         self.eps.solve()
         found = self.eps.getConverged()
         w: Complex = np.array([self.eps.getEigenvalue(i) for i in range(found)], complex)
-        return (w + self.loaded.shift) / self.loaded.pace**2
+        return (w + self.loaded.shift) / self.loaded.deflection_ratio**2
 
     def vectors(self, found: int) -> Complex:
         """Eigenvectors of the first `found` eigenvalues of the last `solve`, (unknowns, found)."""
@@ -201,7 +202,7 @@ class ShiftInvertSolver(ABC):
         for i in range(found):
             self.eps.getEigenvector(i, real, imag)
             X[:, i] = real.array + 1j * imag.array
-        X[: self.nodes] *= self.loaded.pace
+        X[: self.nodes] *= self.loaded.deflection_ratio
         real.destroy()
         imag.destroy()
         return X

@@ -88,7 +88,7 @@ def test_the_balance_changes_with_every_parameter_as_its_differences_say(name, p
     form = on_mesh(name)
     x, V, _ = moving(form, 1.0)
     change = np.empty((3, *V.shape))
-    balance_change(x, V, change, form.change(parameter), form.nodal, form.mesh.matrices)
+    balance_change(x, V, change, form.parameter_derivative(parameter), form.nodal, form.mesh.matrices)
     at = form.rod.coordinate(parameter)
     h = 1e-6 * max(abs(at), 1e-3)
     ends = []
@@ -121,7 +121,7 @@ def test_the_mixed_form_has_the_same_motion_to_third_order(name):
     errors = []
     for size in (0.02, 0.01):
         x, V, G = moving(form, size)
-        X = mixed.unknown(form.stresses(x), V)
+        X = mixed.state(form.stresses(x), V)
         cubic = mixed.trilinear(X, X, X) / 6
         S, _ = mixed.fields(mixed_rate(mixed, X) + cubic)
         errors.append(np.abs(S[:, :-1] - G[:, :-1]).max() / np.abs(G).max())

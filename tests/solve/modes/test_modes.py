@@ -11,7 +11,7 @@ from rods import rod_of
 from scipy.linalg import expm
 from surveyed import few
 
-from rodsweep.determinant.value import distance_to_next
+from rodsweep.determinant.value import distance_to_next_root
 from rodsweep.discretization.elements.basis import differentiation
 from rodsweep.discretization.elements.quadrature import gauss_lobatto, lobatto_points
 from rodsweep.discretization.elements.resolution import Resolution
@@ -792,7 +792,7 @@ def test_the_distance_to_the_next_eigenvalue_is_sharp_where_it_is_small():
     for force, tolerance in ((20.0080207, 1e-3), (20.0081, 1e-3), (20.0, 1e-2)):
         rod = Rod(F=force, k1=1e4, k2=1e4, gamma3=1e-4)
         w = solve_spectrum(rod, SpectrumRequest(2, 1e-10, True)).eigenvalues
-        found = distance_to_next(complex(w[0]), rod.coefficients)
+        found = distance_to_next_root(complex(w[0]), rod.coefficients)
         assert found == pytest.approx(abs(w[0] - w[1]), rel=tolerance)
 
 

@@ -78,7 +78,7 @@ def random_strips(count: int):
             rod = whole.rod(int(at))
             w = eigenvalues(rod)
             at_line = float(w[gap - 1].real + w[gap].real) / 2
-            ends.append(IntervalEnd(float(whole.coordinates[at]), rod.coefficients, at_line))
+            ends.append(IntervalEnd(float(whole.path_variables[at]), rod.coefficients, at_line))
             counts.append(count_right_of(at_line, rod).number if math.isfinite(at_line) else None)
         if None not in counts and max(end.line for end in ends) < 0 and ends[0].p != ends[1].p:
             count -= 1

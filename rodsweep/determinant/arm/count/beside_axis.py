@@ -14,7 +14,7 @@ import numpy as np
 from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
 from ....model.compiled.settings import CompiledSettings
-from ..determinant import ArmDeterminant, Level
+from ..determinant import ArmDeterminant, BoundedPropagators
 from ..local_waves import ArmSamples
 from ..value import chain_value
 from .dominant_wave import slope_of_wave
@@ -63,7 +63,7 @@ def modes_near_axis(determinant: ArmDeterminant, top: float, known: Complex) -> 
 
 
 @compiled
-def _modes_from(heights: Array, known: Complex, level: Level, samples: ArmSamples) -> Complex:
+def _modes_from(heights: Array, known: Complex, level: BoundedPropagators, samples: ArmSamples) -> Complex:
     """The known eigenvalues, (n,), and those that Newton's method finds from i times each of `heights`,
     (k,)."""
     found = np.empty(BESIDE_AXIS.max_modes, np.complex128)
@@ -80,7 +80,7 @@ def _modes_from(heights: Array, known: Complex, level: Level, samples: ArmSample
 
 
 @compiled
-def _mode_near(start: complex, known: Complex, level: Level, samples: ArmSamples) -> complex:
+def _mode_near(start: complex, known: Complex, level: BoundedPropagators, samples: ArmSamples) -> complex:
     """The eigenvalue close to `start` that is not among the known ones, (n,); nan if no such eigenvalue is
     close.
     """

@@ -19,7 +19,7 @@ from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
 from ...certificate.winding_number import COUNT, PHASE_LOST, Count
 from ..completeness import has_conjugate
-from ..determinant import ArmDeterminant, Level
+from ..determinant import ArmDeterminant, BoundedPropagators
 from ..elements.settings import ARM_ELEMENTS
 from ..hull.region import Hull
 from ..local_waves import ArmSamples, scales_at
@@ -39,21 +39,21 @@ class PhaseLost(ArithmeticError):
 
 
 class BoxWalk(NamedTuple):
-    """State of a walk along the contour of a count: on side number `side`, at the distance t from its start.
+    """State of a walk along the contour of a count: on side number `side`, at a distance from its start.
 
-    total: change of arg D so far. here: the last of `nodes` nodes. growth: change of the reach per distance.
-    ahead: distance of the next node, 0 if not chosen yet. needed: |w| for which propagators are needed to go
-    on; 0 at the end, inf if the phase is lost.
+    phase_change: of arg D so far. node: the last of `nodes` nodes. reach_growth: change of the reach per
+    distance. next_distance: distance of the next node, 0 if not chosen yet. needed_size: |w| for which
+    propagators are needed to go on; 0 at the end, inf if the phase is lost.
     """
 
     side: int
-    t: float
-    total: float
+    distance: float
+    phase_change: float
     nodes: int
-    here: PhaseNode
-    growth: float
-    ahead: float
-    needed: float
+    node: PhaseNode
+    reach_growth: float
+    next_distance: float
+    needed_size: float
 
 
 def count_right_of(
@@ -132,12 +132,12 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
     walk = BoxWalk(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
     while True:
         walk = _advance(walk, (corners, largest), known, hull, samples, level)
-        if walk.needed == 0:
+        if walk.needed_size == 0:
             break
-        if walk.needed == math.inf:
+        if walk.needed_size == math.inf:
             raise PhaseLost(walk.nodes)
-        level = determinant.level(walk.needed, ARM_COUNT.max_level_ratio)
-    return walk.total, walk.nodes
+        level = determinant.level(walk.needed_size, ARM_COUNT.max_level_ratio)
+    return walk.phase_change, walk.nodes
 
 
 @compiled
@@ -147,7 +147,7 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
     known: Complex,
     hull: Hull,
     samples: tuple[ArmSamples, ArmSamples],
-    level: Level,
+    level: BoundedPropagators,
 ) -> BoxWalk:
     """Continues a walk along the box until its end, or until propagators for a larger or smaller |w| are
     needed.

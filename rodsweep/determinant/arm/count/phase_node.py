@@ -26,7 +26,7 @@ from ....arrays import Complex
 from ....model.compiled.compilation import compiled
 from ...exponents import EXPONENTS
 from ...value import DeterminantValue
-from ..determinant import Level
+from ..determinant import BoundedPropagators
 from ..hull.region import Hull, clearance
 from ..local_waves import ArmSamples
 from ..value import chain_size, chain_value
@@ -60,7 +60,11 @@ def tangent(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
 
 @compiled
 def phase_node(
-    w: complex, known: Complex, trial: tuple[float, float], hull: Hull, arm: tuple[ArmSamples, Level]
+    w: complex,
+    known: Complex,
+    trial: tuple[float, float],
+    hull: Hull,
+    arm: tuple[ArmSamples, BoundedPropagators],
 ) -> PhaseNode:
     """The node at w, inside or outside the hull.
 
@@ -91,7 +95,7 @@ def _node_inside(
     value: DeterminantValue,
     known: Complex,
     trial: tuple[float, float],
-    arm: tuple[ArmSamples, Level],
+    arm: tuple[ArmSamples, BoundedPropagators],
 ) -> PhaseNode:
     """The node at w inside the hull, with the circle whose bound of |f| gives the largest reach.
 

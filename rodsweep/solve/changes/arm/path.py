@@ -148,7 +148,7 @@ class ArmPath(PathProblem):
         return self._along.eigenvalue(guess, p) if known is None else (guess, *known)
 
     def double(self, x: float, p: float, reach: float) -> LocatedZero:
-        return self._along.double(x, p, reach)
+        return self._along.double_eigenvalue(x, p, reach)
 
     def count(self, line: float, p: float) -> Count:
         found = self.followed(p, ARM_PATH.followed_modes)

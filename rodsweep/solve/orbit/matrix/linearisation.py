@@ -71,7 +71,7 @@ def over_period(partial: Complex, orbit: Orbit) -> Complex:
 
 def change_along(form: StressForm, name: str) -> ParameterDerivatives:
     """Change of a rod and of its mass, (n,), with the coordinate of a parameter."""
-    change = form.change(name)
+    change = form.parameter_derivative(name)
     return ParameterDerivatives(change, form.mass_of(change))
 
 

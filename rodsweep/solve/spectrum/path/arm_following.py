@@ -35,13 +35,13 @@ from .following import (
 )
 from .prediction import Track, find_conjugates, predict_eigenvalues, set_two_guesses
 
-Level = tuple[float, Array, Array]
+PropagatorsWithSlopes = tuple[float, Array, Array]
 """(bound W of |w|, propagators valid for |w| <= W, their derivatives by p); both arrays:
 (elements, terms, 16)."""
 
 
 @compiled
-def correct_eigenvalue_of_arm(w: complex, level: Level) -> CorrectedEigenvalue:
+def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes) -> CorrectedEigenvalue:
     """One Newton step on D from w, for an arm given by its propagators `level`; a real w stays real."""
     D, D_w, D_p, _, noise = chain_along(w, level[0], level[1], level[2])
     return newton_step(w, D, D_w, D_p, ARM_VALUE.root_noise * noise)
@@ -49,7 +49,7 @@ def correct_eigenvalue_of_arm(w: complex, level: Level) -> CorrectedEigenvalue:
 
 @compiled
 def _settled(
-    first: CorrectedEigenvalue, crowding: float, exact: bool, level: Level
+    first: CorrectedEigenvalue, crowding: float, exact: bool, level: PropagatorsWithSlopes
 ) -> tuple[CorrectedEigenvalue, float]:
     """(last Newton step, error) of an arm's eigenvalue, after steps until `converged_error` is finite.
 
@@ -66,7 +66,7 @@ def _settled(
 
 
 @compiled
-def two_roots_of_arm(middle: complex, level: Level) -> tuple[complex, complex]:
+def two_roots_of_arm(middle: complex, level: PropagatorsWithSlopes) -> tuple[complex, complex]:
     """The two roots of D near a real `middle`, from the quadratic Taylor polynomial of D about `middle`."""
     D, D_w, S, _ = chain_value(middle, level[0], level[1])
     h = DETERMINANT.second_difference_step * abs(middle)
@@ -77,7 +77,9 @@ def two_roots_of_arm(middle: complex, level: Level) -> tuple[complex, complex]:
 
 
 @compiled
-def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, level: Level) -> bool:
+def _correct_all(
+    track: Track, i: int, p: float, guess: Complex, modes: int, level: PropagatorsWithSlopes
+) -> bool:
     """Refines the guesses for all eigenvalues of point i, at p, and writes the eigenvalues to the track.
 
     guess: (m,). True if all converged, no two coincide, and every complex pair stayed complex.
@@ -109,7 +111,7 @@ def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, lev
 
 
 @compiled
-def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level) -> int:
+def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: PropagatorsWithSlopes) -> int:
     """Number of leading eigenvalues of point i that are proved to be all eigenvalues right of a line; 0
     without a proof.
 

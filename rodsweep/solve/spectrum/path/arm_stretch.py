@@ -40,13 +40,14 @@ from .prediction import Track, slice_track, start_track
 class ArmInterval(NamedTuple):
     """Points p of a path, (n,), whose eigenvalues were followed with one family of arms.
 
-    track, known: as in `follow_eigenvalues_of_arms`. arm_count: number of given points inside the family, of
-    which the first n were reached. further_modes: number of modes followed beyond the wanted modes.
+    track: as in `follow_eigenvalues_of_arms`. proved_modes: number of leading modes proved complete at each
+    point, (n,). arm_count: number of given points inside the family, of which the first n were reached.
+    further_modes: number of modes followed beyond the wanted modes.
     """
 
     p: Array
     track: Track
-    known: NDArray[np.int64]
+    proved_modes: NDArray[np.int64]
     family: ArmFamily
     hulls: PathHulls
     arm_count: int
@@ -54,7 +55,7 @@ class ArmInterval(NamedTuple):
 
     def proved_points(self, modes: int) -> int:
         """Number of points at which at least `modes` leading modes are proved complete."""
-        return int((self.known >= modes).sum())
+        return int((self.proved_modes >= modes).sum())
 
 
 def follow_stretch_of_arms(path: Path, p: Array, request: SpectrumRequest) -> FollowedPoints | None:
@@ -63,10 +64,10 @@ def follow_stretch_of_arms(path: Path, p: Array, request: SpectrumRequest) -> Fo
     found = follow_interval(path, p, request)
     if found is None:
         return None
-    for i in np.flatnonzero(found.known < request.modes).tolist():
+    for i in np.flatnonzero(found.proved_modes < request.modes).tolist():
         here = slice_track(found.track, i, i + 1)
-        found.known[i] = count_at(path, found, float(found.p[i]), request.modes, here)
-    good, unstable = assess_points(found.track, found.known, request.modes, request.accuracy)
+        found.proved_modes[i] = count_at(path, found, float(found.p[i]), request.modes, here)
+    good, unstable = assess_points(found.track, found.proved_modes, request.modes, request.accuracy)
     return FollowedPoints(*leading_eigenvalues(found.track, request.modes), unstable, good)
 
 
@@ -112,7 +113,7 @@ def _is_better(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
 
 def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, further: int) -> bool:
     """Whether following `further` modes would prove the middle one of the points without a proof."""
-    left = np.flatnonzero(found.known < request.modes)
+    left = np.flatnonzero(found.proved_modes < request.modes)
     p = float(found.p[left[len(left) // 2]])
     roots = _roots(path, p, request, further)
     if roots is None or len(roots.w) < request.modes:

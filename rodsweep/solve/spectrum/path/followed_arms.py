@@ -119,7 +119,7 @@ class FollowedArms:
         i = int(np.argmin(np.abs(one.p - p)))
         start = float(one.p[i])
         if p == start and modes <= self.request.modes:
-            return slice_track(one.track, i, i + 1), int(one.known[i])
+            return slice_track(one.track, i, i + 1), int(one.proved_modes[i])
         for steps in ARM_STRETCH.steps_from_nearest:
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
             track = start_track(one.track.w[i], len(grid))
@@ -131,21 +131,21 @@ class FollowedArms:
 
 
 class ProvedEigenvalues(NamedTuple):
-    """Eigenvalues at one p of a path; the leading `known` of them are proved complete.
+    """Eigenvalues at one p of a path; the leading `proved_modes` of them are proved complete.
 
     max_modes: largest number of modes whose proof was tried.
     """
 
     max_modes: int
     track: Track
-    known: int
+    proved_modes: int
 
     def spectrum(self, modes: int, accuracy: float) -> Spectrum | None:
         """The leading `modes` eigenvalues if all were followed, are accurate and proved complete; else
         None."""
         if self.track.w.shape[1] < modes:
             return None
-        good, unstable = assess_points(self.track, np.array([self.known]), modes, accuracy)
+        good, unstable = assess_points(self.track, np.array([self.proved_modes]), modes, accuracy)
         if not good[0]:
             return None
         w, error = leading_eigenvalues(self.track, modes)

@@ -57,7 +57,10 @@ def follow_leading_eigenvalue(rod: Rod, near: Complex, accuracy: float) -> Leadi
 
 
 def _of_uniform(rod: Rod, near: complex, accuracy: float) -> LeadingEigenvalue | None:
-    """`follow_leading_eigenvalue` for a uniform rod of linear material; near: the neighbour's eigenvalue."""
+    """`follow_leading_eigenvalue` for a uniform rod of linear material.
+
+    near: leading eigenvalue of the neighbouring rod.
+    """
     w = refine_eigenvalue(near, rod.coefficients)
     error, _, _ = root_error(w, rod.coefficients)
     if not _is_of_its_kind(w, error, near, accuracy):
@@ -68,7 +71,10 @@ def _of_uniform(rod: Rod, near: complex, accuracy: float) -> LeadingEigenvalue |
 
 
 def _of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | None:
-    """`follow_leading_eigenvalue` for an arm that varies along its length; near: of the neighbour, (n,)."""
+    """`follow_leading_eigenvalue` for an arm that varies along its length.
+
+    near: eigenvalues of the neighbouring arm, (n,).
+    """
     hull = hull_of(rod)
     if not isfinite(hull.a) or not np.isfinite(near).all():
         return None

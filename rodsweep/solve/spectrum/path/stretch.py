@@ -58,7 +58,7 @@ class Stretch:
         return self.path.rod.changed(**{self.path.name: float(self.values[i])})
 
     @property
-    def coordinates(self) -> Array:
+    def path_variables(self) -> Array:
         """Path variable p of every rod, (n,)."""
         return 1 / self.values if self.path.inverse else self.values
 
@@ -126,7 +126,7 @@ def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Followe
     if rod.uniform and not (rod.standard or varies):
         return None  # the linear rod to which uniform rubber is equivalent has the closed form and its proof
     if varies or not rod.standard:
-        return follow_stretch_of_arms(stretch.path, stretch.coordinates[start:], request)
+        return follow_stretch_of_arms(stretch.path, stretch.path_variables[start:], request)
     seed = _first_point(stretch.rod(start), request)
     if seed is None:
         return None
@@ -134,7 +134,7 @@ def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Followe
     modes = request.modes
     rest = Stretch(stretch.path, stretch.values[start:])
     track = start_track(first, len(rest))
-    n = follow_eigenvalues(track, rest.coefficients, rest.coordinates, stretch.path.direction, modes)
+    n = follow_eigenvalues(track, rest.coefficients, rest.path_variables, stretch.path.direction, modes)
     if n == 0:
         return None
     track = slice_track(track, 0, n)
@@ -152,7 +152,7 @@ def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> N
     """
     n = len(track.w)
     coefficients = stretch.coefficients[:n]
-    p = stretch.coordinates[:n]
+    p = stretch.path_variables[:n]
     known = np.zeros(n, np.int64)
     known[0] = complete
     at = 0
