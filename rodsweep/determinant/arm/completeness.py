@@ -47,7 +47,7 @@ class CompletenessSettings(CompiledSettings):
     """Smallest x_1, in units of the distance of the line from the imaginary axis."""
     min_first_distance: float = 1e-6
     """Smallest x_1, in 1/tau2, for a line and a hull near 0."""
-    spread: float = 1.0
+    point_spread: float = 1.0
     """x_k - x_1, in units of x_1."""
     widening_factor: float = 1.3
     """Factor by which the points x_j move outwards until every term of R has a real part >= 0."""
@@ -166,7 +166,7 @@ def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
     x = max(COMPLETENESS.min_first_point * abs(line), a * a, COMPLETENESS.min_first_distance)
     points = np.empty(k)
     for j in range(k):
-        points[j] = x * (1 + COMPLETENESS.spread * j / max(k - 1, 1))
+        points[j] = x * (1 + COMPLETENESS.point_spread * j / max(k - 1, 1))
     while not _turn_of_hull(points, a, c) < math.pi / 2:
         if not points[0] < 1 / EXPONENTS.least_divisor:
             return points[:0]

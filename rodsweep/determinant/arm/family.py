@@ -34,28 +34,28 @@ LINEAR_SCALE = math.inf
 class ArmFamilySettings(CompiledSettings):
     """Settings for the number and spacing of the arms from which a family is interpolated."""
 
-    numbers: tuple[int, ...] = (12, 17, 24, 24, 34)
+    arm_counts: tuple[int, ...] = (12, 17, 24, 24, 34)
     """Number of arms in each trial. In 21 of 24 random paths from 0 to three times a load the first
     suffices."""
-    scales: tuple[float, ...] = (LINEAR_SCALE, LINEAR_SCALE, LINEAR_SCALE, 0.05, 0.05)
+    spacing_scales: tuple[float, ...] = (LINEAR_SCALE, LINEAR_SCALE, LINEAR_SCALE, 0.05, 0.05)
     """`ArmFamily.scale` of each trial, over the interval's length. The stretch of compressed rubber has
     branch points at complex forces of the size of its stiffness, near which a logarithmic spacing needs fewer
     arms."""
-    most_entries: int = 500_000
+    max_entries: int = 500_000
     """Maximum number of entries of one arm's propagators; beyond, arms one by one are faster."""
-    converged: float = 1e-15
+    converged_tail: float = 1e-15
     """Last two Chebyshev coefficients of a propagator, over its largest entry, that are rounding errors."""
-    resolved: float = 10.0
-    """Factor on `converged` for the coefficients along the arms, from which propagators are computed."""
+    coefficient_tail_factor: float = 10.0
+    """Factor on `converged_tail` for the coefficients along the arms."""
 
     @property
     def rounding(self) -> float:
         """Error of eigenvalues and crossings from interpolation, as a relative change of w and of p."""
-        return 2 * self.converged
+        return 2 * self.converged_tail
 
     def trials(self) -> list[tuple[int, float]]:
         """(number of arms, scale over the length of the interval) of each trial, in order."""
-        return list(zip(self.numbers, self.scales, strict=True))
+        return list(zip(self.arm_counts, self.spacing_scales, strict=True))
 
 
 ARM_FAMILY = ArmFamilySettings()
@@ -89,10 +89,10 @@ def family_of(path: Path, low: float, high: float, W: float) -> ArmFamily | None
         if not _resolves(samples):
             continue
         found = elements_for(arms, samples, W)
-        if len(found.lengths) * ARM_ELEMENTS.max_terms * ENTRIES > ARM_FAMILY.most_entries:
+        if len(found.lengths) * ARM_ELEMENTS.max_terms * ENTRIES > ARM_FAMILY.max_entries:
             return None
         values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
-        if _converged(values, ARM_FAMILY.converged):
+        if _converged(values, ARM_FAMILY.converged_tail):
             coefficients = np.tensordot(_to_series(number), values, 1)
             return ArmFamily(low, high, scale, W, np.ascontiguousarray(coefficients))
     return None
@@ -112,7 +112,8 @@ def is_smooth(path: Path, low: float, high: float) -> bool:
 
 def _resolves(samples: Samples) -> bool:
     """Whether the Chebyshev series in p of the coefficients along the arms converges at every sample."""
-    return _converged(np.moveaxis(np.array(samples.local), 1, 0), ARM_FAMILY.resolved * ARM_FAMILY.converged)
+    tail = ARM_FAMILY.coefficient_tail_factor * ARM_FAMILY.converged_tail
+    return _converged(np.moveaxis(np.array(samples.local), 1, 0), tail)
 
 
 def _places(low: float, high: float, scale: float, number: int) -> Array:
@@ -202,7 +203,7 @@ def _sum_series(series: Array, T: Array, rates: Array, values: Array, slopes: Ar
 
 @compiled
 def propagators_in_family(family: ArmFamily, p: float) -> tuple[float, Array]:
-    """(W, propagators for |w| <= W, (elements, terms, ENTRIES)) of the arm at p, from a family."""
+    """(W, propagators for |w| <= W, (elements, terms, ENTRIES)) of the arm at p of a family."""
     polynomials = np.empty(family.coefficients.shape[1:])
     propagators_at(family, p, polynomials, np.empty_like(polynomials))
     return family.W, polynomials
@@ -210,7 +211,7 @@ def propagators_in_family(family: ArmFamily, p: float) -> tuple[float, Array]:
 
 @compiled
 def determinant_in_family(family: ArmFamily, w: complex, p: float) -> DeterminantValue:
-    """D and dD/dw times exp(-S) of the arm at p of a family, at w with |w| <= W."""
+    """D and dD/dw times exp(-S) of the arm at p of a family; |w| <= W."""
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)
     changes = np.empty(shape)
@@ -220,10 +221,10 @@ def determinant_in_family(family: ArmFamily, w: complex, p: float) -> Determinan
 
 @compiled
 def eigenvalue_in_family(family: ArmFamily, guess: complex, p: float) -> tuple[complex, complex, float]:
-    """(w, dw/dp, error of w) of the eigenvalue near the guess, for the arm at p of a family.
+    """(w, dw/dp, error of w) of the eigenvalue near the guess, for the arm at p of a family, by Newton's
+    method.
 
-    The eigenvalue must not be nearly double. Newton's method ends where rounding keeps its steps from getting
-    smaller. A real guess gives a real eigenvalue.
+    Not for a nearly double eigenvalue. Steps end where rounding stops their decrease; a real w stays real.
     """
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)

@@ -26,7 +26,7 @@ class ArmRootSettings(CompiledSettings):
     """Rounding error of an eigenvalue, in units of the spacing of doubles at |w|, from the products of
     propagators. Minors in the middle of an arm may be large against those at the tip. At most 4e-15,
     relative, in 1000 eigenvalues of stepped arms, compared with 19 digits."""
-    most_above: float = 16.0
+    max_w_ratio: float = 16.0
     """Largest ratio of |w| needed later to |w| of the roots at which both share elements. The elements are
     then at most four times as many as the roots need; rounding errors grow with their number."""
 

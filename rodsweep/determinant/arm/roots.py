@@ -79,7 +79,7 @@ def _of_each(w: list[complex], function: Callable[[complex], T]) -> list[T]:
 
 def _make_elements(determinant: ArmDeterminant, size: float, largest: float) -> None:
     """Makes elements for all |w| up to `size`, or up to `largest` if this needs only few more elements."""
-    if size < largest <= ARM_ROOTS.most_above * size:
+    if size < largest <= ARM_ROOTS.max_w_ratio * size:
         with suppress(FloatingPointError):  # too many elements: they are needed later, if at all
             determinant.level(largest)
     determinant.level(size)

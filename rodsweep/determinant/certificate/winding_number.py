@@ -64,7 +64,7 @@ PHASE_LOST = (
 
 
 @dataclass(frozen=True, slots=True)
-class Count:
+class EigenvalueCount:
     """Number of eigenvalues right of a vertical line, and number of nodes on the contour.
 
     number: None for a failed count, whose reason is `why_not`.
@@ -164,7 +164,7 @@ def contour_phase_change(
     return right + above - left, nodes if used > 0 else -nodes
 
 
-def count_right_of(line: float, rod: Rod) -> Count:
+def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
     """Proved number of transverse eigenvalues of a uniform rod with Re w > line, for any real `line`, in
     1/tau2.
 
@@ -172,25 +172,29 @@ def count_right_of(line: float, rod: Rod) -> Count:
     """
     real, imag = eigenvalue_box(rod, max(-line, 0.0))
     if not math.isfinite(imag) or not math.isfinite(real):
-        return Count(None, 0, "no a-priori bound on the eigenvalues applies")
+        return EigenvalueCount(None, 0, "no a-priori bound on the eigenvalues applies")
     if line >= real:
-        return Count(0, 0)
+        return EigenvalueCount(0, 0)
     foot = 0.0
     total = 0.0
     if line == 0.0:  # D(0) = 1, and D is near 1 up to `foot`, so this part of the line needs no nodes
         foot = zero_free_radius_of_rod(rod.coefficients, imag)
         if foot == 0.0:
-            return Count(None, 0, "the pull (F < 0) is so strong that a bound of D near w = 0 underflows")
+            return EigenvalueCount(
+                None, 0, "the pull (F < 0) is so strong that a bound of D near w = 0 underflows"
+            )
         # Downwards from the foot to w = 0, where D = 1 is real, arg D changes by minus its value at the foot.
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
     real = COUNT.width_factor * real + COUNT.width_added
     imag = max(imag, COUNT.min_height * abs(line))
     change, nodes = contour_phase_change(line, foot, complex(real, imag), rod.coefficients)
     if nodes < 0:
-        return Count(None, -nodes, PHASE_LOST)
+        return EigenvalueCount(None, -nodes, PHASE_LOST)
     total += change
     # Half the box has half the winding number: 2 pi times the count over both halves.
     number = round(total / math.pi)
     if abs(total / math.pi - number) > COUNT.integer_tolerance:
-        return Count(None, nodes, "the computed winding number is not an integer within rounding errors")
-    return Count(number, nodes)
+        return EigenvalueCount(
+            None, nodes, "the computed winding number is not an integer within rounding errors"
+        )
+    return EigenvalueCount(number, nodes)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Complex
-from ...determinant.certificate.winding_number import Count
+from ...determinant.certificate.winding_number import EigenvalueCount
 from ...determinant.roots.roots import Roots
 from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.compiled.settings import CompiledSettings
@@ -80,7 +80,7 @@ class Candidates:
 class CountComparison:
     """Number of eigenvalues right of a line: `count` from D, `found_count` of the eigenvalues found."""
 
-    count: Count
+    count: EigenvalueCount
     found_count: int
     is_clear: bool
     """Whether every found eigenvalue is farther from the line than twice its error."""
@@ -130,7 +130,7 @@ def compare_with_count(problem: TransverseProblem, found: Roots, modes: int) -> 
     complete, evaluations = problem.none_is_missing(line, found)
     if complete:
         here, clear = _right_of(line, w, errors)
-        return CountComparison(Count(here, evaluations), here, clear)
+        return CountComparison(EigenvalueCount(here, evaluations), here, clear)
     for line in lines_for_count(w, modes):
         count = problem.count(line, found)
         if count.number is not None:

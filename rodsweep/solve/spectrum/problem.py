@@ -20,7 +20,7 @@ from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.hull.hull import hull_of
 from ...determinant.arm.roots import roots as roots_of_arm
 from ...determinant.certificate.box import squared_amplification
-from ...determinant.certificate.winding_number import Count, count_right_of
+from ...determinant.certificate.winding_number import EigenvalueCount, count_right_of
 from ...determinant.roots.roots import Roots, roots
 from ...discretization.elements.resolution import (
     Resolution,
@@ -77,7 +77,7 @@ class TransverseProblem(ABC):
         """
 
     @abstractmethod
-    def count(self, line: float, found: Roots | KnownRoots | None = None) -> Count:
+    def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
         """Proved number of eigenvalues with Re w > line. found: roots of D, which make the count of an arm
         faster.
         """
@@ -122,7 +122,7 @@ class UniformProblem(TransverseProblem):
         """Roots of D refined from the eigenvalues `raw` of a mesh, (n,)."""
         return roots(raw, self.rod.coefficients, self._amplification, most_waves)
 
-    def count(self, line: float, found: Roots | KnownRoots | None = None) -> Count:
+    def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
         return count_right_of(line, self.rod)
 
 
@@ -174,7 +174,7 @@ class ArmProblem(TransverseProblem):
         wanted[order[number:]] = False
         return wanted, size
 
-    def count(self, line: float, found: Roots | KnownRoots | None = None) -> Count:
+    def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
         known = () if found is None else (found.w, found.error)
         return count_of_arm(line, self._determinant, self._hull, *known)
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
-from ...certificate.winding_number import COUNT, PHASE_LOST, Count
+from ...certificate.winding_number import COUNT, PHASE_LOST, EigenvalueCount
 from ..completeness import has_conjugate
 from ..determinant import ArmDeterminant, BoundedPropagators
 from ..elements.settings import ARM_ELEMENTS
@@ -62,16 +62,16 @@ def count_right_of(
     hull: Hull,
     known: Complex = NONE_KNOWN,
     error: Array | float = 0.0,
-) -> Count:
+) -> EigenvalueCount:
     """Number of transverse eigenvalues of an arm with Re w > line, for any real `line`, in 1/tau2.
 
     known, error: some eigenvalues, (n,), and their errors, (n,), which make the count faster. No exception is
     raised: a failed count is a Count without a number, with the reason.
     """
     if not math.isfinite(hull.a):
-        return Count(None, 0, "no a-priori bound on the eigenvalues applies")
+        return EigenvalueCount(None, 0, "no a-priori bound on the eigenvalues applies")
     if line >= hull.box(max(-line, 0.0))[0]:
-        return Count(0, 0)
+        return EigenvalueCount(0, 0)
     known = known[error < ARM_COUNT.max_known_error * np.abs(known.real - line)]
     known = known[has_conjugate(known)]
     height = np.maximum(np.abs(known.imag), abs(line))
@@ -79,13 +79,15 @@ def count_right_of(
     try:
         total, nodes = _phase_change(line, determinant, hull, known)
     except PhaseLost as lost:
-        return Count(None, lost.nodes, str(lost))
+        return EigenvalueCount(None, lost.nodes, str(lost))
     except FloatingPointError as unresolved:
-        return Count(None, 0, str(unresolved))
+        return EigenvalueCount(None, 0, str(unresolved))
     number = round(total / math.pi)
     if abs(total / math.pi - number) > COUNT.integer_tolerance:
-        return Count(None, nodes, "the computed winding number is not an integer within rounding errors")
-    return Count(number + int((known.real > line).sum()), nodes)
+        return EigenvalueCount(
+            None, nodes, "the computed winding number is not an integer within rounding errors"
+        )
+    return EigenvalueCount(number + int((known.real > line).sum()), nodes)
 
 
 def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
@@ -170,7 +172,9 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
         w = end if ahead == length - t else corners[side] + (end - corners[side]) / length * (t + ahead)
         unit = scales_at(w, samples[0])[1]
         first = ARM_COUNT.first_radius * unit
-        radius = min(2 * here.radius, ARM_COUNT.largest_radius * unit) if here.radius > 0 else first
+        radius = (
+            min(2 * here.circle_radius, ARM_COUNT.largest_radius * unit) if here.circle_radius > 0 else first
+        )
         radius = max(radius, ARM_COUNT.max_wave_radius * w.imag)
         enough = max(first, min(ARM_COUNT.max_wave_radius * w.imag, largest - abs(w)))
         needed = abs(w) + min(radius, enough)

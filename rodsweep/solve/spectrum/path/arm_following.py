@@ -102,8 +102,8 @@ def _correct_all(
             if mate[k] >= 0:
                 w[mate[k]] = w[k].conjugate()
             last, error[k] = _settled(first, curvature_estimate(w, k), rank <= modes, level)
-            # Interpolation changes D as relative changes of w and p by `ARM_FAMILY.converged` would.
-            error[k] += ARM_FAMILY.converged * (abs(last.w) + abs(p * last.slope))
+            # Interpolation changes D as relative changes of w and p by `ARM_FAMILY.converged_tail` would.
+            error[k] += ARM_FAMILY.converged_tail * (abs(last.w) + abs(p * last.slope))
             if not store_root(track, i, k, mate[k], last):
                 return False
     sort_descending(w, order)
