@@ -24,7 +24,7 @@ from .local_waves import ArmSamples, arm_samples, scales_at, scales_at_all
 from .value import chain_value
 
 BoundedPropagators = tuple[float, Array]
-"""(W, propagators that hold for |w| <= W, (elements, terms, 25))."""
+"""(W, propagators that hold for |w| <= W, (elements, terms, PADDED))."""
 
 
 class ArmDeterminant:
@@ -86,11 +86,10 @@ class ArmDeterminant:
         return arm_samples(float(self.rod.F), local, (lengths * weights).ravel())
 
     def level(self, size: float, highest: float | None = None) -> BoundedPropagators:
-        """(W, propagators for |w| <= W, (elements, terms, 25)) with the smallest W >= size that exists, or a
-        new one.
+        """(W, propagators for |w| <= W) with the smallest existing W >= size, or new ones.
 
-        highest: largest W of existing propagators that serve, in units of `size`; by default
-        `ARM_ELEMENTS.highest`. Otherwise propagators on fewer elements are made.
+        Propagators: (elements, terms, PADDED). highest: largest W of existing propagators that serve, in
+        units of `size`; by default `ARM_ELEMENTS.highest`. Beyond it, propagators on fewer elements are made.
         """
         highest = ARM_ELEMENTS.highest if highest is None else highest
         size = max(size, ARM_ELEMENTS.smallest_level)

@@ -172,8 +172,7 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
         w = end if ahead == length - t else corners[side] + (end - corners[side]) / length * (t + ahead)
         unit = scales_at(w, samples[0])[1]
         first = ARM_COUNT.first_radius * unit
-        last = here.circle_radius
-        radius = min(2 * last, ARM_COUNT.largest_radius * unit) if last > 0 else first
+        radius = min(2 * here.radius, ARM_COUNT.largest_radius * unit) if here.radius > 0 else first
         radius = max(radius, ARM_COUNT.max_wave_radius * w.imag)
         enough = max(first, min(ARM_COUNT.max_wave_radius * w.imag, largest - abs(w)))
         needed = abs(w) + min(radius, enough)

@@ -38,7 +38,7 @@ class PhaseNode(NamedTuple):
     """A point w on the contour with a tangent h of log D, and the distance from w within which h holds.
 
     direction, L: D/|D| and D'/D, both after division of D by the known eigenvalues. wave: (Phi, dPhi/dw) if h
-    contains the dominant wave, else 0. reach: this distance. circle_radius: radius of the circle that gave
+    contains the dominant wave, else 0. reach: this distance. radius: radius of the circle that gave
     the reach, 0 without a circle.
     """
 
@@ -47,7 +47,7 @@ class PhaseNode(NamedTuple):
     L: complex
     wave: tuple[complex, complex]
     reach: float
-    circle_radius: float
+    radius: float
 
 
 @compiled
@@ -129,9 +129,9 @@ def _node_inside(
                 break
         if reach > best.reach:
             best = PhaseNode(w, node.direction, node.L, wave, reach, rho)
-        elif best.circle_radius > 0:
+        elif best.radius > 0:
             break
-        if best.circle_radius > 0 and best.reach >= enough:
+        if best.radius > 0 and best.reach >= enough:
             break
         rho /= 2
     return best

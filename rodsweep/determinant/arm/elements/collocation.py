@@ -33,7 +33,7 @@ from ....model.compiled.compilation import compiled, compiled_for_vectors
 from .elimination import elimination_matrix
 from .minor_rates import (
     C3,
-    ENTRIES,
+    PADDED,
     SM,
     TM,
     TS,
@@ -63,7 +63,7 @@ class IntegrationMatrices(NamedTuple):
 
 @compiled
 def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: IntegrationMatrices) -> Array:
-    """Coefficients of the propagators in powers of w/W, (n, elements, terms, ENTRIES); no terms if MAX_TERMS
+    """Coefficients of the propagators in powers of w/W, (n, elements, terms, PADDED); no terms if MAX_TERMS
     are too few.
 
     F: forces of n arms, (n,). local: `LocalCoefficients`, (6, n, elements, STAGES). lengths: (elements,).
@@ -79,7 +79,7 @@ def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: I
                 for q in range(6):
                     for i in range(ARM_ELEMENTS.stages):
                         coefficients[arm, b, q, i, lane] = local[q, arm, e, i] * lengths[e]
-    terms = np.zeros((n, batches * ARM_ELEMENTS.lanes, ARM_ELEMENTS.max_terms, ENTRIES))
+    terms = np.zeros((n, batches * ARM_ELEMENTS.lanes, ARM_ELEMENTS.max_terms, PADDED))
     most = fill_terms(F, W, coefficients, method, terms)
     if most > ARM_ELEMENTS.max_terms:
         return terms[:, :, :0].copy()
@@ -92,7 +92,7 @@ def fill_terms(F: Array, W: float, coefficients: Array, method: IntegrationMatri
     too many.
 
     F: forces of n arms, (n,). coefficients: `LocalCoefficients` times the lengths of the elements, (n,
-    batches, 6, STAGES, LANES). terms: of w/W, (n, batches * LANES, MAX_TERMS, ENTRIES), all 0 at first.
+    batches, 6, STAGES, LANES). terms: of w/W, (n, batches * LANES, MAX_TERMS, PADDED), all 0 at first.
     """
     most = 1
     values = np.empty((MINORS, ARM_ELEMENTS.stages, ARM_ELEMENTS.width))
@@ -138,7 +138,7 @@ def _fill_batch(
     work: tuple[Array, Array],
     terms: Array,
 ) -> int:
-    """Fills the terms of some elements, (LANES, MAX_TERMS, ENTRIES); returns how many are needed.
+    """Fills the terms of some elements, (LANES, MAX_TERMS, PADDED); returns how many are needed.
 
     load: (F, W). local: (6, STAGES, WIDTH). method: the second is `elimination_matrix` in lanes. work: values
     of the minors and their rates, (MINORS, STAGES, WIDTH) each.
@@ -206,7 +206,7 @@ def _end_values(weights: Array, rates: Array, n: int, terms: Array) -> bool:
     """Writes the propagators' coefficients of w^n into terms[:, n] and returns whether all of them are
     negligible.
 
-    terms: (LANES, MAX_TERMS, ENTRIES). rates: of the minors, (MINORS, STAGES, WIDTH). weights: Gauss weights.
+    terms: (LANES, MAX_TERMS, PADDED). rates: of the minors, (MINORS, STAGES, WIDTH). weights: Gauss weights.
     """
     end = np.zeros((MINORS, ARM_ELEMENTS.width))
     _add_ends(weights, rates, end)

@@ -14,6 +14,8 @@ SM, TS, TM, YT, YM = range(MINORS)
 """Row indices of the minors s^m, theta^s, theta^m, y^theta and y^m."""
 ENTRIES = MINORS * MINORS
 """Number of entries of a propagator, a matrix that multiplies the minors."""
+PADDED = 28
+"""Entries of a stored propagator: ENTRIES and zeros, a multiple of 4, the doubles of a vector instruction."""
 NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
 """Row indices of the `LocalCoefficients` nu, c2, c3, gamma2, gamma3 and g."""
 

@@ -39,7 +39,7 @@ def _method() -> IntegrationMatrices:
 
 
 def element_propagators(F: Sequence[float], local: Array, lengths: Array, W: float) -> Array:
-    """The propagators C of the elements of n arms in powers of w/W, (n, elements, terms, ENTRIES), C column
+    """The propagators C of the elements of n arms in powers of w/W, (n, elements, terms, PADDED), C column
     by column.
 
     F: forces, (n,). local: `LocalCoefficients` at the Gauss points, (6, n, elements, stages). lengths: of

@@ -37,7 +37,7 @@ from .prediction import Track, find_conjugates, predict_eigenvalues, set_two_gue
 
 PropagatorsWithSlopes = tuple[float, Array, Array]
 """(bound W of |w|, propagators valid for |w| <= W, their derivatives by p); both arrays:
-(elements, terms, 16)."""
+(elements, terms, PADDED)."""
 
 
 @compiled
