@@ -34,7 +34,7 @@ CENTRAL_STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
 """Central difference of fourth order for a first derivative: (offset in steps, weight times step) of each
 value."""
 ONE_SIDED_STENCIL = ((0, -25 / 12), (1, 4.0), (2, -3.0), (3, 4 / 3), (4, -1 / 4))
-"""One-sided difference of fourth order for a first derivative, for points beside the limit of a parameter."""
+"""One-sided difference of fourth order for a first derivative, for points at the limit of a parameter."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,13 +15,13 @@ from .shift_invert import KRYLOV, LoadedPencil, ShiftInvertSolver
 
 
 @compiled
-def _fill(A: NDArray, coefficients: NDArray, pieces: NDArray, shift: NDArray) -> None:
-    """A = sum_i coefficients[i] pieces[i] - diag(shift), written into the transpose of PETSc's array of A."""
+def _fill(A: NDArray, coefficients: NDArray, terms: NDArray, shift: NDArray) -> None:
+    """A = sum_i coefficients[i] terms[i] - diag(shift), written into the transpose of PETSc's array of A."""
     flat = A.reshape(-1)
     flat[:] = 0.0
     for i in range(len(coefficients)):
         for j in range(len(flat)):
-            flat[j] += coefficients[i] * pieces[i, j]
+            flat[j] += coefficients[i] * terms[i, j]
     for j in range(len(shift)):
         A[j, j] -= shift[j]
 

@@ -44,15 +44,14 @@ def hull_of(rod: Rod) -> Hull:
     return _hull(_arms([rod]))
 
 
-def hulls_along(rods: Sequence[Rod], places: Array) -> PathHulls:
-    """The hulls of all arms with p between neighbouring `places` of a path, (k,); rods: the arms at the
-    places.
+def hulls_along(rods: Sequence[Rod], p: Array) -> PathHulls:
+    """The hulls of all arms of a path between neighbouring values of p, (k,); rods: the arms at these values.
 
-    Extremes along the path are evaluated at the places only; `HULL.margin` allows for the arms between.
+    Extremes along the path are evaluated at these values only; `HULL.margin` allows for the arms between.
     """
     arms = _arms(rods)
     hulls = [_hull(_part(arms, slice(i, i + 2))) for i in range(len(rods) - 1)]
-    return PathHulls(places, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
+    return PathHulls(p, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
 
 
 def _hull(arms: "SampledArms") -> Hull:

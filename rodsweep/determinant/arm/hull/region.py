@@ -95,20 +95,20 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
 
 
 class PathHulls(NamedTuple):
-    """Hulls of all arms of a path: one hull holds for every p between two neighbouring of the `places`.
+    """Hulls of all arms of a path: each hull holds for every p between two neighbouring values of p.
 
-    places: increasing values of the path variable, (k,). a, c: constants of `Hull`, (k - 1,).
+    p: increasing values of the path variable, (k,). a, c: constants of `Hull`, (k - 1,).
     """
 
-    places: Array
+    p: Array
     a: Array
     c: Array
 
 
 @compiled
 def hull_at(hulls: PathHulls, p: float) -> Hull:
-    """The hull of the arm at p, which lies between the first and the last of `hulls.places`."""
+    """The hull of the arm at p, which lies between the first and the last of `hulls.p`."""
     i = 0
-    while i < len(hulls.a) - 1 and p > hulls.places[i + 1]:
+    while i < len(hulls.a) - 1 and p > hulls.p[i + 1]:
         i += 1
     return Hull(hulls.a[i], hulls.c[i])

@@ -43,8 +43,8 @@ FOLLOWING = FollowingSettings()
 
 
 class CorrectedEigenvalue(NamedTuple):
-    """An eigenvalue w after one Newton step, its slope dw/dp, the length of the step, and the rounding error
-    `blur` of w.
+    """An eigenvalue w after one Newton step: its slope dw/dp, the length of the step, and the rounding error
+    of w.
     """
 
     w: complex

@@ -1,5 +1,4 @@
-"""Spectra of rods at neighbouring values of one parameter: eigenvalues are followed, and one count serves
-many rods.
+"""Spectra of rods at neighbouring values of one parameter: followed eigenvalues, and one count for many rods.
 
 Krylov-Schur solves the first rod for a few modes more than requested, and solves again where following stops
 or a count disagrees. Rods without proof or with lost digits are solved one by one. The outcome depends only
