@@ -71,8 +71,8 @@ def _noise_by_squares(
 
 @compiled
 def even_sum_by_squares(w: complex, coefficients: Coefficients, blur_M: float, blur_square: float) -> EvenSum:
-    """s and d with derivatives, the sum z+' E(z+) + z-' E(z-), and its rounding error, if one of z+ and z- is
-    much smaller.
+    """The functions s and d of D, the sum z+' E(z+) + z-' E(z-), and its rounding error, if z+ or z- is much
+    the smaller.
 
     The derivative of the smaller one follows from the derivative of the product z+ z-, because T +- P' would
     cancel for large w. blur_M, blur_square: rounding errors of M and P^2.

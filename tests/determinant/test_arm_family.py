@@ -49,7 +49,7 @@ def test_families_have_the_determinants_of_their_arms_and_their_slopes(name, see
             assert abs(here.D_w * scale / own.D_w - 1) < 20 * blur
             assert determinant_in_family(family, w, p).D == here.D
             if 0 < share < 1:
-                slope = between.derivative(w, p, own.S)
+                slope = between.derivative_by_p(w, p, own.S)
                 assert abs(here.D_p * scale - slope) < 1e-5 * (abs(slope) + abs(own.D / p))
 
 
@@ -66,7 +66,7 @@ def test_a_family_of_compressed_rubber_is_spaced_by_the_force():
             here, value = along(family, w, p), own.value(w)
             assert abs(here.D * np.exp(here.S - value.S) - value.D) < 1e-13 + 20 * value.noise
             if 0 < p < 60:
-                slope = ArmAlongPath(path).derivative(w, p, value.S)
+                slope = ArmAlongPath(path).derivative_by_p(w, p, value.S)
                 assert here.D_p * np.exp(here.S - value.S) == pytest.approx(slope, rel=1e-5, abs=1e-8)
 
 

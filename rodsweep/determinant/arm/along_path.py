@@ -76,9 +76,9 @@ class ArmAlongPath:
         here = self.determinant(p)
         w, error = refine_eigenvalue_and_error(guess, here)
         value = here.value(w)
-        return w, -self.derivative(w, p, value.S) / value.D_w, error
+        return w, -self.derivative_by_p(w, p, value.S) / value.D_w, error
 
-    def derivative(self, w: complex, p: float, S: float) -> complex:
+    def derivative_by_p(self, w: complex, p: float, S: float) -> complex:
         """dD/dp exp(-S) at w and p, by a difference between neighbouring arms."""
         stencil, h = self._stencil(p, math.inf)
         slope = 0j

@@ -43,7 +43,7 @@ class BoxProofSettings(CompiledSettings):
     """Factor between one trial ratio t and the next."""
     max_radius_ratios: int = 30
     """Maximum number of trial ratios t, of which the last is 2e-7."""
-    min_box: float = 1e-9
+    min_half_width: float = 1e-9
     """Half-widths of a box, in units of eta and |p|, below which an undecided box is left open instead of
     divided."""
     max_boxes: int = 1_000_000
@@ -183,7 +183,7 @@ def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[f
     in_p = max(abs(plus[1]) / root_plus, abs(minus[1]) / root_minus) * half[1] / 2
     stiffness = abs((nu + F * c2) * nu) + c2 * gamma3 * size
     # Besides the exponents the radicand of P must not change much, for the bounds on the bidisc.
-    factor = abs(centre.changes.G1) + abs(centre.changes.X1) * size
+    factor = abs(centre.derivatives.G1) + abs(centre.derivatives.X1) * size
     return max(in_w, half[0] / size), max(in_p, factor * half[1] / max(stiffness, EXPONENTS.least_divisor))
 
 
@@ -222,7 +222,7 @@ def cover_with_boxes(
                 if not known:
                     zeros.append(zero)
                 continue
-        smallest = BOX_PROOF.min_box
+        smallest = BOX_PROOF.min_half_width
         if examined > BOX_PROOF.max_boxes or (half[0] < smallest * eta and half[1] < smallest * abs(p)):
             left.append(box)
         elif cost_w >= cost_p:

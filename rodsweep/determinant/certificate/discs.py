@@ -50,13 +50,13 @@ Radii = tuple[float, float]
 class BidiscCentre(NamedTuple):
     """The centre (w, p) of a bidisc, with the exponents of D there.
 
-    coefficients: of the rod at p. changes: their derivatives by p. S: scale of D. P, plus, minus: P, z+ and
-    z-. slopes_plus, slopes_minus: (dz/dw, dz/dp) of z+ and of z-.
+    coefficients: of the rod at p. derivatives: of these coefficients by p. S: scale of D. P, plus, minus: P,
+    z+ and z-. slopes_plus, slopes_minus: (dz/dw, dz/dp) of z+ and of z-.
     """
 
     w: complex
     coefficients: Coefficients
-    changes: CoefficientDerivatives
+    derivatives: CoefficientDerivatives
     S: float
     P: complex
     plus: complex
@@ -135,7 +135,7 @@ def bound_for_equal_exponents(centre: BidiscCentre, rates: DerivativePair, radii
     w = centre.w
     S = centre.S
     F, nu, c2, gamma3 = centre.coefficients
-    T1, N1, N2, G1, G2, X1, X2 = centre.changes
+    T1, N1, N2, G1, G2, X1, X2 = centre.derivatives
     rho, sigma = radii
     g = nu + F * c2
     X = c2 * gamma3
@@ -174,7 +174,7 @@ def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, ra
     S = centre.S
     P = centre.P
     F, nu, c2, gamma3 = centre.coefficients
-    T1, _, N2, G1, G2, X1, X2 = centre.changes
+    T1, _, N2, G1, G2, X1, X2 = centre.derivatives
     rho, sigma = radii
     g = nu + F * c2
     X = c2 * gamma3

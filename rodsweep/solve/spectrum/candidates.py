@@ -83,7 +83,7 @@ class CountComparison:
     count: EigenvalueCount
     found_count: int
     is_clear: bool
-    """Whether every found eigenvalue is farther from the line than twice its error."""
+    """Whether every found eigenvalue is farther from the line of the count than twice its error."""
 
     @property
     def agrees(self) -> bool:

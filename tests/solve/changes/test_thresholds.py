@@ -144,7 +144,7 @@ def test_a_lost_crossing_is_noticed_by_the_counts(monkeypatch):
         zeros, left, examined = whole(*arguments)
         return sorted(zeros, key=lambda z: z[1])[1:], left, examined
 
-    monkeypatch.setattr(transitions_module, "cover", loses_one)
+    monkeypatch.setattr(transitions_module, "cover_with_boxes", loses_one)
     found = thresholds(1e4, 1e4, 1e-4)
     assert found.status == ThresholdStatus.not_certified
     assert "modes are unstable between" in found.message

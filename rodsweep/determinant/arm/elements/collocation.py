@@ -191,7 +191,10 @@ def _integrate(Q: Array, rates: Array, out: Array) -> None:
 
 @compiled_for_vectors
 def _integrate_eliminated(turning: Array, rates: Array, out: Array) -> None:
-    """out = M Q rates, both (STAGES, WIDTH), for the M of each lane; turning: (STAGES, 1 + STAGES, WIDTH)."""
+    """Writes M Q rates into out, both (STAGES, WIDTH): rates integrated after the elimination of a minor.
+
+    turning: `elimination_matrix` of each lane's element, with M Q, (STAGES, 1 + STAGES, WIDTH).
+    """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             out[i, c] = 0.0

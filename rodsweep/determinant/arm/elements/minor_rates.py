@@ -15,7 +15,7 @@ SM, TS, TM, YT, YM = range(MINORS)
 ENTRIES = MINORS * MINORS
 """Number of entries of a propagator, a matrix that multiplies the minors."""
 PADDED = 28
-"""Entries of a stored propagator: ENTRIES and zeros, a multiple of 4, the doubles of a vector instruction."""
+"""Length of a stored propagator: its ENTRIES, then zeros up to a multiple of 4, for vector instructions."""
 NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
 """Row indices of the `LocalCoefficients` nu, c2, c3, gamma2, gamma3 and g."""
 

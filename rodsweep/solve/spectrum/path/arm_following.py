@@ -57,7 +57,7 @@ def _settled(
     The error is inf without convergence.
     """
     here = first
-    for _ in range(FOLLOWING.max_corrections):
+    for _ in range(FOLLOWING.max_newton_steps):
         error = converged_error(here, crowding, exact)
         if error < math.inf:
             return here, error

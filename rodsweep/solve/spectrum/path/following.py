@@ -27,7 +27,7 @@ from .prediction import Track, find_conjugates, predict_eigenvalues, set_two_gue
 class FollowingSettings(CompiledSettings):
     """Settings of Newton's method for followed eigenvalues."""
 
-    max_corrections: int = 8
+    max_newton_steps: int = 8
     """Maximum number of Newton steps for one eigenvalue."""
     accuracy: float = 1e-9
     """Relative accuracy of eigenvalues beyond the leading modes, which only show where to draw the line of a
@@ -140,7 +140,7 @@ def _settled(
     convergence.
     """
     here = first
-    for _ in range(FOLLOWING.max_corrections):
+    for _ in range(FOLLOWING.max_newton_steps):
         error = converged_error(here, crowding, exact)
         if error < math.inf:
             return here, error
