@@ -29,8 +29,8 @@ class CoveringSettings:
     """Shortest interval, in units of the longest, near p = 0, where each interval doubles a drag or
     compliance p."""
     min_last_interval: float = 1e-3
-    """Length of a remaining last interval, in units of its predecessor, below which it is merged with its
-    predecessor."""
+    """Shortest last interval of p, in units of the interval before it; a shorter one is merged with the
+    interval before it."""
     padding: float = 1e-6
     """Length added to the upper bound of eta, in 1/tau2, because the bound is 0 at F = 0."""
 

@@ -138,10 +138,12 @@ def _fill_batch(
     work: tuple[Array, Array],
     terms: Array,
 ) -> int:
-    """Fills the terms of some elements, (LANES, MAX_TERMS, PADDED); returns how many are needed.
+    """Fills the propagators' coefficients of one batch of elements, `terms`; returns the number of terms
+    needed.
 
-    load: (F, W). local: (6, STAGES, WIDTH). method: the second is `elimination_matrix` in lanes. work: values
-    of the minors and their rates, (MINORS, STAGES, WIDTH) each.
+    terms: (LANES, MAX_TERMS, PADDED). load: (F, W). local: coefficients, (6, STAGES, WIDTH). method:
+    integrals, and `elimination_matrix` of each lane's element. work: values of the minors and their rates,
+    (MINORS, STAGES, WIDTH) each.
     """
     F, W = load
     (Q, weights), turning = method

@@ -173,7 +173,7 @@ def _smallest(
 
 @compiled
 def _smaller(best: tuple[float, float], other: tuple[float, float], largest: float) -> tuple[float, float]:
-    """The smaller of two regions (a, c), by the measure a^2 (1 + (c/wide)^4).
+    """The smaller of two regions (a, c), by the measure a^2 (1 + (c/HULL.wide_c)^4).
 
     A region with c >= `largest` is never chosen.
     """

@@ -25,7 +25,7 @@ class HullSettings(CompiledSettings):
     min_remainder: float = 0.1
     """Least 1 - c of a hull; hulls with c closer to 1 are too large to be useful."""
     wide_c: float = 0.15
-    """Value of c at which the measure a^2 (1 + (c/wide)^4), by which the smallest hull is chosen, is twice
+    """Value of c at which the measure a^2 (1 + (c/wide_c)^4), by which the smallest hull is chosen, is twice
     that of c = 0."""
     constant_weights: int = 41
     """Number of constant weights alpha tried, from the smallest to the largest |g/nu| along the arm."""
