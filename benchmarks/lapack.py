@@ -8,7 +8,7 @@ from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.discretization.straight.arm_pencil import ArmPencil
 from rodsweep.discretization.straight.arm_resolution import ArmMesh
 from rodsweep.discretization.straight.dense_form import dense_form
-from rodsweep.discretization.straight.pencil import assemble
+from rodsweep.discretization.straight.pencil import assemble_pencil
 from rodsweep.model.rod import Rod
 
 Eigenvalues = Complex
@@ -30,7 +30,7 @@ def whole_matrices(rod: Rod, mesh: Resolution | ArmMesh) -> tuple[Array, Array]:
         A = np.zeros((pencil.unknowns, pencil.unknowns))
         A[pencil.rows, pencil.columns] = found.A
         return A, found.B
-    form = dense_form(rod, assemble(mesh.elements, mesh.order))
+    form = dense_form(rod, assemble_pencil(mesh.elements, mesh.order))
     return form.A, form.B
 
 

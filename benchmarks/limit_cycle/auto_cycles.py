@@ -117,7 +117,7 @@ def start_file(orbit: Orbit, pieces: int) -> bytes:
     turns = np.arange(pieces + 1) / pieces * orbit.symmetry.parts
     states = orbit.at(np.where(turns > 1, turns - 1, turns))
     states[turns > 1] = orbit.symmetry.of(states[turns > 1], orbit.form.layout)
-    z = states * beam.roots[:, :-1].ravel()
+    z = states * beam.sqrt_compliance[:, :-1].ravel()
     return b"".join(part.tobytes() for part in (np.int32(pieces), np.array([beam.rod.F, orbit.period]), z))
 
 

@@ -14,7 +14,7 @@ from rodsweep.bench.limit_cycle.integrators import (
     IntegratorFamily,
     petsc_run,
 )
-from rodsweep.discretization.stress.rates import rate, rate_jacobian
+from rodsweep.discretization.stress.rates import write_rate, write_rate_jacobian
 from rodsweep.solve.motion.integrator import RunEnding, Trajectory
 
 from ..installed import optional_module
@@ -62,14 +62,14 @@ def cvode_run(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
     cvode: the module CVODE_MODULE.
     """
     beam, z, duration = leg
-    arguments = beam.roots, beam.nodal, beam.mesh.matrices
+    arguments = beam.sqrt_compliance, beam.nodal, beam.mesh.matrices
     buffer = np.empty((len(z), len(z)))
 
     def right_side(_: float, x: Array, out: Array) -> None:
-        rate(x, out, *arguments)
+        write_rate(x, out, *arguments)
 
     def derivative(_: float, x: Array, __: Array, out: Array) -> None:
-        rate_jacobian(x, buffer, *arguments)
+        write_rate_jacobian(x, buffer, *arguments)
         out[:, :] = buffer.T
 
     solver = cvode.CVODE(

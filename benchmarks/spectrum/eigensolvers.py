@@ -19,10 +19,10 @@ from rodsweep.bench.spectrum.arms import mesh_of_arm, solve_next_arm
 from rodsweep.bench.spectrum.own import MODE_COUNT, PENCIL_GROUP, leading_eigenvalues
 from rodsweep.bench.spectrum.study import ORDERS, pencil_mesh
 from rodsweep.bench.study import Contender
-from rodsweep.determinant.roots.newton import refined
-from rodsweep.discretization.straight.pencil import PENCIL_NORM, assemble
+from rodsweep.determinant.roots.newton import refine_eigenvalue
+from rodsweep.discretization.straight.pencil import PENCIL_NORM, assemble_pencil
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum.problem import problem_of
+from rodsweep.solve.spectrum.problem import transverse_problem
 
 from ..lapack import Eigenvalues, inverse_spectrum, qz_spectrum, whole_matrices
 
@@ -48,7 +48,7 @@ def dense_inverse(rod: Rod, size: int) -> Eigenvalues:
 def scipy_eigs(rod: Rod, size: int) -> Eigenvalues:
     """Leading eigenvalues by SciPy's ARPACK on the shift-and-invert operator with rodsweep's shift."""
     A, B = pencil_matrices(rod, size)
-    shift = problem_of(rod).shift
+    shift = transverse_problem(rod).shift
     factors = scipy.linalg.lu_factor(A - np.diag(shift * B), check_finite=False)
     operator = scipy.sparse.linalg.LinearOperator(
         A.shape, matvec=lambda x: scipy.linalg.lu_solve(factors, B * x, check_finite=False), dtype=float
@@ -58,8 +58,8 @@ def scipy_eigs(rod: Rod, size: int) -> Eigenvalues:
 
 
 def lapack_on_d(rod: Rod, size: int) -> Eigenvalues:
-    """Leading eigenvalues by LAPACK on a coarse pencil, refined by Newton's method on D."""
-    return np.array([refined(complex(w), rod.coefficients) for w in dense_inverse(rod, size)])
+    """Leading eigenvalues by LAPACK on a coarse pencil, refine_eigenvalue by Newton's method on D."""
+    return np.array([refine_eigenvalue(complex(w), rod.coefficients) for w in dense_inverse(rod, size)])
 
 
 def displacement_elements(rod: Rod, size: int) -> Eigenvalues:
@@ -86,9 +86,9 @@ def _displacement_pieces(size: int) -> tuple[Array, Array, Array]:
     a, b: shape functions. The matrices are taken from rodsweep's pencil.
     """
     mesh = pencil_mesh(size)
-    pencil = assemble(mesh.elements, mesh.order)
+    pencil = assemble_pencil(mesh.elements, mesh.order)
     n = pencil.nodes
-    whole = pencil.dense_pieces().reshape(6, 3 * n, 3 * n).transpose(0, 2, 1)
+    whole = pencil.dense_terms().reshape(6, 3 * n, 3 * n).transpose(0, 2, 1)
     tip = np.diag(np.append(np.zeros(n - 1), 1 / pencil.mass[-1]))
     return -whole[1, n : 2 * n, n : 2 * n], whole[2, :n, n : 2 * n] + tip, tip
 

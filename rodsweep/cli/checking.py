@@ -48,7 +48,7 @@ def describe_job(job: Job) -> None:
         sampled = min(MAX_SAMPLE, job.points.count)
         console.print(
             f"warning: {cost.too_large} of {sampled} sampled points need more than the "
-            f"{RESOLUTION.most_unknowns} unknowns allowed and will end with status failed; use a smaller F, "
+            f"{RESOLUTION.max_unknowns} unknowns allowed and will end with status failed; use a smaller F, "
             "fewer modes or a lower accuracy"
         )
 

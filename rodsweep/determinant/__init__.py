@@ -1,6 +1,5 @@
-"""The determinant D(w) and all computations that need D alone: no mesh and no PETSc.
+"""The characteristic determinant D(w) and all computations that need only D: no mesh and no PETSc.
 
-Value of D without cancellation, the a-priori box of eigenvalues, Newton's method, proved counts of
-eigenvalues, the covering that finds all changes of the spectrum along a path, and curves of changes in a
-plane.
+D without cancellation, the a-priori box of eigenvalues, Newton's method, proved counts of eigenvalues, the
+covering that finds all changes of the spectrum along a path, and curves of such changes in a plane.
 """

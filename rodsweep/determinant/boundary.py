@@ -19,25 +19,30 @@ from .parameter_plane import CENTRAL_STENCIL, PLANE, Plane
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoundarySettings:
-    """Settings of Newton's method for a point of a boundary curve."""
+    """Settings of Newton's method for a point on a stability boundary."""
 
     max_steps: int = 12
-    """Maximum Newton steps of a correction; beyond, the correction has failed."""
-    longest_step: float = 0.5
-    """Largest Newton step, in units of the axes' lengths and of h, before the correction counts as failed."""
-    converged: float = 4.0
-    """Newton step, in units of the rounding error, at which the correction has converged."""
-    singular: float = EXPONENTS.least_divisor
-    """Determinant of the matrix below which it is singular; far below that of any regular matrix."""
-    stagnation: float = 1e-10
-    """A Newton step below this that did not halve is rounding error: the correction has converged."""
+    """Maximum number of Newton steps to a point; beyond, Newton's method has failed."""
+    max_step: float = 0.5
+    """Largest Newton step, in units of the lengths of the axes and of h; after a larger step Newton's method
+    has failed."""
+    converged_step: float = 4.0
+    """Newton step, in units of the rounding error of the point, at which Newton's method has converged."""
+    min_determinant: float = EXPONENTS.least_divisor
+    """Least |determinant| of the 3 x 3 matrix of a Newton step; below it the matrix is singular and Newton's
+    method fails. It is far below that of any regular matrix."""
+    stagnant_step: float = 1e-10
+    """Newton step below which a step that is not half of its predecessor is rounding error: Newton's method
+    has converged."""
 
 
 BOUNDARY = BoundarySettings()
 
 
-class OnBoundary(NamedTuple):
-    """A point v = (x, y, h) of a boundary, the 2 x 3 Jacobian of its equations, and the error of v."""
+class BoundarySolution(NamedTuple):
+    """A point v = (x, y, h) on a stability boundary, the 2 x 3 Jacobian of its equations there, and the error
+    of v.
+    """
 
     v: Array
     jacobian: Array
@@ -45,34 +50,40 @@ class OnBoundary(NamedTuple):
 
     @property
     def tangent(self) -> Array:
-        """The unit null vector of the Jacobian, shape (3,)."""
+        """Unit tangent of the boundary: the null vector of the Jacobian, (3,)."""
         t: Array = np.cross(self.jacobian[0], self.jacobian[1])
         return t / np.linalg.norm(t)
 
 
 @dataclass(frozen=True, slots=True)
 class Boundary:
-    """All Hopf points of a plane (sign 0), or all double real eigenvalues with the given sign (-1 or 1)."""
+    """A stability boundary in a plane: all Hopf points, or all double real eigenvalues of one sign.
+
+    sign: 0 for Hopf points; -1 or 1 for double eigenvalues of this sign.
+    """
 
     plane: Plane
     sign: float
 
     def eigenvalue(self, h: float) -> tuple[float, float]:
-        """(growth rate, frequency) of the eigenvalue with the coordinate h."""
+        """(growth rate, frequency), in 1/tau2, of the eigenvalue at a point whose third coordinate is h."""
         size = math.exp(h)
         return (self.sign * size, 0.0) if self.sign else (0.0, size)
 
     def equations(self, v: Array) -> tuple[Array, Array, float]:
-        """(residual, Jacobian, rounding error of the residual) at v, shapes (2,), (2, 3), a number."""
+        """(residual, (2,); Jacobian, (2, 3); rounding error of the residual) of the two equations of the
+        boundary at v.
+        """
         return self._double_equations(v) if self.sign else self._hopf_equations(v)
 
     def tangent(self, v: Array) -> Array:
-        """The unit tangent at v, shape (3,)."""
+        """Unit tangent of the boundary at v, (3,)."""
         _, jacobian, error = self.equations(v)
-        return OnBoundary(v, jacobian, error).tangent
+        return BoundarySolution(v, jacobian, error).tangent
 
-    def corrected(self, guess: Array, normal: NDArray[np.floating]) -> OnBoundary | None:
-        """The point of the boundary in the plane through `guess` with normal `normal`, both (3,).
+    def point_near(self, guess: Array, normal: NDArray[np.floating]) -> BoundarySolution | None:
+        """The point of the boundary on the plane through `guess`, (3,), that is perpendicular to `normal`,
+        (3,).
 
         None if Newton's method fails.
         """
@@ -85,22 +96,22 @@ class Boundary:
                 return None
             matrix = np.vstack([jacobian, normal])
             right = np.append(-residual, -normal @ (v - guess))
-            if not np.isfinite(matrix).all() or abs(np.linalg.det(matrix)) < BOUNDARY.singular:
+            if not np.isfinite(matrix).all() or abs(np.linalg.det(matrix)) < BOUNDARY.min_determinant:
                 return None
             inverse = np.linalg.inv(matrix)
             step = inverse @ right
             error = float(np.abs(inverse[:, :2]).sum(axis=1).max()) * blur
             size = float(np.abs(step).max())
             v = v + step
-            if size <= BOUNDARY.converged * error or (size < BOUNDARY.stagnation and size > last / 2):
-                return OnBoundary(v, jacobian, max(error, size))
-            if size > BOUNDARY.longest_step or not np.isfinite(v).all():
+            if size <= BOUNDARY.converged_step * error or (size < BOUNDARY.stagnant_step and size > last / 2):
+                return BoundarySolution(v, jacobian, max(error, size))
+            if size > BOUNDARY.max_step or not np.isfinite(v).all():
                 return None
             last = size
         return None
 
     def _hopf_equations(self, v: Array) -> tuple[Array, Array, float]:
-        """`equations` of Hopf points: D(i exp(h); x, y) = 0."""
+        """`equations` of Hopf points at v = (x, y, h): D(i exp(h); x, y) = 0."""
         w = complex(0.0, math.exp(v[2]))
         D, D_w, D_x, D_y, _, blur = self.plane.determinant(w, v[0], v[1])
         rows = np.array([D_x, D_y, D_w * w])
@@ -109,14 +120,18 @@ class Boundary:
         return np.array([D.real, D.imag]) / scale, jacobian, blur / scale
 
     def _double_equations(self, v: Array) -> tuple[Array, Array, float]:
-        """`equations` of double eigenvalues: D = w D_w = 0 at w = sign exp(h), where D is real."""
+        """`equations` of double eigenvalues at v = (x, y, h): D = 0 and w D_w = 0 at the real w = sign
+        exp(h).
+        """
         w = self._real(v)
         here = self.plane.determinant(w, v[0], v[1])
         slope = (w * here.D_w).real  # w D_w = dD/dh
         jacobian = np.empty((2, 3))
         jacobian[0] = here.D_x.real, here.D_y.real, slope
         for i in range(3):
-            stencil, h = self.plane.stencil(v[0], v[1], i) if i < 2 else (CENTRAL_STENCIL, PLANE.step)
+            stencil, h = (
+                self.plane.stencil(v[0], v[1], i) if i < 2 else (CENTRAL_STENCIL, PLANE.difference_step)
+            )
             jacobian[1, i] = 0.0
             for offset, weight in stencil:
                 step = np.zeros(3)
@@ -127,7 +142,7 @@ class Boundary:
                 jacobian[1, i] += weight * (w * neighbour.D_w).real * math.exp(neighbour.S - here.S) / h
         scale = np.abs(jacobian).max(axis=1)
         residual = np.array([here.D.real, slope]) / scale
-        return residual, jacobian / scale[:, None], float(here.blur / scale.min())
+        return residual, jacobian / scale[:, None], float(here.rounding / scale.min())
 
     def _real(self, v: Array) -> complex:
         """The real eigenvalue w = sign exp(h) at v = (x, y, h)."""

@@ -1,8 +1,9 @@
-"""The functions s and d, even in P, from a series for small exponents or from the roots q.
+"""The functions s(M, P^2) and d(M, P^2) of which D consists, by a series for small z+- or from the roots q.
 
-With z+- the exponents of D, s = E(z+) + E(z-) and d = (E(z+) - E(z-))/(z+ - z-) are entire in M = (z+ + z-)/2
-and P^2. All derivatives of D follow from s, d, s' = ds/dM, d' = dd/dM and d* = (dd/dP^2)/4, because
-ds/dP^2 = 4 d'. Both methods state the rounding errors of s and d, in units of a relative rounding error.
+With the squares z+- of the exponents of D, s = E(z+) + E(z-) and d = (E(z+) - E(z-))/(z+ - z-) are even in P,
+and entire in M = (z+ + z-)/2 and P^2. All derivatives of D follow from s, d, s' = ds/dM, d' = dd/dM and d* =
+(dd/dP^2)/4, because ds/dP^2 = 4 d'. Both methods also return the rounding errors of s and d, in units of a
+relative rounding error.
 """
 
 import cmath
@@ -12,31 +13,33 @@ from typing import NamedTuple
 
 from ..model.compiled.compilation import compiled
 from ..model.compiled.settings import CompiledSettings
-from .exponents import ROUND_OFF, Hyperbolic, hyperbolic, modulus
+from .exponents import ROUND_OFF, HyperbolicFunctions, hyperbolic_functions, modulus
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvenFunctionSettings(CompiledSettings):
-    """Settings for the methods by which s and d are computed."""
+    """Settings that choose the method by which s and d are computed."""
 
     series_terms: int = 13
-    """Number of terms of the series."""
-    series_below: float = 1.5
-    """abs(M) + 2 abs(P) below which `by_series` is used."""
-    squares_below: float = 0.1
-    """abs(z+ z-), in units of abs(M)^2 + 4 abs(P)^2, below which `by_squares` is used."""
+    """Number of terms of the series of s and d."""
+    by_series_below: float = 1.5
+    """|M| + 2 |P| below which `even_functions_by_series` computes s and d."""
+    by_squares_below: float = 0.1
+    """|z+ z-|, in units of |M|^2 + 4 |P|^2, below which `even_sum_by_squares` computes s and d."""
 
     def __post_init__(self) -> None:
         n = self.series_terms
-        if self.series_below**n > ROUND_OFF * math.factorial(2 * n + 2):
-            raise ValueError(f"{n} terms leave more than rounding error of a series at {self.series_below}")
+        if self.by_series_below**n > ROUND_OFF * math.factorial(2 * n + 2):
+            raise ValueError(
+                f"a series of {n} terms is not accurate to rounding at |M| + 2 |P| = {self.by_series_below}"
+            )
 
 
 EVEN_FUNCTIONS = EvenFunctionSettings()
 
 
 class EvenFunctions(NamedTuple):
-    """The even functions s(M, P^2) and d(M, P^2) of the module with their derivatives, all times exp(-S).
+    """The functions s(M, P^2) and d(M, P^2) of this module with their derivatives, all times exp(-S).
 
     s_M = ds/dM, d_M = dd/dM, d_P = (dd/dP^2)/4.
     """
@@ -53,15 +56,16 @@ class EvenFunctions(NamedTuple):
 def _noise_by_roots(
     squares: tuple[complex, complex, complex, complex],
     apart: complex,
-    of_u: Hyperbolic,
-    of_v: Hyperbolic,
+    of_u: HyperbolicFunctions,
+    of_v: HyperbolicFunctions,
     results: tuple[complex, complex],
     blurs: tuple[float, float, float],
 ) -> tuple[float, float]:
-    """Rounding errors of s and d in `by_roots`, to first order.
+    """Rounding errors of s and d as `even_functions_by_roots` computes them, to first order, in units of a
+    relative rounding error.
 
-    squares: (M, P^2, u, v). apart: u - v. of_u, of_v: functions of the roots. results: (s, d). blurs:
-    exp(-S), rounding errors of M and P^2. Errors are in units of a relative rounding error.
+    squares: (M, P^2, u, v). apart: u - v. of_u, of_v: hyperbolic functions of sqrt(u) and sqrt(v). results:
+    (s, d). blurs: exp(-S) and the rounding errors of M and P^2, in the same unit.
     """
     M = modulus(squares[0])
     square = modulus(squares[1])
@@ -90,13 +94,15 @@ def _noise_by_roots(
 
 
 @compiled
-def by_roots(
+def even_functions_by_roots(
     M: complex, square: complex, blur_M: float, blur_square: float
 ) -> tuple[EvenFunctions, float, float]:
-    """(the functions, noise of s, noise of d) from the roots q, if neither z+ nor z- is small.
+    """(s, d and their derivatives; rounding error of s; of d) from the roots q, if neither z+ nor z- is
+    small.
 
-    square = P^2; u = q1^2 and v = q2^2 solve t^2 - M t + P^2 = 0; with C = cosh q1 cosh q2 - 1,
-    H = sinh q1 sinh q2/(q1 q2) and R = z+ z- = M^2 - 4 P^2 = (u - v)^2,
+    square = P^2; blur_M, blur_square: rounding errors of M and P^2. u = q1^2 and v = q2^2 solve t^2 - M t +
+    P^2 = 0; with C = cosh q1 cosh q2 - 1, H = sinh q1 sinh q2/(q1 q2) and R = z+ z- = M^2 - 4 P^2 =
+    (u - v)^2,
 
         s = 2 (M C - 2 P^2 H)/R,   d = (M H/2 - C)/R.
     """
@@ -112,8 +118,8 @@ def by_roots(
     S = q1.real + q2.real
     # The 1 that is subtracted from cosh q1 cosh q2, scaled by exp(-S) like the product.
     one = math.exp(-S)
-    of_u = hyperbolic(u, q1)
-    of_v = hyperbolic(v, q2)
+    of_u = hyperbolic_functions(u, q1)
+    of_v = hyperbolic_functions(v, q2)
     cosh1, first1, second1 = of_u
     cosh2, first2, second2 = of_v
     # With z+- = (q1 +- q2)^2 the even functions of P are symmetric functions of q1^2 and q2^2.
@@ -137,10 +143,14 @@ def by_roots(
 
 
 @compiled
-def by_series(
+def even_functions_by_series(
     M: complex, P: complex, blur_M: float, blur_square: float
 ) -> tuple[EvenFunctions, float, float]:
-    """(the functions, noise of s, noise of d) by series for small z+ and z-: E = sum z^n/(2n + 2)!."""
+    """(s, d and their derivatives; rounding error of s; of d) by the series E(z) = sum z^n/(2n + 2)! for
+    small z+ and z-.
+
+    blur_M, blur_square: rounding errors of M and P^2.
+    """
     plus = M + 2 * P
     minus = M - 2 * P
     S = max(cmath.sqrt(plus).real, cmath.sqrt(minus).real)

@@ -1,13 +1,12 @@
-"""The sum of functions even in P that D(w) consists of, which is regular at the branch point P = 0.
+"""The sum z+' E(z+) + z-' E(z-) of D(w), regular at the branch point P = 0 where each term is infinite.
 
-In the notation of `rodsweep.determinant.value`, D = 1 + (w/2) [z+' E(z+) + z-' E(z-)]. At P = 0 each z+-' is
-infinite, but the sum is finite:
+In the notation of `rodsweep.determinant.value`, D = 1 + (w/2) [z+' E(z+) + z-' E(z-)], and
 
     z+' E(z+) + z-' E(z-) = T s + 4 N d,   s = E(z+) + E(z-),   d = (E(z+) - E(z-))/(z+ - z-),
 
-N = g nu + 2 X w. Three methods evaluate these functions: a series for small z+ and z-, closed forms in the
-roots q if neither z+ nor z- is small (both in `even_functions`), and closed forms in z+ and z-, which give
-the sum itself, if one of the two is small.
+with N = g nu + 2 X w. Three methods evaluate s and d: a series for small z+ and z-; closed forms in the roots
+q if neither z+ nor z- is small (both in `even_functions`); and closed forms in z+ and z-, which give the sum
+directly, if one of the two is small.
 """
 
 import cmath
@@ -15,12 +14,12 @@ import math
 
 from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
-from .even_functions import EVEN_FUNCTIONS, EvenFunctions, by_roots, by_series
-from .exponents import EXPONENTS, NOISE_UNIT, entire_cosh, exponents, modulus
+from .even_functions import EVEN_FUNCTIONS, EvenFunctions, even_functions_by_roots, even_functions_by_series
+from .exponents import EXPONENTS, NOISE_UNIT, entire_cosh, modulus, squared_exponents
 
 EvenSum = tuple[EvenFunctions, complex, float]
-"""(even functions, sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error). The rounding error is the error
-of D if `even_parts` returns it, else the error of the sum."""
+"""(s and d with derivatives, sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error). `even_parts` returns
+the rounding error of D, `even_sum_by_squares` that of the sum."""
 
 
 @compiled
@@ -31,11 +30,12 @@ def _noise_by_squares(
     slopes: tuple[complex, complex],
     blurs: tuple[float, float],
 ) -> float:
-    """Rounding error of the sum z+' E(z+) + z-' E(z-) in `by_squares`, in units of a relative rounding error.
+    """Rounding error of the sum z+' E(z+) + z-' E(z-) of `even_sum_by_squares`, in units of a relative
+    rounding error.
 
     sizes: |w| and |P|. roots: sqrt z+ and sqrt z-. slopes: z+' and z-'. blurs: rounding errors of M and P^2.
-    The error of z follows from the terms that cancel in z; an exponent has half of this error over |q|, and
-    a quarter of |q|.
+    The error of z follows from the terms that cancel in z. An exponent q = sqrt z has half of the error of z
+    over |q|, plus a quarter of |q|.
     """
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
@@ -70,13 +70,15 @@ def _noise_by_squares(
 
 
 @compiled
-def by_squares(w: complex, coefficients: Coefficients, blur_M: float, blur_square: float) -> EvenSum:
-    """The functions, their sum and its noise from z+ and z-, if one of the two is much smaller.
+def even_sum_by_squares(w: complex, coefficients: Coefficients, blur_M: float, blur_square: float) -> EvenSum:
+    """The functions s and d of D, the sum z+' E(z+) + z-' E(z-), and its rounding error, if z+ or z- is much
+    the smaller.
 
-    The slope of the smaller one follows from the product z+ z-: T +- turn would cancel for large w.
+    The derivative of the smaller one follows from the derivative of the product z+ z-, because T +- P' would
+    cancel for large w. blur_M, blur_square: rounding errors of M and P^2.
     """
     F, nu, c2, gamma3 = coefficients
-    P, plus, minus = exponents(w, coefficients)
+    P, plus, minus = squared_exponents(w, coefficients)
     g = nu + F * c2
     T = c2 + gamma3
     X = c2 * gamma3
@@ -109,10 +111,11 @@ def by_squares(w: complex, coefficients: Coefficients, blur_M: float, blur_squar
 
 @compiled
 def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
-    """The functions, their sum, and the rounding error of D, at w != 0.
+    """s and d with derivatives, the sum z+' E(z+) + z-' E(z-), and the rounding error of D, for a uniform rod
+    at w != 0.
 
-    The rounding error is a first-order sum over the rounding errors of M, of P^2 and of every later step. The
-    sum contains moduli that do not vanish where D does.
+    The rounding error is a first-order sum over the rounding errors of M, of P^2 and of every later
+    operation. It consists of moduli that do not vanish where D does.
     """
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
@@ -131,15 +134,15 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
     # themselves.
     size_M = modulus(M)
     size_square = modulus(square)
-    small = size_M + 2 * math.sqrt(size_square) < EVEN_FUNCTIONS.series_below
-    close = EVEN_FUNCTIONS.squares_below * (size_M * size_M + 4 * size_square)
+    small = size_M + 2 * math.sqrt(size_square) < EVEN_FUNCTIONS.by_series_below
+    close = EVEN_FUNCTIONS.by_squares_below * (size_M * size_M + 4 * size_square)
     if small or modulus(M * M - 4 * square) > close:
         if small:
-            even, noise_s, noise_d = by_series(M, cmath.sqrt(square), blur_M, blur_square)
+            even, noise_s, noise_d = even_functions_by_series(M, cmath.sqrt(square), blur_M, blur_square)
         else:
-            even, noise_s, noise_d = by_roots(M, square, blur_M, blur_square)
+            even, noise_s, noise_d = even_functions_by_roots(M, square, blur_M, blur_square)
         total = T * even.s + 4 * N * even.d
         noise = T * noise_s + 4 * (stiffness + X * size) * noise_d
     else:
-        even, total, noise = by_squares(w, coefficients, blur_M, blur_square)
+        even, total, noise = even_sum_by_squares(w, coefficients, blur_M, blur_square)
     return even, total, NOISE_UNIT * (math.exp(-even.S) + size / 2 * noise)

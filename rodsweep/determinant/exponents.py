@@ -1,6 +1,6 @@
-"""The exponents in D(w), and the entire functions of the exponents in D.
+"""The squares z+- of the exponents of D(w), and entire functions of these squares from which D is composed.
 
-The notation is that of `rodsweep.determinant.value`. Series replace closed forms that would cancel.
+The notation is that of `rodsweep.determinant.value`. Near 0 series replace closed forms, which would cancel.
 """
 
 import cmath
@@ -16,30 +16,34 @@ from ..model.rod import Coefficients
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExponentSettings(CompiledSettings):
-    """Settings for the entire functions of exponents."""
+    """Settings for the exponents of D and for the entire functions of them."""
 
     least_divisor: float = 1e-300
-    """Smallest modulus of a divisor: far below all numbers here that are not 0, and its inverse is finite."""
+    """Least modulus of a divisor: a smaller one is replaced by this number. It is far below all numbers of D
+    that are not 0, and its inverse is finite."""
     largest_exponent: float = 600.0
-    """Upper limit of exponents before exp, which would overflow at 709."""
+    """Largest argument x of exp(x); a larger x is replaced by this number, since exp overflows at 709."""
     cosh_series_below: float = 0.1
-    """abs(z) below which E is a series, because the closed form of dE/dz would cancel."""
-    sinh_series_below: float = 0.25
-    """abs(v) below which sinh(q)/q, v = q^2, is a series, because the closed form of its slope would
+    """|z| below which E(z) and dE/dz are computed by series, because the closed form of dE/dz would
     cancel."""
+    sinh_series_below: float = 0.25
+    """|q^2| below which sinh(q)/q and its slope are computed by series, because the closed form of the slope
+    would cancel."""
     ranges: ClassVar = {"largest_exponent": (0.0, 709.0)}
 
 
 EXPONENTS = ExponentSettings()
 
 ROUND_OFF = sys.float_info.epsilon
-"""Spacing of doubles at 1."""
+"""Spacing of the double-precision numbers just above 1."""
 NOISE_UNIT = 2 * ROUND_OFF
-"""Unit of the noise of D and of its parts: two relative rounding errors."""
+"""Unit in which rounding errors of D and of its terms are summed: two relative rounding errors."""
 
 
-class Hyperbolic(NamedTuple):
-    """cosh q, sinh(q)/q and (1/q) d(sinh(q)/q)/dq, all entire in q^2, times exp(-Re q)."""
+class HyperbolicFunctions(NamedTuple):
+    """cosh q, sinh(q)/q and its slope (1/q) d(sinh(q)/q)/dq, all times exp(-Re q) and, but for this factor,
+    entire in q^2.
+    """
 
     cosh: complex
     sinhc: complex
@@ -48,13 +52,16 @@ class Hyperbolic(NamedTuple):
 
 @compiled
 def modulus(z: complex) -> float:
-    """|z|, faster than abs, for z whose square does not overflow and may underflow to 0."""
+    """|z|, computed faster than by abs; the square of |z| must not overflow and may underflow to 0."""
     return math.sqrt(z.real * z.real + z.imag * z.imag)
 
 
 @compiled
-def exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex, complex]:
-    """(P, z+, z-) at w != 0; the smaller z follows from the product z+ z-, without cancellation."""
+def squared_exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex, complex]:
+    """(P, z+, z-) of a uniform rod at w != 0, in the notation of `rodsweep.determinant.value`.
+
+    The smaller of z+ and z- follows from their product, without cancellation.
+    """
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
     P = cmath.sqrt(w * (g * nu + c2 * gamma3 * w))
@@ -73,7 +80,7 @@ def exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex,
 
 @compiled
 def entire_cosh(z: complex, root: complex, scale: float) -> tuple[complex, complex]:
-    """E(z) = (cosh sqrt(z) - 1)/z and dE/dz, both times exp(-scale); root = sqrt(z)."""
+    """E(z) = (cosh sqrt(z) - 1)/z and dE/dz, both times exp(-scale); root: sqrt(z)."""
     if abs(z) < EXPONENTS.cosh_series_below:
         value = 1 + z / 30 * (1 + z / 56 * (1 + z / 90 * (1 + z / 132 * (1 + z / 182))))
         slope = 1 + 3 * z / 112 * (1 + 4 * z / 270 * (1 + 5 * z / 528 * (1 + 6 * z / 910)))
@@ -87,14 +94,14 @@ def entire_cosh(z: complex, root: complex, scale: float) -> tuple[complex, compl
 
 
 @compiled
-def hyperbolic(v: complex, root: complex) -> Hyperbolic:
-    """The hyperbolic functions of q = `root`; v = q^2."""
+def hyperbolic_functions(v: complex, root: complex) -> HyperbolicFunctions:
+    """cosh q, sinh(q)/q and its slope, for q = `root` and v = q^2, times exp(-Re q)."""
     if modulus(v) < EXPONENTS.sinh_series_below:
         first = 1 + v / 6 * (1 + v / 20 * (1 + v / 42 * (1 + v / 72 * (1 + v / 110 * (1 + v / 156)))))
         second = 1 + v / 28 * (1 + v / 54 * (1 + v / 88 * (1 + v / 130 * (1 + v / 180))))
         second = (1 + v / 10 * second) / 3
         size = math.exp(-root.real)
-        return Hyperbolic(size * (first + v * second), size * first, size * second)
+        return HyperbolicFunctions(size * (first + v * second), size * first, size * second)
     # cosh and sinh times exp(-Re q), which cannot overflow.
     decay = math.exp(-2 * root.real)
     even = (1 + decay) / 2
@@ -103,4 +110,4 @@ def hyperbolic(v: complex, root: complex) -> Hyperbolic:
     sine = math.sin(root.imag)
     cosh = complex(even * cosine, odd * sine)
     first = complex(odd * cosine, even * sine) / root
-    return Hyperbolic(cosh, first, (cosh - first) / v)
+    return HyperbolicFunctions(cosh, first, (cosh - first) / v)

@@ -17,28 +17,35 @@ from typing import ClassVar, NamedTuple
 from ..model.compiled.compilation import compiled
 from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
-from .certificate.box import BOX, box_of, squared_amplification_between
-from .certificate.covering import box_costs, distance_bound, mean_rates, remainder_fits
-from .certificate.discs import DISCS, centre_at
-from .parameter_path import changes, determinant_along
+from .certificate.box import BOX, box_from_amplification, squared_amplification_between
+from .certificate.covering import (
+    distance_from_zero_bound,
+    exponent_changes,
+    is_remainder_below,
+    mean_growth_rates,
+)
+from .certificate.discs import DISCS, bidisc_centre
+from .parameter_path import coefficient_derivatives, determinant_along
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MovingLineSettings(CompiledSettings):
-    """Settings for the rectangles that carry a count along a path."""
+    """Settings for the rectangles that prove that no eigenvalue crosses a moving line."""
 
     first_half_height: float = 0.35
-    """Half-height of the first rectangle, in units of the line's distance from the imaginary axis."""
+    """Half-height, in y, of the first rectangle tried, in units of the line's distance from the imaginary
+    axis."""
     half_height_growth: float = 1.6
-    """Ratio of the half-height of the next rectangle to the half-height of a proved rectangle."""
+    """Ratio of the half-height of the next rectangle to that of the rectangle just proved."""
     largest_half_height: float = 0.6
-    """Largest half-height, in units of |w| at the lower edge, because discs must avoid w = 0."""
+    """Largest half-height of a rectangle, in units of |w| at its lower edge, because its discs must not
+    contain w = 0."""
     overlap: float = 1e-7
     """Relative excess of the half-widths of every rectangle, so that rounding leaves no gap between
     rectangles."""
-    smallest_share: float = 1e-6
-    """Smallest width in p, over the interval's width, and smallest half-height, over the line's distance. The
-    proof fails if a smaller rectangle is needed."""
+    min_fraction: float = 1e-6
+    """Smallest width of a rectangle in p, over the width of the interval, and smallest half-height, over the
+    line's distance from the imaginary axis. If a smaller rectangle is needed, the proof fails."""
     ranges: ClassVar = {"half_height_growth": (1.0, math.inf), "largest_half_height": (0.0, 1.0)}
 
 
@@ -46,7 +53,9 @@ MOVING_LINE = MovingLineSettings()
 
 
 class IntervalEnd(NamedTuple):
-    """One end of an interval of a path: p, the coefficients of the rod, and the line's real part."""
+    """One end of an interval of a path: p, the coefficients of the rod at p, and the real part of the line
+    there.
+    """
 
     p: float
     coefficients: Coefficients
@@ -54,21 +63,24 @@ class IntervalEnd(NamedTuple):
 
 
 class Strip(NamedTuple):
-    """A part of the strip beside the line, unbounded upwards, that is not yet proved to be free of zeros.
+    """A part of the strip (y, p) that is not yet proved free of zeros of D: everything above y for an
+    interval of p.
 
-    start, stop: ends, as fractions of the interval of p. y: lower edge. half_y: half-height of the rectangle
-    to try next.
+    p_start, p_stop: ends of the interval, as fractions of the whole interval of p. half_y: half-height of the
+    next rectangle to try.
     """
 
-    start: float
-    stop: float
+    p_start: float
+    p_stop: float
     y: float
-    half_y: float
+    half_height: float
 
 
 @compiled
-def end_between(share: float, first: IntervalEnd, last: IntervalEnd) -> IntervalEnd:
-    """Linear interpolation between two ends, without cancellation; share: from 0 (first) to 1 (last)."""
+def interpolate_ends(share: float, first: IntervalEnd, last: IntervalEnd) -> IntervalEnd:
+    """The interval end interpolated linearly between `first` (share 0) and `last` (share 1), without
+    cancellation.
+    """
     a = 1 - share
     b = share
     F, nu, c2, gamma3 = first.coefficients
@@ -80,45 +92,48 @@ def end_between(share: float, first: IntervalEnd, last: IntervalEnd) -> Interval
 
 
 @compiled
-def free_of_zeros(
+def is_free_of_zeros(
     at: IntervalEnd, y: float, direction: Coefficients, half: tuple[float, float], tilt: float
 ) -> tuple[bool, float, float]:
     """(whether D is proved to have no zero on the rectangle about l(p) + i y, cost in y, cost in p).
 
-    half: half-widths in y and p. tilt: dl/dp. Costs as in `covering.examine_box`. Raises ValueError for
-    half-widths that are not positive.
+    half: half-widths of the rectangle in y and p. tilt: dl/dp. Splitting the variable with the higher cost
+    helps most; the costs are those of `covering.examine_box`. Raises ValueError for a half-width that is not
+    positive.
     """
     half_y, half_p = half
     if not (half_y > 0 and half_p > 0):  # the bounds below would hold for negative ones, and prove nothing
         raise ValueError("the half-widths of a rectangle must be above 0")
     w = complex(at.line, y)
     D, D_w, D_p, S, noise = determinant_along(w, at.coefficients, direction)
-    rounding = DISCS.rounding * noise
-    centre = centre_at(w, at.coefficients, changes(at.coefficients, direction), S)
+    rounding = DISCS.rounding_over_noise * noise
+    centre = bidisc_centre(w, at.coefficients, coefficient_derivatives(at.coefficients, direction), S)
     radii = (math.hypot(half_y, tilt * half_p), half_p)
     if abs(D) > 2 * rounding:
-        if remainder_fits(centre, (D_w / D, D_p / D), radii, DISCS.clearance * abs(D) - rounding, 1):
+        if is_remainder_below(centre, (D_w / D, D_p / D), radii, DISCS.clearance * abs(D) - rounding, 1):
             return True, 0.0, 0.0
-        mean = mean_rates(centre)
+        mean = mean_growth_rates(centre)
         in_w = D_w - mean[0] * D
         in_p = D_p - mean[1] * D
         room = (
-            DISCS.clearance * distance_bound(D, 1j * in_w * half_y, (tilt * in_w + in_p) * half_p) - rounding
+            DISCS.clearance * distance_from_zero_bound(D, 1j * in_w * half_y, (tilt * in_w + in_p) * half_p)
+            - rounding
         )
-        if room > 0 and remainder_fits(centre, mean, radii, room, 1):
+        if room > 0 and is_remainder_below(centre, mean, radii, room, 1):
             return True, 0.0, 0.0
-    cost_y, cost_p = box_costs(centre, half)
-    return False, cost_y, max(cost_p, box_costs(centre, (abs(tilt) * half_p, half_p))[0])
+    cost_y, cost_p = exponent_changes(centre, half)
+    return False, cost_y, max(cost_p, exponent_changes(centre, (abs(tilt) * half_p, half_p))[0])
 
 
 @compiled
-def none_crosses(
+def proves_no_crossing(
     first: IntervalEnd, last: IntervalEnd, direction: Coefficients, most: int
 ) -> tuple[bool, int]:
-    """(whether it is proved that no eigenvalue crosses the line between two ends, rectangles examined).
+    """(whether it is proved that no eigenvalue crosses the moving line, number of rectangles examined).
 
-    direction: d(F, nu, c2, gamma3)/dp. most: maximum number of rectangles. The order of the ends is
-    arbitrary. The proof fails for equal ends, and for a line that is not left of the imaginary axis.
+    first, last: ends of the interval, in either order. direction: d(F, nu, c2, gamma3)/dp. most: maximum
+    number of rectangles. The proof fails for equal ends, and for a line that is not left of the imaginary
+    axis.
     """
     if first.p > last.p:
         first, last = last, first
@@ -126,24 +141,24 @@ def none_crosses(
     a = math.sqrt((1 + BOX.margin) * squared_amplification_between(first.coefficients, last.coefficients))
     if not (first.p < last.p and max(first.line, last.line) < 0 and a < math.inf):
         return False, 0
-    top = box_of(a, depth)[1]
+    top = box_from_amplification(a, depth)[1]
     width = last.p - first.p
     tilt = (last.line - first.line) / width
     examined = 0
     stack = [Strip(0.0, 1.0, 0.0, MOVING_LINE.first_half_height * depth)]
     while len(stack) > 0:
         start, stop, y, half_y = stack.pop()
-        at = end_between((start + stop) / 2, first, last)
+        at = interpolate_ends((start + stop) / 2, first, last)
         half_p = width * (stop - start) / 2
         while y < top:
-            smallest = MOVING_LINE.smallest_share
+            smallest = MOVING_LINE.min_fraction
             if examined >= most or half_y < smallest * depth or stop - start < smallest:
                 return False, examined
             examined += 1
             # The first rectangle is centred on the real axis: the lower half plane mirrors the upper.
             middle = y + half_y if y > 0 else 0.0
             half = ((1 + MOVING_LINE.overlap) * half_y, (1 + MOVING_LINE.overlap) * half_p)
-            proved, cost_y, cost_p = free_of_zeros(at, middle, direction, half, tilt)
+            proved, cost_y, cost_p = is_free_of_zeros(at, middle, direction, half, tilt)
             if proved:
                 y = middle + half_y
                 largest = MOVING_LINE.largest_half_height * math.hypot(at.line, y)

@@ -1,7 +1,8 @@
-"""Straight paths through the coefficients (F, nu, c2, gamma3), and derivatives of D along a path.
+"""Straight paths through the coefficients (F, nu, c2, gamma3) of uniform rods, and derivatives of D along a
+path.
 
-One parameter varies and all others are constant. The path variable p is the parameter's coordinate, in which
-the coefficients are affine: F, c1 = 1/k1, c2 = 1/k2 or gamma3.
+One parameter varies and all others are constant. The coefficients are affine in the path variable p, which is
+F, gamma3, or a compliance c1 = 1/k1 or c2 = 1/k2.
 """
 
 from dataclasses import dataclass
@@ -11,14 +12,13 @@ from ..model.compiled.compilation import compiled
 from ..model.parameters import PARAMETERS, Parameter
 from ..model.rod import Coefficients, Rod, coefficients_of
 from .even_parts import even_parts
-from .value import Branches, from_parts
+from .value import ExponentDerivatives, determinant_from_parts
 
 
 class CoefficientDerivatives(NamedTuple):
-    """Derivatives with respect to p of T = c2 + gamma3, N = F g, G = g nu and X = c2 gamma3.
+    """Derivatives by p of T = c2 + gamma3, N = F g, G = g nu and X = c2 gamma3, on which, with w, D depends.
 
-    T1 is the first derivative of T, N1 and N2 are the first and second of N, and so on. D depends only on w
-    and T, N, G, X.
+    T1 is the first derivative of T, N1 and N2 are the first and second derivatives of N, and so on.
     """
 
     T1: float
@@ -31,7 +31,7 @@ class CoefficientDerivatives(NamedTuple):
 
 
 class ValueAlong(NamedTuple):
-    """D, dD/dw and dD/dp times exp(-S), and the magnitude `noise` of the rounding error of D."""
+    """D, dD/dw and dD/dp times exp(-S), and the magnitude `noise` of the rounding error of D exp(-S)."""
 
     D: complex
     D_w: complex
@@ -42,48 +42,50 @@ class ValueAlong(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Path:
-    """The path of all rods that differ from `rod` only in the parameter `name`."""
+    """All rods that differ from `rod` only in the parameter `name`."""
 
     rod: Rod
     name: str
 
     @property
     def parameter(self) -> Parameter:
-        """Table entry of the varying parameter."""
+        """The entry of the varying parameter in the table of parameters."""
         return PARAMETERS[self.name]
 
     @property
     def inverse(self) -> bool:
-        """Whether the path variable is the compliance 1/k instead of the parameter itself."""
+        """Whether the path variable p is the compliance 1/k of a varying stiffness k, instead of the
+        parameter itself.
+        """
         return self.parameter.by_compliance
 
     @property
     def direction(self) -> Coefficients:
-        """d(F, nu, c2, gamma3)/dp, constant along the path."""
+        """d(F, nu, c2, gamma3)/dp, the same for all rods of the path."""
         return self.rod.direction(self.name)
 
     @property
     def origin(self) -> Coefficients:
-        """(F, nu, c2, gamma3) at p = 0, which need not be a valid rod."""
+        """(F, nu, c2, gamma3) at p = 0, which need not be those of a valid rod."""
         return coefficients_of({**self.rod.values, self.name: self.parameter.value(0.0)})
 
     def variable(self, value: float) -> float:
-        """The path variable p for a value of the parameter."""
+        """The path variable p at which the varying parameter has `value`."""
         return self.parameter.coordinate(value)
 
     def value(self, p: float, error: float) -> tuple[float, float]:
-        """(value of the parameter, error of the value) for p and the error of p."""
+        """(value of the varying parameter at p, error of this value); error: error of p."""
         # k = 1/p, so dk = dp/p^2.
         return self.parameter.value(p), error / p**2 if self.inverse else error
 
     def at(self, p: float) -> Rod:
-        """The rod at p; ValueError if the rod is invalid, for example crushed."""
+        """The rod at p. Raises ValueError if the rod is invalid, for example crushed."""
         return self.rod.with_coordinate(self.name, p)
 
 
 @compiled
 def coefficients_at(p: float, origin: Coefficients, direction: Coefficients) -> Coefficients:
-    """The coefficients at p, origin + p * direction."""
+    """The coefficients origin + p direction of the rod at p."""
     return Coefficients(
         origin.F + p * direction.F,
         origin.nu + p * direction.nu,
@@ -93,8 +95,8 @@ def coefficients_at(p: float, origin: Coefficients, direction: Coefficients) -> 
 
 
 @compiled
-def changes(coefficients: Coefficients, direction: Coefficients) -> CoefficientDerivatives:
-    """Derivatives of T, N, G, X along the path at a rod; F and c2 must not both vary."""
+def coefficient_derivatives(coefficients: Coefficients, direction: Coefficients) -> CoefficientDerivatives:
+    """Derivatives of T, N, G and X by p at a rod; F and c2 must not both vary along the path."""
     F, nu, c2, gamma3 = coefficients
     F1, nu1, c21, gamma31 = direction
     g = nu + F * c2
@@ -112,8 +114,11 @@ def changes(coefficients: Coefficients, direction: Coefficients) -> CoefficientD
 
 
 @compiled
-def root_changes(w: complex, at: Branches, change: CoefficientDerivatives) -> tuple[complex, complex]:
-    """(dz+/dp, dz-/dp) at w, for the branches `at` of w."""
+def exponent_slopes(
+    w: complex, at: ExponentDerivatives, change: CoefficientDerivatives
+) -> tuple[complex, complex]:
+    """(dz+/dp, dz-/dp) at w. at: `exponent_derivatives` at w. change: derivatives of the coefficients by
+    p."""
     P_p = 0j
     if at.P != 0:
         P_p = w * (change.G1 + change.X1 * w) / (2 * at.P)
@@ -122,12 +127,14 @@ def root_changes(w: complex, at: Branches, change: CoefficientDerivatives) -> tu
 
 @compiled
 def determinant_along(w: complex, coefficients: Coefficients, direction: Coefficients) -> ValueAlong:
-    """D and its derivatives with respect to w and p, at w != 0."""
+    """D, dD/dw and dD/dp of a uniform rod on a path, times exp(-S), at w != 0. direction:
+    d(F, nu, c2, gamma3)/dp.
+    """
     F, nu, c2, gamma3 = coefficients
     parts = even_parts(w, coefficients)
-    D, D_w, S, noise = from_parts(w, coefficients, parts)
+    D, D_w, S, noise = determinant_from_parts(w, coefficients, parts)
     even = parts[0]
-    T1, N1, _, G1, _, X1, _ = changes(coefficients, direction)
+    T1, N1, _, G1, _, X1, _ = coefficient_derivatives(coefficients, direction)
     T = c2 + gamma3
     N = (nu + F * c2) * nu + 2 * (c2 * gamma3) * w
     M1 = T1 * w - N1

@@ -1,4 +1,4 @@
-"""Planes of rods: two parameters vary, each along a linear or logarithmic axis scaled to [0, 1]."""
+"""Planes of rods: two parameters vary, each along a linear or logarithmic axis that is scaled to [0, 1]."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,28 +15,32 @@ from .value import DeterminantValue, scaled_determinant
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlaneSettings:
-    """Settings for the differences along the scaled axes of a plane of two parameters."""
+    """Settings for derivatives of D by differences along the scaled axes of a plane."""
 
-    beyond_an_end: float = 1e-12
-    """Distance beyond the end of a scaled axis that counts as rounding error."""
-    step: float = 1e-3
-    """Step of differences along a scaled axis."""
+    end_tolerance: float = 1e-12
+    """Distance beyond an end of a scaled axis that is rounding error: such a coordinate is moved to the
+    end."""
+    difference_step: float = 1e-3
+    """Step of differences along a scaled axis, where the axis has length 1."""
     step_to_crushing: float = 0.01
-    """Largest step, as a fraction of the distance from crushing."""
+    """Largest step of a difference, as a fraction of the distance from the point at which the rod is
+    crushed."""
 
 
 PLANE = PlaneSettings()
 
 
 CENTRAL_STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
-"""Central difference of fourth order: (offset in steps, weight times step) of each value."""
-ONE_SIDED = ((0, -25 / 12), (1, 4.0), (2, -3.0), (3, 4 / 3), (4, -1 / 4))
-"""One-sided difference of fourth order, beside the limit of a parameter."""
+"""Central difference of fourth order for a first derivative: (offset in steps, weight times step) of each
+value."""
+ONE_SIDED_STENCIL = ((0, -25 / 12), (1, 4.0), (2, -3.0), (3, 4 / 3), (4, -1 / 4))
+"""One-sided difference of fourth order for a first derivative, for points at the limit of a parameter."""
 
 
 @dataclass(frozen=True, slots=True)
 class PlaneAxis:
-    """One axis of a plane: a parameter from `start` to `stop`, both finite, linear or logarithmic."""
+    """One axis of a plane: the parameter `name` from `start` to `stop`, both finite, linear or
+    logarithmic."""
 
     name: str
     start: float
@@ -44,59 +48,66 @@ class PlaneAxis:
     logarithmic: bool = False
 
     def value(self, x: float) -> float:
-        """The parameter at the scaled coordinate x, 0 at start and 1 at stop; x is rounded to both ends."""
-        if -PLANE.beyond_an_end < x < 0 or 1 < x < 1 + PLANE.beyond_an_end:
+        """The parameter at the scaled coordinate x: 0 at `start`, 1 at `stop`. x just beyond an end is moved
+        to the end.
+        """
+        if -PLANE.end_tolerance < x < 0 or 1 < x < 1 + PLANE.end_tolerance:
             x = round(x)
         if self.logarithmic:
             return exp(log(self.start) + x * (log(self.stop) - log(self.start)))
         return self.start + x * (self.stop - self.start)
 
     def scaled(self, value: float) -> float:
-        """The scaled coordinate x of a value of the parameter."""
+        """The scaled coordinate x at which the parameter has `value`."""
         if self.logarithmic:
             return (log(value) - log(self.start)) / (log(self.stop) - log(self.start))
         return (value - self.start) / (self.stop - self.start)
 
-    def stretch(self, value: float) -> float:
-        """d(parameter)/dx at a value of the parameter."""
+    def parameter_slope(self, value: float) -> float:
+        """d(parameter)/dx where the parameter has `value`."""
         return value * (log(self.stop) - log(self.start)) if self.logarithmic else self.stop - self.start
 
-    def slope(self, value: float) -> float:
-        """d(path variable)/dx at a value of the parameter; the path variable of a stiffness k is 1/k."""
-        along = self.stretch(value)
+    def path_variable_slope(self, value: float) -> float:
+        """dp/dx where the parameter has `value`, with the path variable p: 1/k for a stiffness k, else the
+        parameter.
+        """
+        along = self.parameter_slope(value)
         return -along / value**2 if PARAMETERS[self.name].by_compliance else along
 
 
 class ValueOnPlane(NamedTuple):
-    """D and its derivatives by w, x and y, times exp(-S); blur: rounding error of D and of its arguments."""
+    """D and its derivatives by w, x and y, times exp(-S); rounding: rounding error of D, with those of w, x
+    and y.
+    """
 
     D: complex
     D_w: complex
     D_x: complex
     D_y: complex
     S: float
-    blur: float
+    rounding: float
 
 
 @dataclass(frozen=True)
 class Plane:
-    """The plane of all rods that differ from `rod` only in the parameters of two axes."""
+    """All rods that differ from `rod` only in the two parameters of `axes`."""
 
     rod: Rod
     axes: tuple[PlaneAxis, PlaneAxis]
 
     @cached_property
     def standard(self) -> bool:
-        """Whether all rods are uniform and of linear material, so that D has its closed form."""
+        """Whether all rods of the plane are uniform and of linear material, so that D has a closed form."""
         return self.rod.standard and all(axis.name != "taper" for axis in self.axes)
 
     def at(self, x: float, y: float) -> Rod:
-        """The rod at scaled coordinates; ValueError if the rod is invalid, for example crushed."""
+        """The rod at scaled coordinates (x, y). Raises ValueError if the rod is invalid, for example
+        crushed."""
         first, second = self.axes
         return self.rod.changed(**{first.name: first.value(x), second.name: second.value(y)})
 
     def determinant(self, w: complex, x: float, y: float) -> ValueOnPlane:
-        """D and its derivatives with respect to w, x and y, at w and scaled coordinates."""
+        """D and its derivatives by w, x and y, at w, for the rod at scaled coordinates (x, y)."""
         rod = self.at(x, y)
         if not self.standard:
             return self._of_arms(w, x, y)
@@ -107,18 +118,21 @@ class Plane:
         return ValueOnPlane(D, D_w, D_x, D_y, S, blur)
 
     def value(self, w: complex, x: float, y: float) -> DeterminantValue:
-        """D and dD/dw at w and scaled coordinates."""
+        """D and dD/dw at w, for the rod at scaled coordinates (x, y)."""
         rod = self.at(x, y)
         return scaled_determinant(w, rod.coefficients) if self.standard else arm_determinant(rod).value(w)
 
     def stencil(self, x: float, y: float, which: int) -> tuple[tuple[tuple[float, float], ...], float]:
-        """(stencil, step) of a difference along the axis `which`, 0 or 1, at scaled coordinates."""
-        h = self.small_step(x, y, which, PLANE.step)
+        """(stencil, step) of a difference along axis number `which`, 0 or 1, at scaled coordinates (x, y).
+
+        The stencil is one-sided where a neighbour would be an invalid rod.
+        """
+        h = self.small_step(x, y, which, PLANE.difference_step)
         back = (x - 2 * h, y) if which == 0 else (x, y - 2 * h)
-        return (CENTRAL_STENCIL if self.holds(*back) else ONE_SIDED), h
+        return (CENTRAL_STENCIL if self.is_valid(*back) else ONE_SIDED_STENCIL), h
 
     def _of_arms(self, w: complex, x: float, y: float) -> ValueOnPlane:
-        """`determinant` of arms, with differences of fourth order for the derivatives by x and y."""
+        """`determinant` of arms, whose derivatives by x and y are differences of fourth order."""
         D, D_w, S, noise = self.value(w, x, y)
         slopes = []
         for which in range(2):
@@ -134,12 +148,15 @@ class Plane:
 
     @staticmethod
     def _along(w: complex, rod: Rod, axis: PlaneAxis) -> tuple[ValueAlong, complex]:
-        """(D along the parameter of an axis, derivative of D by the axis's scaled coordinate)."""
+        """(D and derivatives along the parameter of an axis, derivative of D by the scaled coordinate of this
+        axis).
+        """
         value = determinant_along(w, rod.coefficients, rod.direction(axis.name))
-        return value, value.D_p * axis.slope(getattr(rod, axis.name))
+        return value, value.D_p * axis.path_variable_slope(getattr(rod, axis.name))
 
     def small_step(self, x: float, y: float, which: int, largest: float) -> float:
-        """A step along the axis `which`, at most `largest` and at most 1 % of the distance from crushing."""
+        """A step along axis number `which`: at most `largest`, and at most 1 % of the distance from
+        crushing."""
         rod = self.at(x, y)
         axis = self.axes[which]
         force = rod.crushing_force
@@ -147,18 +164,18 @@ class Plane:
             return largest
         # The crushing force is proportional to k1 and quadratic in the taper, like the area.
         rate = {"F": 1.0, "k1": force / rod.k1}.get(axis.name, 2 * force / rod.taper)
-        slope = rate * axis.stretch(getattr(rod, axis.name))
+        slope = rate * axis.parameter_slope(getattr(rod, axis.name))
         return min(largest, PLANE.step_to_crushing * (force - rod.F) / slope)
 
-    def holds(self, x: float, y: float) -> bool:
-        """Whether the rod at scaled coordinates is valid."""
+    def is_valid(self, x: float, y: float) -> bool:
+        """Whether the rod at scaled coordinates (x, y) is valid."""
         try:
             self.at(x, y)
         except ValueError:
             return False
         return True
 
-    def uncrushed(self, x: float, y: float) -> bool:
-        """Whether the rod at scaled coordinates is not crushed."""
+    def is_uncrushed(self, x: float, y: float) -> bool:
+        """Whether the force at scaled coordinates (x, y) is below the force that crushes the rod."""
         values = {**self.rod.values} | {a.name: a.value(v) for a, v in zip(self.axes, (x, y), strict=True)}
         return values["F"] < values["k1"] * self.rod.build.crushing_share(values["taper"])

@@ -1,10 +1,10 @@
 """Changes of a rod's stability between two forces, from the leading eigenvalues at both forces.
 
-If the leading growth rate changes its sign, a pair crosses the imaginary axis: D(0) = 1, so no eigenvalue
-passes through 0. The eigenvalues at both forces are starting points of Newton's method on D(i eta; F) = 0. If
-the two leading eigenvalues are real at the first force and a pair at the next, a double eigenvalue
-D = D_w = 0 lies between. Two changes between the same two forces may cancel and stay unnoticed; the task
-`thresholds` proves completeness.
+If the leading growth rate changes its sign, a complex pair crosses the imaginary axis, because D(0) = 1 keeps
+real eigenvalues away from 0. The eigenvalues at both forces are starting points of Newton's method on
+D(i eta; F) = 0. If the two leading eigenvalues are real at the first force and complex at the second, a
+double eigenvalue D = D_w = 0 lies between the forces. Two changes between two forces may cancel and stay
+unnoticed; the task `thresholds` proves completeness.
 """
 
 from dataclasses import dataclass
@@ -21,20 +21,21 @@ from .roots.newton import crossing_newton, double_newton
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StabilityChangeSettings(CompiledSettings):
-    """Settings for crossings between two spectra."""
+    """Settings for crossings of the imaginary axis between two forces."""
 
-    same_crossing: float = 1e-8
-    """Relative distance below which two zeros are equal, since Newton's method reaches rounding error."""
+    same_crossing_distance: float = 1e-8
+    """Relative distance below which two zeros of D(i eta; F) are one crossing; Newton's method converges to
+    rounding error, far below it."""
 
 
 STABILITY_CHANGES = StabilityChangeSettings()
 
 
 class ForceChange(NamedTuple):
-    """A change of stability. `kind` is a word of `rodsweep.results.layouts.thresholds`.
+    """A change of stability at the force F. `kind` is a word of `rodsweep.results.layouts.thresholds`.
 
-    F, error: force of the change and its absolute error estimate, in k3/L^2. growth_rate, frequency: parts of
-    the eigenvalues that change, in 1/tau2.
+    error: absolute error estimate of F. F and error in k3/L^2. growth_rate, frequency: real and imaginary
+    part of the eigenvalues that change, in 1/tau2.
     """
 
     kind: str
@@ -45,17 +46,17 @@ class ForceChange(NamedTuple):
 
 
 RodsOverForce = tuple[Coefficients, Coefficients]
-"""Rods along F: coefficients at F = 0, and their derivative with respect to F."""
+"""Rods that differ in F only: their coefficients at F = 0, and the derivative of the coefficients by F."""
 
 
 def onset_between(
     rods: RodsOverForce, ends: tuple[float, float], before: Complex, after: Complex
 ) -> ForceChange | None:
-    """The double eigenvalue between two forces; None if Newton's method finds none.
+    """The double real eigenvalue between two forces; None if Newton's method finds none.
 
-    ends: both forces. before, after: leading eigenvalues at both, (modes,); the two leading eigenvalues are
-    real before and a pair after. The squared half difference of the two is almost linear in F and gives the
-    starting point.
+    ends: both forces. before, after: leading eigenvalues at both, (modes,). The two leading eigenvalues are
+    real before and complex after. The square of half their difference is almost linear in F, and its zero is
+    the starting point.
     """
     low, high = ends
     first = before[0].item()  # Python's numbers, for speed
@@ -74,10 +75,10 @@ def onset_between(
 def stability_change_between(
     rods: RodsOverForce, ends: tuple[float, float], before: Complex, after: Complex, unstable: int
 ) -> ForceChange | None:
-    """The loss or return of stability between two forces.
+    """The loss or return of stability between two forces, `ends`.
 
-    ends: both forces. before, after: leading eigenvalues at both, (modes,). unstable: number of growing modes
-    on the unstable side. None unless the number of crossings found, each a pair, explains `unstable`.
+    before, after: leading eigenvalues at both forces, (modes,). unstable: number of growing modes at the
+    unstable force. None unless the crossings found, two modes each, explain this number.
     """
     zeros = sorted(crossings_between(*ends, before, after, *rods).tolist())
     if not zeros or 2 * len(zeros) != unstable:
@@ -91,10 +92,11 @@ def stability_change_between(
 def crossings_between(
     low: float, high: float, before: Complex, after: Complex, origin: Coefficients, direction: Coefficients
 ) -> Array:
-    """(F, frequency, error of F) of the distinct zeros of D(i eta; F) that Newton's method finds, (n, 3).
+    """(F, frequency, error of F) of all distinct zeros of D(i eta; F) that Newton's method finds, (n, 3).
 
-    before, after: eigenvalues at the forces low and high, (modes,). Starting points combine the frequencies
-    of all eigenvalues with three forces: both ends, and the zero of the chord of the leading growth rate.
+    before, after: eigenvalues at the forces `low` and `high`, (modes,). Starting points are all frequencies
+    of these eigenvalues at three forces: both ends, and the zero of the linear interpolant of the leading
+    growth rate.
     """
     a = before[0].real
     b = after[0].real
@@ -111,12 +113,12 @@ def crossings_between(
                     continue
                 is_new = True
                 for i in range(n):
-                    same_F = abs(zero.p - found[i, 0]) <= STABILITY_CHANGES.same_crossing * (
+                    same_F = abs(zero.p - found[i, 0]) <= STABILITY_CHANGES.same_crossing_distance * (
                         1 + abs(found[i, 0])
                     )
-                    same_eta = abs(zero.eta_or_x - found[i, 1]) <= STABILITY_CHANGES.same_crossing * (
-                        1 + abs(found[i, 1])
-                    )
+                    same_eta = abs(
+                        zero.eta_or_x - found[i, 1]
+                    ) <= STABILITY_CHANGES.same_crossing_distance * (1 + abs(found[i, 1]))
                     is_new = is_new and not (same_F and same_eta)
                 if is_new:
                     found[n] = zero.p, zero.eta_or_x, zero.error_of_p

@@ -27,27 +27,29 @@ from ..model.compiled.compilation import compiled
 from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
 from .even_parts import EvenSum, even_parts
-from .exponents import EXPONENTS, exponents
+from .exponents import EXPONENTS, squared_exponents
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DeterminantSettings(CompiledSettings):
-    """Settings for values of D and for differences of D."""
+    """Settings for values of D and for differences of its derivatives."""
 
     typical_noise: float = 0.1
-    """Typical rounding error of D in units of `noise`: the upper quartile; median 0.05, maximum 0.7."""
-    in_place_of_0: float = 1e-200
-    """w, in 1/tau2, in place of 0: D - 1 is below rounding there, and no formula divides by 0."""
-    second_step: float = 1e-4
-    """Step of the difference for D'', in units of |w|; its relative error is about the square, enough to tell
-    a double root from two roots."""
+    """Rounding error of D in units of its bound `noise`: the upper quartile of measured errors, whose median
+    is 0.05 and maximum 0.7."""
+    zero_replacement: float = 1e-200
+    """Value of w, in 1/tau2, at which D(0) is computed, so that no formula divides by 0. D - 1 is below
+    rounding error there."""
+    second_difference_step: float = 1e-4
+    """Step of the difference of D' for D'', in units of |w|. The relative error of D'' is about its square,
+    enough to distinguish a double root from two roots."""
 
 
 DETERMINANT = DeterminantSettings()
 
 
 class DeterminantValue(NamedTuple):
-    """D and D' = dD/dw times exp(-S); noise: magnitude of the rounding error of D exp(-S)."""
+    """D and D' = dD/dw times exp(-S), and the magnitude `noise` of the rounding error of D exp(-S)."""
 
     D: complex
     D_w: complex
@@ -55,8 +57,8 @@ class DeterminantValue(NamedTuple):
     noise: float
 
 
-class Branches(NamedTuple):
-    """P, P' and P'' with respect to w, and the squares z+- of the sum and the difference of the roots q."""
+class ExponentDerivatives(NamedTuple):
+    """P, its derivatives P' and P'' by w, and z+ and z-, of the module `rodsweep.determinant.value`."""
 
     P: complex
     P_w: complex
@@ -66,29 +68,34 @@ class Branches(NamedTuple):
 
 
 @compiled
-def branches(w: complex, coefficients: Coefficients) -> Branches:
-    """P, its derivatives, and z+- at w != 0."""
+def exponent_derivatives(w: complex, coefficients: Coefficients) -> ExponentDerivatives:
+    """P, P', P'', z+ and z- of a uniform rod at w != 0."""
     F, nu, c2, gamma3 = coefficients
-    P, plus, minus = exponents(w, coefficients)
+    P, plus, minus = squared_exponents(w, coefficients)
     P1 = 0j
     P2 = 0j
     if P != 0:  # P is zero for every w if g = gamma3 = 0; then z+ = z- has no branch point
         P1 = ((nu + F * c2) * nu + 2 * c2 * gamma3 * w) / (2 * P)
         P2 = (c2 * gamma3 - P1 * P1) / P
-    return Branches(P, P1, P2, plus, minus)
+    return ExponentDerivatives(P, P1, P2, plus, minus)
 
 
 @compiled
 def scaled_determinant(w: complex, coefficients: Coefficients) -> DeterminantValue:
-    """D and D' at w; w = 0 is replaced by `DETERMINANT.in_place_of_0`, where D is 1 too."""
+    """D and D' of a uniform rod at w, times exp(-S).
+
+    w = 0 is replaced by `DETERMINANT.zero_replacement`, where D is 1 too.
+    """
     if w == 0:
-        w = complex(DETERMINANT.in_place_of_0, 0.0)
-    return from_parts(w, coefficients, even_parts(w, coefficients))
+        w = complex(DETERMINANT.zero_replacement, 0.0)
+    return determinant_from_parts(w, coefficients, even_parts(w, coefficients))
 
 
 @compiled
-def from_parts(w: complex, coefficients: Coefficients, parts: EvenSum) -> DeterminantValue:
-    """D and D' from the even parts at w."""
+def determinant_from_parts(w: complex, coefficients: Coefficients, parts: EvenSum) -> DeterminantValue:
+    """D and D' times exp(-S) at w, from the functions s and d and their derivatives, as `even_parts` returns
+    them.
+    """
     even, total, noise = parts
     F, nu, c2, gamma3 = coefficients
     T = c2 + gamma3
@@ -101,15 +108,15 @@ def from_parts(w: complex, coefficients: Coefficients, parts: EvenSum) -> Determ
 
 @compiled
 def second_difference(after: DeterminantValue, before: DeterminantValue, S: float, h: float) -> complex:
-    """D'' exp(-S) by the central difference of D' a step h beyond and before a point."""
+    """D'' exp(-S) by a central difference, from D' at w + h (`after`) and at w - h (`before`)."""
     # Each value has its own scale exp(-S); the difference needs one common scale.
     return (after.D_w * math.exp(after.S - S) - before.D_w * math.exp(before.S - S)) / (2 * h)
 
 
 @compiled
 def second_derivative(w: complex, S: float, coefficients: Coefficients) -> complex:
-    """D'' exp(-S) at w, by a central difference of D'; real for real w."""
-    h = DETERMINANT.second_step * abs(w)
+    """D'' exp(-S) of a uniform rod at w, by a central difference of D'; real for real w."""
+    h = DETERMINANT.second_difference_step * abs(w)
     after = scaled_determinant(w + h, coefficients)
     before = scaled_determinant(w - h, coefficients)
     second = second_difference(after, before, S, h)
@@ -117,25 +124,27 @@ def second_derivative(w: complex, S: float, coefficients: Coefficients) -> compl
 
 
 @compiled
-def distance_to_next(w: complex, coefficients: Coefficients) -> float:
-    """Estimated distance 2 |D'/D''| from an eigenvalue w to the next; accurate for close eigenvalues."""
+def distance_to_next_root(w: complex, coefficients: Coefficients) -> float:
+    """Estimated distance 2 |D'/D''| from an eigenvalue w to the nearest other one; accurate if both are
+    close.
+    """
     here = scaled_determinant(w, coefficients)
     return 2 * abs(here.D_w) / max(abs(second_derivative(w, here.S, coefficients)), EXPONENTS.least_divisor)
 
 
 @compiled
 def newton_correction(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
-    """(|D/D'|, length, wave number) at w.
+    """(|D/D'|, length, wave number) of a uniform rod at w.
 
     |D/D'|, in 1/tau2, is the distance to an eigenvalue to first order: an error estimate that does not depend
-    on how w was computed. The rounding error of D replaces a smaller |D|. The estimate is valid only well
-    below `length`, the change of w over which an exponent of D changes by one. The wave number, in 1/L,
-    bounds |q| of the exponents exp(+-q u) of an eigenfunction at w (Sec. VI).
+    on how w was computed. A |D| below its rounding error is replaced by this error. The estimate is valid
+    only well below `length`, the change of w over which an exponent of D changes by one. The wave number, in
+    1/L, bounds |q| of the exponents exp(+-q u) of an eigenfunction at w (Sec. VI).
     """
     value, slope, _, noise = scaled_determinant(w, coefficients)
     # A value that happens to be far below its rounding error proves no better root.
     error = max(abs(value), DETERMINANT.typical_noise * noise) / max(abs(slope), EXPONENTS.least_divisor)
-    P, P1, _, plus, minus = branches(w, coefficients)
+    P, P1, _, plus, minus = exponent_derivatives(w, coefficients)
     root_plus = math.sqrt(abs(plus))
     root_minus = math.sqrt(abs(minus))
     drag = coefficients.c2 + coefficients.gamma3

@@ -1,4 +1,4 @@
-"""Wave number of the eigenfunctions of any rod."""
+"""Wave number of an eigenfunction of a uniform rod or of an arm."""
 
 from ..model.rod import Rod
 from .arm.determinant import arm_determinant
@@ -6,5 +6,7 @@ from .value import newton_correction
 
 
 def wave_number(rod: Rod, w: complex) -> float:
-    """Largest |q| of the exponents exp(+-q u) of the mode with eigenvalue w, in 1/L; its mean for an arm."""
+    """Largest |q| of the exponents exp(+-q u) of the eigenfunction at w, in 1/L; averaged along an arm that
+    varies.
+    """
     return newton_correction(w, rod.coefficients)[2] if rod.standard else arm_determinant(rod).wave_number(w)

@@ -1,4 +1,4 @@
-"""Spectral elements on [0, 1]: quadrature, basis, constant pieces of matrices, and choice of the resolution.
+"""Spectral elements on the rod: quadrature, basis, matrices, and the choice of the mesh.
 
-Plain NumPy arrays; no PETSc and no MPI.
+Only NumPy arrays; no PETSc and no MPI.
 """

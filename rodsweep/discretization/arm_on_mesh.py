@@ -1,9 +1,10 @@
-"""Compliances, drags and rest of an arm at the nodes of a mesh, and their derivatives by a parameter.
+"""Compliances, drags and strains at rest of an arm at the nodes of a mesh, and their derivatives by a
+parameter.
 
-At a node between two elements a coefficient may jump. The mass is lumped, so that the equations of the node
+At a node between two elements a coefficient may jump. The mass is lumped, so the equations of this node
 contain the mean strain of both sides, weighted by the quadrature. This keeps the accuracy of the mesh if
-elements end at the jumps. For a linear law the mean compliance gives the stress of the mean strain; with
-another law both sides are needed (`rodsweep.model.material.jump`). Shapes need both sides for every law
+elements end at the jumps. For a linear law the mean compliance gives the stress of the mean strain; another
+law needs both sides (`rodsweep.model.material.jump`). Shapes need both sides for every law
 (`element_strains`).
 """
 
@@ -19,11 +20,11 @@ from ..model.rod import Rod
 from .elements.elements import ELEMENTS
 from .elements.mesh import Mesh
 from .elements.quadrature import gauss_lobatto
-from .nodal_rod import NO_JUMPS, NO_SIDE_CHANGE, Integers, Jumps
+from .nodal_rod import NO_JUMP_CHANGE, NO_JUMPS, IntegerArray, Jumps
 
 
 def material_on(rod: Rod, grid: Mesh) -> Material:
-    """The material of a rod on a mesh; an arm has arrays over the nodes, (3, nodes + 1).
+    """The material of a rod at the nodes of a mesh; for an arm, compliance, drag and rest are (3, nodes + 1).
 
     The elements of an arm must end at the breaks of its profile.
     """
@@ -34,7 +35,7 @@ def material_on(rod: Rod, grid: Mesh) -> Material:
 
 
 def material_change_on(rod: Rod, name: str, grid: Mesh) -> Material:
-    """The derivative of `material_on` with respect to the coordinate of a parameter."""
+    """The derivative of `material_on` by the path variable of the parameter `name`: 1/k for a stiffness k."""
     if rod.standard and name != "taper":
         return rod.material_change(name)
     compliance, drag, rest = _at_nodes(rod.section_changes(name, grid.points_inside.ravel()), grid)
@@ -42,9 +43,10 @@ def material_change_on(rod: Rod, name: str, grid: Mesh) -> Material:
 
 
 def profile_compliance_on(build: Build, grid: Mesh) -> Array:
-    """Bending compliance of an arm without taper at all nodes, in units of the one at the base, (nodes + 1,).
+    """Bending compliance of an arm without taper at all nodes, in units of its value at the clamp,
+    (nodes + 1,).
 
-    At a jump it is the mean of both sides; times m3 it is the mean bending strain.
+    At a jump it is the mean of both sides: times m3 it gives the mean bending strain.
     """
     if build.profile is None:
         return np.ones(grid.nodes + 1)
@@ -52,7 +54,7 @@ def profile_compliance_on(build: Build, grid: Mesh) -> Array:
 
 
 def jumps_on(rod: Rod, grid: Mesh) -> Jumps:
-    """The nodes at which the material of a rod jumps, with both sides."""
+    """The nodes of a mesh at which the material of a rod jumps, with the material on both sides."""
     inside, at = _beside_jumps(rod.build, grid)
     if not len(at):
         return NO_JUMPS
@@ -68,20 +70,20 @@ def jumps_on(rod: Rod, grid: Mesh) -> Jumps:
 
 
 def jump_change_on(rod: Rod, name: str, grid: Mesh) -> Array:
-    """Derivatives of nu, c1 and c3 on both sides of the jumps by a parameter's coordinate, (k, 2, 3).
+    """Derivatives of nu, c1 and c3 on both sides of each jump by the path variable of a parameter, (k, 2, 3).
 
-    None for a linear law, whose stresses at a jump depend on the mean strain alone.
+    `NO_JUMP_CHANGE` for a linear law, whose stress at a jump depends on the mean strain only.
     """
     inside, at = _beside_jumps(rod.build, grid)
     if rod.build.constitutive_law is LINEAR or not len(at):
-        return NO_SIDE_CHANGE
+        return NO_JUMP_CHANGE
     changes = rod.section_changes(name, grid.points_inside.ravel()[inside].ravel())
     c1, _, c3 = changes.compliance
     return np.ascontiguousarray(np.stack([changes.nu, c1, c3], axis=-1).reshape(*inside.shape, 3))
 
 
-def _beside_jumps(build: Build, grid: Mesh) -> tuple[Integers, Integers]:
-    """(places in `points_inside` before and behind each jump, (k, 2); its node, (k,))."""
+def _beside_jumps(build: Build, grid: Mesh) -> tuple[IntegerArray, IntegerArray]:
+    """(indices in `points_inside` before and behind each jump, (k, 2); its node, (k,))."""
     jumps = build.jumps
     ends = np.array([e for e in range(1, grid.elements) if grid.edges[e] in jumps], np.int64)
     size = grid.order + 1
@@ -89,7 +91,11 @@ def _beside_jumps(build: Build, grid: Mesh) -> tuple[Integers, Integers]:
 
 
 def _at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
-    """Compliance, drag and strain at rest, or their derivatives, at all nodes, (3, nodes + 1) each."""
+    """Compliance, drag and strain at rest at all nodes, (3, nodes + 1) each, from those at the
+    `points_inside`.
+
+    sections: the coefficients there, or their derivatives.
+    """
     rest = np.zeros_like(sections.drag)
     rest[0] = sections.nu
     compliance, drag, rest = (
@@ -99,14 +105,14 @@ def _at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
 
 
 def _mean_at_nodes(values: Array, grid: Mesh) -> Array:
-    """Means over both sides of each node, (m, nodes + 1), of values at the `points_inside`, (m, points)."""
+    """Means over both sides of each node, (m, nodes + 1), of `values` at the `points_inside`, (m, points)."""
     place, weights = _places_of(grid)
     mean: Array = np.array([np.bincount(place, weights * row) for row in values]) / grid.quadrature
     return mean
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
-def _places_of(grid: Mesh) -> tuple[Integers, Array]:
-    """(node, weight in the quadrature) of each of the `points_inside`, (elements (order + 1),) each."""
+@lru_cache(maxsize=ELEMENTS.max_meshes)
+def _places_of(grid: Mesh) -> tuple[IntegerArray, Array]:
+    """(node, quadrature weight) of each of the `points_inside`, (elements (order + 1),) each."""
     weights = grid.lengths[:, None] / 2 * gauss_lobatto(grid.order)[1]
     return grid.element_nodes.ravel(), weights.ravel()

@@ -1,8 +1,8 @@
-"""Fields of a rod beside the jumps of its material, where the stresses S of a law are not smooth.
+"""Stresses of a rod on both sides of the jumps of its material, where the stresses S of a law are not smooth.
 
-S are the stresses that a linear rod needs for the same strain. With another law they have other values on
-either side of a jump (`rodsweep.model.material.jump`), and the unknown of the node is the mean of both.
-Everywhere else S is smooth in each element.
+S are the stresses that a linear rod needs for the same strain. With another law S has different values on the
+two sides of a jump (`rodsweep.model.material.jump`), and the unknown at its node is the mean of both.
+Everywhere else S is smooth within each element.
 """
 
 from functools import lru_cache
@@ -20,17 +20,21 @@ from .elements.basis import interpolation
 from .elements.elements import ELEMENTS
 from .elements.mesh import Mesh, transfer
 from .elements.quadrature import gauss_lobatto
-from .nodal_rod import NO_JUMPS, Integers, NodalRod
+from .nodal_rod import NO_JUMPS, IntegerArray, NodalRod
 
 STRETCHING = 0
 BENDING = 2
-"""Components of S that are not smooth at a jump, in the order of their shares."""
+"""Components of S that are not smooth at a jump: indices of the stretching stress S1 and of the bending
+stress S3."""
 
 
 @compiled
 def split_at_jump(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
-    """Writes (q1, q3) before a jump and (q1, q3) behind into out, (4, m), for means q1, q3 over both sides,
-    (m,)."""
+    """Writes (q1, q3) before a jump and (q1, q3) behind it into out, (4, m), from the means q1, q3 of both
+    sides, (m,).
+
+    sides: the material of both sides, (2, 7).
+    """
     for i in range(len(q1)):
         q = Unknowns(q1[i], q3[i])
         a = unknowns_before_jump(law, sides, q)
@@ -44,7 +48,7 @@ def split_at_jump(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> N
 def stresses_beside_jumps(rod: NodalRod, S: Array) -> Array:
     """S1 and S3 on both sides of each jump, (k, 2, 2, ...), with axes (jump, side, stress, ...).
 
-    S: (3, ..., nodes + 1).
+    S: (3, ..., nodes + 1), with the mean of both sides at a jump.
     """
     out = np.empty((len(rod.jumps), 2, 2, *S.shape[1:-1]))
     for found, node, sides in zip(out, rod.jumps, rod.sides, strict=True):
@@ -55,8 +59,12 @@ def stresses_beside_jumps(rod: NodalRod, S: Array) -> Array:
     return out
 
 
-def by_elements(rod: NodalRod, grid: Mesh, S: Array) -> Array:
-    """S at the nodes of each element, (3, ..., elements, order + 1), with its own side of each jump."""
+def stresses_by_element(rod: NodalRod, grid: Mesh, S: Array) -> Array:
+    """S at the nodes of each element, (3, ..., elements, order + 1); at a jump each element has the S of its
+    own side.
+
+    S: (3, ..., nodes + 1).
+    """
     fields: Array = S[..., grid.element_nodes]
     for node, sides in zip(rod.jumps, stresses_beside_jumps(rod, S), strict=True):
         e = node // grid.order
@@ -66,11 +74,13 @@ def by_elements(rod: NodalRod, grid: Mesh, S: Array) -> Array:
     return fields
 
 
-def carried_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Values:
-    """S at all nodes of another mesh, (3, ..., nodes there + 1), from S, (3, ..., nodes + 1): a linear map.
+def interpolate_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Values:
+    """S at all nodes of the mesh `target`, (3, ..., target.nodes + 1), from S on `source`,
+    (3, ..., nodes + 1).
 
-    The unknown of a jump is no value of the polynomials beside it: these come from the other nodes of their
-    elements, and their means are the unknowns of the jumps of the target.
+    The map is linear. The unknown at a jump is not a value of the polynomials on either side. These
+    polynomials are taken from the other nodes of their elements, and the means of their ends are the unknowns
+    at the jumps of the target.
     """
     E = transfer(source, target)
     out = S @ E.T
@@ -85,11 +95,13 @@ def carried_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Values:
 
 
 def _across(  # noqa: PLR0913, PLR0917 - of both meshes
-    E: Array, source: Mesh, target: Mesh, here: Integers, there: Integers, shares: Array
+    E: Array, source: Mesh, target: Mesh, here: IntegerArray, there: IntegerArray, shares: Array
 ) -> Array:
-    """E of meshes, (target nodes, source nodes), for a field with jumps at nodes of both.
+    """Interpolation matrix E between two meshes, (target nodes, source nodes), changed for a field with
+    jumps.
 
-    here, there: nodes of the jumps, (k,) each. shares: of both sides in the unknown of a jump, (k, 2).
+    here, there: nodes of the jumps in source and target, (k,) each. shares: of both sides in the unknown at a
+    jump, (k, 2).
     """
     # E interpolates the mean at a jump; rows of elements beside one extrapolate from inside instead.
     out = E.copy()
@@ -113,11 +125,12 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
     return out
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def _end_from_inside(order: int, starts: bool, stops: bool, first: bool) -> Array:
-    """Row from values at an element's nodes to its first or last one, without its nodes at jumps, (p + 1,).
+    """Weights, (p + 1,), that extrapolate from the nodes of an element, without those at jumps, to one end.
 
-    starts, stops: whether the element starts, and stops, at a jump.
+    starts, stops: whether the element starts, and stops, at a jump. first: whether to its first node, else
+    the last.
     """
     x = gauss_lobatto(order)[0]
     # Nodes at jumps hold means over both sides, which belong to neither polynomial.

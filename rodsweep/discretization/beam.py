@@ -1,6 +1,6 @@
 """One nonlinear rod on one mesh as an explicit system for time stepping: dz/dt = f(z) and its exact Jacobian.
 
-The unknown is z = C^(1/2) S, in units of the square root of an energy density: S is the stress of a linear
+The unknown is z = C^(1/2) S, in units of the square root of an energy density. S is the stress of a linear
 rod minus the stress of the straight rod, at all nodes except the tip, where S = 0. z1 at every node comes
 first, then z2, then z3. |z|^2/2 is an energy density of the linear rod, the mass matrix is the identity, and
 large k1 or k2 cost no digits. The form needs c1, c2, gamma3 > 0; `StressForm` includes the limits.
@@ -13,18 +13,18 @@ import numpy as np
 
 from ..arrays import Array
 from ..model.balance import Values
-from .elements.mesh import configuration
+from .elements.mesh import shape_from_strains
 from .rod_on_mesh import RodOnMesh
-from .stress.rates import rate_jacobians, rates
+from .stress.rates import write_rate_jacobians, write_rates
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BeamSettings:
-    """Derivatives of the tip."""
+    """Settings for the velocity of the tip."""
 
     tip_step: float = 1e-30
-    """Imaginary step of the complex-step derivative in `tip_motion`, in tau2; its square underflows, so it
-    has no error."""
+    """Imaginary step, in tau2, of the complex-step derivative in `tip_motion`. Its square underflows, so it
+    causes no error."""
 
 
 BEAM = BeamSettings()
@@ -32,75 +32,77 @@ BEAM = BeamSettings()
 
 @dataclass(frozen=True, eq=False)
 class Beam(RodOnMesh):
-    """One rod with finite k1, k2 and gamma3 > 0 on one mesh.
+    """One rod with finite k1, k2 and gamma3 > 0 on one mesh, as an explicit system.
 
-    z has shape (unknowns,) and the unit of sqrt(energy density), sqrt(k3)/L.
+    z has the shape (unknowns,) and the unit of the square root of an energy density, sqrt(k3)/L.
     """
 
     @property
-    def kept(self) -> tuple[int, ...]:
+    def unknown_velocities(self) -> tuple[int, ...]:
         return ()
 
     @cached_property
-    def roots(self) -> Array:
-        """Square roots of C, (3, nodes + 1): z = roots S, and E - E0 = roots z."""
+    def sqrt_compliance(self) -> Array:
+        """Square roots of C, (3, nodes + 1): z = sqrt(C) S, and E - E0 = sqrt(C) z."""
         return np.sqrt(self.nodal.compliance)
 
     @cached_property
-    def crushed(self) -> Array:
-        """The z1 at which h1 = 0, at all nodes except the tip, (nodes,).
+    def crushing_z1(self) -> Array:
+        """Values of z1 at which the stretch h1 is 0, at all nodes except the tip, (nodes,).
 
         At a jump h1 vanishes on one side first if the law is linear, and on both sides at once otherwise.
         """
-        crushed = -self.nodal.rest[0, :-1] / self.roots[0, :-1]
+        crushed = -self.nodal.rest[0, :-1] / self.sqrt_compliance[0, :-1]
         if self.smooth_stresses:
             for node, sides in zip(self.nodal.jumps, self.nodal.sides, strict=True):
                 # The side that is crushed first counts.
-                crushed[node] = self.roots[0, node] * (-sides[:, 0] / sides[:, 1]).max()
+                crushed[node] = self.sqrt_compliance[0, node] * (-sides[:, 0] / sides[:, 1]).max()
         return np.ascontiguousarray(crushed)
 
     def stresses(self, z: Values) -> Values:
         scaled = self.layout.stresses(z)
         return scaled / self._along(scaled)
 
-    def scaled(self, S: Array) -> Array:
-        """The state z of stresses S at all nodes, (3, ..., nodes + 1)."""
+    def state_of_stresses(self, S: Array) -> Array:
+        """States z of stresses S at all nodes, (3, ..., nodes + 1)."""
         return self.layout.state(S * self._along(S), S)
 
-    def unknown(self, strains: Array) -> Array:
-        """The state z of strains (h1, h2, Pi) at all nodes, (3, nodes + 1); values at the tip are ignored."""
-        return self.layout.state((strains - self.nodal.rest) / self.roots, strains)
+    def state_of_strains(self, strains: Array) -> Array:
+        """The state z of strains (h1, h2, Pi) at all nodes, (3, nodes + 1); strains at the tip are
+        ignored."""
+        return self.layout.state((strains - self.nodal.rest) / self.sqrt_compliance, strains)
 
     def rate(self, z: Array) -> Array:
-        """dz/dt in 1/tau2 for states z, both (..., unknowns)."""
+        """dz/dt of states z, both (..., unknowns), with time in tau2."""
         out = np.empty(z.shape)
         flat = z.reshape(-1, self.unknowns), out.reshape(-1, self.unknowns)
-        rates(*flat, self.roots, self.nodal, self.mesh.matrices)
+        write_rates(*flat, self.sqrt_compliance, self.nodal, self.mesh.matrices)
         return out
 
     def jacobian(self, z: Array) -> Array:
-        """d(dz/dt)/dz, (..., unknowns, unknowns), for states z, (..., unknowns)."""
+        """Jacobians d(dz/dt)/dz, (..., unknowns, unknowns), of states z, (..., unknowns), with time in
+        tau2."""
         size = self.unknowns
         out = np.empty((*z.shape, size))
         states = z.reshape(-1, size)
         matrices = out.reshape(-1, size, size)
-        rate_jacobians(states, matrices, self.roots, self.nodal, self.mesh.matrices)
+        write_rate_jacobians(states, matrices, self.sqrt_compliance, self.nodal, self.mesh.matrices)
         return out.swapaxes(-1, -2)
 
     def tip_motion(self, z: Array, direction: Array) -> tuple[Array, Array]:
-        """The tip's (x, y, theta) and their d/dt for dz/dt = direction, (3, ...) each.
+        """(x, y, theta) of the tip and its time derivative for dz/dt = direction, (3, ...) each.
 
         z, direction: (..., unknowns). A small imaginary step gives the velocity without cancellation.
         """
         change = self.element_strain_changes(z, BEAM.tip_step * direction)
-        moved = configuration(self.mesh, self.element_strains(z) + 1j * change, np.zeros(3))[..., -1]
+        moved = shape_from_strains(self.mesh, self.element_strains(z) + 1j * change, np.zeros(3))[..., -1]
         # Complex step: the imaginary part is the derivative times the step, without a difference.
         return moved.real, moved.imag / BEAM.tip_step
 
     def tip_velocity(self, z: Array, direction: Array) -> Array:
-        """d/dt of the tip's (x, y, theta) for dz/dt = direction, shape (3, ...)."""
+        """Time derivative of (x, y, theta) of the tip for dz/dt = direction, (3, ...)."""
         return self.tip_motion(z, direction)[1]
 
     def _along(self, field: Values) -> Array:
-        """`roots` reshaped to broadcast against a field (3, ..., nodes + 1)."""
-        return self.roots.reshape(3, *(1,) * (field.ndim - 2), -1)
+        """`sqrt_compliance` reshaped to broadcast against a field (3, ..., nodes + 1)."""
+        return self.sqrt_compliance.reshape(3, *(1,) * (field.ndim - 2), -1)

@@ -1,11 +1,11 @@
-"""Strains at the nodes of every element, compiled: both values where the material jumps.
+"""Strains at the nodes of every element, compiled; at a jump of the material, the strain of each side.
 
 At a jump stress is continuous and strain is not. The unknown at the node of a jump gives the mean strain of
-both sides. The strain takes this value on neither side, and a shape integrated with it converges only with
-the fifth power of the order. The strains of both sides follow from the stress
-(`rodsweep.model.material.jump`); a shape integrated with them converges exponentially.
+both sides, which neither side has. A shape integrated with the mean strain converges only with the fifth
+power of the order. The strains of both sides follow from the stress (`rodsweep.model.material.jump`), and a
+shape integrated with these converges exponentially.
 
-Arrays at the nodes of every element hold one element after the other, `Elements.element_nodes`.
+Arrays at the nodes of every element hold one element after the other, like `Elements.element_nodes`.
 """
 
 from ..arrays import Array
@@ -21,16 +21,18 @@ from .nodal_rod import NodalRod
 
 
 @compiled
-def place_before(node: int, order: int) -> int:
-    """Place before a jump among the nodes of every element; the place behind it is the next."""
+def index_before_jump(node: int, order: int) -> int:
+    """Index, among the nodes of every element, of the side before the jump at `node`; the side behind is the
+    next.
+    """
     return node + node // order - 1
 
 
 @compiled_for_vectors
 def write_element_strains(S: Array, rod: NodalRod, order: int, out: Array) -> None:
-    """Writes (h1, h2, Pi) of S, (3, m, nodes + 1), into out, (3, m, elements (order + 1)).
+    """Writes the strains (h1, h2, Pi) at the nodes of every element into out, (3, m, elements (order + 1)).
 
-    order: of the elements. S: unknown stresses at all nodes, E = E0 + C S.
+    S: stresses of m states at all nodes, (3, m, nodes + 1), with E = E0 + C S. order: of the elements.
     """
     for a in range(len(S)):
         for k in range(S.shape[1]):
@@ -40,7 +42,7 @@ def write_element_strains(S: Array, rod: NodalRod, order: int, out: Array) -> No
     for j in range(len(rod.jumps)):
         node = rod.jumps[j]
         sides = rod.sides[j]
-        before = place_before(node, order)
+        before = index_before_jump(node, order)
         for k in range(S.shape[1]):
             q = Unknowns(S[0, k, node], S[2, k, node])
             first = unknowns_before_jump(rod.law, sides, q)
@@ -52,10 +54,11 @@ def write_element_strains(S: Array, rod: NodalRod, order: int, out: Array) -> No
 
 
 @compiled_for_vectors
-def write_element_rates(S: Array, rates: Array, rod: NodalRod, order: int, out: Array) -> None:
-    """Writes dE of every element into out, (3, m, elements (order + 1)), from dE at all nodes.
+def write_element_strain_changes(S: Array, rates: Array, rod: NodalRod, order: int, out: Array) -> None:
+    """Writes changes of strains at the nodes of every element into out, (3, m, elements (order + 1)).
 
-    S, rates: unknown stresses and changes of the (mean) strains at all nodes, (3, m, nodes + 1).
+    S: stresses of m states at all nodes, (3, m, nodes + 1). rates: changes of the (mean) strains there, same
+    shape.
     """
     for a in range(len(rates)):
         for k in range(rates.shape[1]):
@@ -64,7 +67,7 @@ def write_element_rates(S: Array, rates: Array, rod: NodalRod, order: int, out: 
     for j in range(len(rod.jumps)):
         node = rod.jumps[j]
         sides = rod.sides[j]
-        before = place_before(node, order)
+        before = index_before_jump(node, order)
         c1 = rod.compliance[0, node]
         c2 = rod.compliance[1, node]
         c3 = rod.compliance[2, node]

@@ -12,18 +12,19 @@ from ..model.material.jump import COLUMNS
 from .elements.elements import ELEMENTS
 from .elements.mesh import Mesh
 
-Integers = NDArray[np.int64]
+IntegerArray = NDArray[np.int64]
 
 
 class NodalRod(NamedTuple):
-    """A rod with d components at all nodes of a mesh, tip included: the argument of compiled functions.
+    """A rod with d stress components at all nodes of a mesh, tip included: the argument of compiled
+    functions.
 
-    tip_stress: Sigma(1), (d,). rest: E0, the strain of the straight rod; rest, compliance and drag have the
-    shape (d, nodes + 1). mobility: 1/drag, but 0 for components of V that are unknowns. second:
-    -D^T W mobility D, (d, nodes + 1, nodes + 1). kept: indices of the components of V that are unknowns. law:
-    number of the constitutive law, see `rodsweep.model.material.response`. jumps: nodes at which the
-    material jumps, increasing, (k,). sides: both sides of these nodes, (k, 2, 7), see
-    `rodsweep.model.material.jump`.
+    tip_stress: Sigma(1), (d,). rest: E0, the strain of the straight rod under its force; rest, compliance and
+    drag are (d, nodes + 1). mobility: 1/drag, but 0 for the components of V that are unknowns. second: -D^T W
+    mobility D, (d, nodes + 1, nodes + 1). unknown_velocities: indices of the components of V that are
+    unknowns. law: number of the constitutive law, see `rodsweep.model.material.response`. jumps: nodes at
+    which the material jumps, increasing, (k,). sides: the material on both sides of these nodes, (k, 2, 7),
+    see `rodsweep.model.material.jump`.
     """
 
     tip_stress: Array
@@ -32,29 +33,28 @@ class NodalRod(NamedTuple):
     drag: Array
     mobility: Array
     second: Array
-    kept: Integers
+    unknown_velocities: IntegerArray
     law: int
-    jumps: Integers
+    jumps: IntegerArray
     sides: Array
 
 
 class Jumps(NamedTuple):
-    """Nodes at which the material jumps, and both sides of each: the fields `jumps` and `sides` of a
-    `NodalRod`.
-    """
+    """Nodes at which the material jumps, (k,), and the material on both sides of each, (k, 2, 7)."""
 
-    nodes: Integers
+    nodes: IntegerArray
     sides: Array
 
 
 NO_JUMPS = Jumps(np.zeros(0, np.int64), np.zeros((0, 2, len(COLUMNS))))
 """The jumps of a rod whose material is continuous: none."""
-NO_SIDE_CHANGE = np.zeros((0, 2, 3))
-"""Changes on the sides of jumps, (0, 2, 3), for a rod without jumps or of linear material."""
+NO_JUMP_CHANGE = np.zeros((0, 2, 3))
+"""Derivatives of the material beside jumps, for a rod without jumps or of linear material: none, (0, 2,
+3)."""
 
 
 class NodalChange(NamedTuple):
-    """The derivative of the fields of a `NodalRod` with respect to a parameter; same shapes."""
+    """The derivative of the fields of a `NodalRod` by the path variable of a parameter; same shapes."""
 
     tip_stress: Array
     rest: Array
@@ -65,46 +65,57 @@ class NodalChange(NamedTuple):
 
 
 def nodal_rod(
-    material: Material, grid: Mesh, kept: tuple[int, ...] = (), law: int = 0, jumps: Jumps = NO_JUMPS
+    material: Material,
+    grid: Mesh,
+    unknown_velocities: tuple[int, ...] = (),
+    law: int = 0,
+    jumps: Jumps = NO_JUMPS,
 ) -> NodalRod:
-    """The `NodalRod` of a material on a mesh; kept: indices of the components of V that are unknowns."""
+    """The `NodalRod` of a material on a mesh; unknown_velocities: indices of the components of V that are
+    unknowns.
+    """
     size = grid.nodes + 1
     rest = _at_nodes(material.rest, size)
     compliance = _at_nodes(material.compliance, size)
-    resistance = _resistance_of(material.drag.tobytes(), material.drag.shape, grid, kept)
+    resistance = _resistance_of(material.drag.tobytes(), material.drag.shape, grid, unknown_velocities)
     return NodalRod(material.tip_stress, rest, compliance, *resistance, law, *jumps)
 
 
-def nodal_change(change: Material, grid: Mesh, sides: Array = NO_SIDE_CHANGE) -> NodalChange:
-    """The `NodalChange` of the derivative of a material on a mesh; sides: (k, 2, 3), as in `NodalChange`."""
+def nodal_change(change: Material, grid: Mesh, sides: Array = NO_JUMP_CHANGE) -> NodalChange:
+    """The `NodalChange` from the derivative of a material on a mesh; sides: (k, 2, 3), as in
+    `NodalChange`."""
     fields = change.rest, change.compliance, change.drag
     rest, compliance, drag = (_at_nodes(field, grid.nodes + 1) for field in fields)
     return NodalChange(change.tip_stress, rest, compliance, drag, sides)
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def _resistance_of(
-    drag: bytes, shape: tuple[int, ...], grid: Mesh, kept: tuple[int, ...]
-) -> tuple[Array, Array, Array, Integers]:
-    """`_resistance`, cached by the bytes of the drag, because rods of a chain over F have equal drags."""
+    drag: bytes, shape: tuple[int, ...], grid: Mesh, unknown_velocities: tuple[int, ...]
+) -> tuple[Array, Array, Array, IntegerArray]:
+    """`_resistance`, cached by the bytes of the drag, because rods that differ in F only have equal drags."""
     # Bytes are hashable keys of the cache, and hold the array itself.
     values = np.frombuffer(drag).reshape(shape)
-    return _resistance(values if len(shape) > 1 else values[:, None], grid, kept)
+    return _resistance(values if len(shape) > 1 else values[:, None], grid, unknown_velocities)
 
 
-def _resistance(drag: Array, grid: Mesh, kept: tuple[int, ...]) -> tuple[Array, Array, Array, Integers]:
-    """drag, mobility, second and kept of a `NodalRod`."""
+def _resistance(
+    drag: Array, grid: Mesh, unknown_velocities: tuple[int, ...]
+) -> tuple[Array, Array, Array, IntegerArray]:
+    """The fields drag, mobility, second_derivative and unknown_velocities of a `NodalRod`; drag: (d, 1) or
+    (d, nodes + 1).
+    """
     drag = _at_nodes(drag, grid.nodes + 1)
     mobility = np.zeros(drag.shape)
-    eliminated = [a for a in range(len(drag)) if a not in kept]
+    eliminated = [a for a in range(len(drag)) if a not in unknown_velocities]
     mobility[eliminated] = 1 / drag[eliminated]
     # Stresses enter twice through their derivative, D* and then the weak D: a product that no state changes.
     second = grid.matrices.weak @ (mobility[:, :, None] * grid.matrices.D)
-    return drag, mobility, second, np.array(kept, np.int64)
+    return drag, mobility, second, np.array(unknown_velocities, np.int64)
 
 
 def _at_nodes(field: Array, size: int) -> Array:
-    """A constant of each component, (d,), or a field, (d, size), as a field (d, size)."""
+    """A field (d, size), from a field of this shape or from one constant for each component, (d,)."""
     out = np.empty((len(field), size))
     out[:] = field.reshape(len(field), -1)
     return out

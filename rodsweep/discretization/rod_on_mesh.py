@@ -1,7 +1,7 @@
-"""One nonlinear rod on one mesh: strains, shape and energy from stresses.
+"""One nonlinear rod on one mesh: its strains, shape and energy, computed from its stresses.
 
-This is the common part of two forms: `StressForm`, whose unknowns are stresses, and `Beam`, whose unknowns
-are stresses in units of energy.
+This is the common base of two forms: `StressForm`, whose unknowns are stresses, and `Beam`, whose unknowns
+are stresses scaled to the root of an energy density.
 """
 
 from abc import ABC, abstractmethod
@@ -17,40 +17,44 @@ from ..model.material.laws import LINEAR
 from ..model.material.response import LocalSection, tangent
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on, material_on
-from .at_jumps import carried_stress, stresses_beside_jumps
-from .element_strains import write_element_rates, write_element_strains
-from .elements.mesh import Mesh, configuration
+from .at_jumps import interpolate_stress, stresses_beside_jumps
+from .element_strains import write_element_strain_changes, write_element_strains
+from .elements.mesh import Mesh, shape_from_strains
 from .nodal_rod import NodalRod, nodal_rod
 from .state_layout import StateLayout, plane_layout
 
 
 @dataclass(frozen=True, eq=False)
 class RodOnMesh(ABC):
-    """One rod on one mesh; states have the shape (..., unknowns)."""
+    """One nonlinear rod on one mesh; states x have the shape (..., unknowns)."""
 
     rod: Rod
     mesh: Mesh
 
     @property
     @abstractmethod
-    def kept(self) -> tuple[int, ...]:
+    def unknown_velocities(self) -> tuple[int, ...]:
         """Indices of the components of V that are unknowns."""
 
     @abstractmethod
     def stresses(self, x: Values) -> Values:
-        """S at all nodes, tip included, shape (3, ..., nodes + 1), with the strain E = E0 + C S.
+        """Stresses S of states x at all nodes, tip included, (3, ..., nodes + 1), with the strain E = E0 + C
+        S.
 
         In a linear rod S is (n1 + F, n2, m3).
         """
 
     def with_coordinate(self, name: str, coordinate: float) -> Self:
-        """The rod with another coordinate of a parameter, on the same mesh; ValueError for an invalid rod."""
+        """The rod with another value of the path variable of the parameter `name`, on the same mesh.
+
+        Raises ValueError for an invalid rod.
+        """
         return replace(self, rod=self.rod.with_coordinate(name, coordinate))
 
     @cached_property
     def layout(self) -> StateLayout:
         """Positions of the fields in a state."""
-        return plane_layout(self.mesh.nodes, self.kept)
+        return plane_layout(self.mesh.nodes, self.unknown_velocities)
 
     @property
     def unknowns(self) -> int:
@@ -58,50 +62,56 @@ class RodOnMesh(ABC):
 
     @cached_property
     def nodal(self) -> NodalRod:
-        """The rod as argument of compiled functions."""
+        """The rod at the nodes of the mesh, as the argument of compiled functions."""
         rod = self.rod
         mesh = self.mesh
         law = rod.build.law_number
         jumps = jumps_on(rod, mesh)
-        return nodal_rod(material_on(rod, mesh), mesh, self.kept, law, jumps)
+        return nodal_rod(material_on(rod, mesh), mesh, self.unknown_velocities, law, jumps)
 
     @property
     def smooth_stresses(self) -> bool:
-        """Whether S is continuous along the rod: without jumps of the material, and for a linear law."""
+        """Whether S is continuous along the rod: if the material does not jump, or if its law is linear."""
         return self.rod.build.constitutive_law is LINEAR or not len(self.nodal.jumps)
 
     def strains(self, x: Values) -> Values:
-        """(h1, h2, Pi) at all nodes, tip included, shape (3, ..., nodes + 1); the mean strain at a jump."""
+        """Strains (h1, h2, Pi) at all nodes, tip included, (3, ..., nodes + 1); at a jump the mean of both
+        sides.
+        """
         S = self.stresses(x)
         c = self.nodal
         return _along(c.rest, S) + _along(c.compliance, S) * S
 
     def element_strains(self, x: Array) -> Array:
-        """(h1, h2, Pi) at the nodes of every element, (3, ..., elements (order + 1))."""
+        """Strains (h1, h2, Pi) at the nodes of every element, (3, ..., elements (order + 1)); both sides of a
+        jump.
+        """
         S = self.stresses(x)
         out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
         write_element_strains(_listed(S), self.nodal, self.mesh.order, _listed(out))
         return out
 
     def element_strain_changes(self, x: Array, change: Array) -> Array:
-        """Changes of `element_strains` with changes of states; x, change: (..., unknowns)."""
+        """Derivative of `element_strains` at states x along `change`; both (..., unknowns)."""
         S = self.stresses(x)
         dS = self.stresses(change)
         moved = _along(self.nodal.compliance, dS) * dS
         out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
-        write_element_rates(_listed(S), _listed(moved), self.nodal, self.mesh.order, _listed(out))
+        write_element_strain_changes(_listed(S), _listed(moved), self.nodal, self.mesh.order, _listed(out))
         return out
 
     def shape(self, x: Array) -> Array:
-        """(x, y, theta) at all nodes in L and rad, (3, ..., nodes + 1); clamped at the origin along e_x."""
-        return configuration(self.mesh, self.element_strains(x), np.zeros(3))
+        """Shape (x, y, theta) at all nodes in L and rad, (3, ..., nodes + 1), clamped at the origin along
+        e_x.
+        """
+        return shape_from_strains(self.mesh, self.element_strains(x), np.zeros(3))
 
     def tip(self, x: Array) -> Array:
-        """(x, y, theta) of the tip, shape (3, ...)."""
+        """(x, y, theta) of the tip in L and rad, (3, ...)."""
         return self.shape(x)[..., -1]
 
     def energy(self, x: Array) -> Array:
-        """Elastic energy U of states x, in k3/L, shape (...).
+        """Elastic energy U of states x, in k3/L, (...).
 
         For a uniform linear rod U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2.
         """
@@ -119,7 +129,9 @@ class RodOnMesh(ABC):
         return energy
 
     def _stored(self, nu: Values, c1: Values, c3: Values, q1: Values, q3: Values) -> Values:
-        """Energy per length of stretching and bending of the unknowns q1, q3 of sections, without shear."""
+        """Energy per length of stretching and bending, from the unknowns q1 and q3 of a section; shear is not
+        included.
+        """
         F = self.rod.F
         law = self.rod.build.constitutive_law
         load = F * c1
@@ -131,11 +143,11 @@ class RodOnMesh(ABC):
         return stored
 
     def stresses_on(self, grid: Mesh, x: Array) -> Array:
-        """S of states x at all nodes of another mesh, shape (3, ..., nodes there + 1)."""
-        return carried_stress(self.rod, self.stresses(x), self.mesh, grid)
+        """Stresses S of states x at all nodes of the mesh `grid`, (3, ..., grid.nodes + 1)."""
+        return interpolate_stress(self.rod, self.stresses(x), self.mesh, grid)
 
     def least_stretch(self, x: Array) -> float:
-        """Minimum of h1 over all nodes and states; the model is valid while the minimum is positive.
+        """Smallest stretch h1 of all nodes and states x; the model is valid while it is positive.
 
         At a jump both sides count.
         """
@@ -144,7 +156,7 @@ class RodOnMesh(ABC):
     def is_convex(self, x: Array) -> bool:
         """Whether the energy of every section is convex in its strain, for one state x, (unknowns,).
 
-        Where it is not, the equations are ill-posed: the shortest waves on the mesh grow fastest.
+        Without convexity the equations are ill-posed: the shortest waves of the mesh grow fastest.
         """
         S = self.stresses(x)
         c = self.nodal
@@ -159,7 +171,7 @@ class RodOnMesh(ABC):
 
 
 def _listed(field: Array) -> Array:
-    """A field (3, ..., n) as (3, m, n), with the same memory."""
+    """A field (3, ..., n) reshaped to (3, m, n), without a copy."""
     return field.reshape(len(field), -1, field.shape[-1])
 
 

@@ -1,7 +1,7 @@
-"""Positions of the fields in a flat state: stresses at all nodes except the tip, then unknown velocities.
+"""Indices of the fields in a flat state: stresses at all nodes except the tip, then unknown velocities.
 
 No other module computes indices into a state. Python code uses a `StateLayout`. Compiled code uses
-`stress_place` and `velocity_place`, because an array view costs as much as a sum over the nodes.
+`stress_index` and `velocity_index`, because an array view costs as much as a sum over the nodes.
 """
 
 from dataclasses import dataclass
@@ -13,92 +13,102 @@ from ..model.balance import Values
 from ..model.compiled.compilation import compiled_for_vectors
 
 STRESS_NAMES = {3: ("n1", "n2", "m3"), 6: ("n1", "n2", "n3", "m1", "m2", "m3")}
-"""Names of the stresses in the plane and in space."""
-COMPONENTS = 3
-BENDING = 2
-"""Number of stress components in the plane, and the index of m3 among them, for compiled code."""
+"""Names of the stress components in the plane (3) and in space (6)."""
+PLANE_COMPONENTS = 3
+BENDING_INDEX = 2
+"""PLANE_COMPONENTS: number of stress components in the plane. BENDING_INDEX: index of m3 among them. For
+compiled code."""
 
 
 @dataclass(frozen=True, slots=True)
 class StateLayout:
-    """Order of the unknowns in states of shape (..., unknowns).
+    """Order of the unknowns in states of the shape (..., unknowns).
 
-    components: number of stress components. nodes: number of nodes without the tip. kept: indices of the
-    unknown components of V. At the tip velocities are unknown too, but stresses are 0.
+    components: number of stress components. nodes: number of nodes without the tip. unknown_velocities:
+    indices of the components of V that are unknowns. At the tip velocities are unknown too, but stresses are
+    0.
     """
 
     components: int
     nodes: int
-    kept: tuple[int, ...] = ()
+    unknown_velocities: tuple[int, ...] = ()
 
     @property
     def unknowns(self) -> int:
-        return self.components * self.nodes + len(self.kept) * (self.nodes + 1)
+        return self.components * self.nodes + len(self.unknown_velocities) * (self.nodes + 1)
 
     def field(self, x: Values, name: str) -> Values:
-        """The stress `name` of states x at all nodes except the tip, a view of the shape (..., nodes)."""
-        first = self.place(name)
+        """The stress `name` of states x at all nodes except the tip: a view, (..., nodes)."""
+        first = self.index(name)
         return x[..., first : first + self.nodes]
 
-    def place(self, name: str, node: int = 0) -> int:
-        """Index of the stress `name` at a node in a state; node 0 is the clamp."""
+    def index(self, name: str, node: int = 0) -> int:
+        """Index in a state of the stress `name` at a node; node 0 is the clamp."""
         return STRESS_NAMES[self.components].index(name) * self.nodes + node
 
-    def at(self, x: Values, name: str, node: int = 0) -> Values:
-        """The stress `name` of states x at one node, shape (...)."""
-        at: Values = x[..., self.place(name, node)]
+    def stress_at(self, x: Values, name: str, node: int = 0) -> Values:
+        """The stress `name` of states x at one node, (...)."""
+        at: Values = x[..., self.index(name, node)]
         return at
 
     def transverse(self, x: Values) -> Values:
-        """All unknowns of plane states x except n1, a view; all are 0 for a straight rod."""
+        """All unknowns of states x in the plane but the axial stress n1, a view; all are 0 for a straight
+        rod.
+        """
         return x[..., self.nodes :]
 
     def stresses(self, x: Values) -> Values:
-        """All stresses of states x at all nodes, 0 at the tip, shape (components, ..., nodes + 1)."""
+        """All stresses of states x at all nodes, 0 at the tip, (components, ..., nodes + 1)."""
         S = np.zeros((self.components, *x.shape[:-1], self.nodes + 1), x.dtype)
         known = x[..., : self.components * self.nodes].reshape(*x.shape[:-1], self.components, self.nodes)
         S[..., :-1] = np.moveaxis(known, -2, 0)
         return S
 
     def velocities(self, x: Values) -> Values:
-        """The unknown components of V of states x at all nodes, shape (kept, ..., nodes + 1)."""
+        """The unknown components of V of states x at all nodes, (unknown_velocities, ..., nodes + 1)."""
         known = x[..., self.components * self.nodes :]
-        return np.moveaxis(known.reshape(*x.shape[:-1], len(self.kept), self.nodes + 1), -2, 0)
+        return np.moveaxis(known.reshape(*x.shape[:-1], len(self.unknown_velocities), self.nodes + 1), -2, 0)
 
     def state(self, S: Values, V: Values) -> Values:
         """States (..., unknowns) from stresses S and velocities V, (components, ..., nodes + 1) each.
 
-        Stresses at the tip and the components of V outside `kept` are ignored.
+        Stresses at the tip and the components of V outside `unknown_velocities` are ignored.
         """
-        return np.concatenate([*S[..., :-1], *(V[a] for a in self.kept)], axis=-1)
+        return np.concatenate([*S[..., :-1], *(V[a] for a in self.unknown_velocities)], axis=-1)
 
-    def carried(self, x: Array, E: Array) -> Array:
-        """States x interpolated to another mesh; E: `mesh.transfer`, (target nodes + 1, nodes + 1)."""
+    def interpolate(self, x: Array, E: Array) -> Array:
+        """States x interpolated to another mesh; E: `mesh.transfer`, (target.nodes + 1, nodes + 1)."""
         split = self.components * self.nodes
         slices = [slice(first, first + self.nodes) for first in range(0, split, self.nodes)]
         parts = [x[..., stress] @ E[:-1, :-1].T for stress in slices]
-        return np.concatenate([*parts, *(self.velocities(x) @ E.T if self.kept else ())], axis=-1)
+        return np.concatenate(
+            [*parts, *(self.velocities(x) @ E.T if self.unknown_velocities else ())], axis=-1
+        )
 
-    def row(self, values: dict[str, Array]) -> Array:
-        """A row (unknowns,) with the values, (nodes,), of each named stress; all other entries are 0."""
-        row = np.zeros(self.unknowns)
+    def vector(self, values: dict[str, Array]) -> Array:
+        """A vector (unknowns,) with the given values, (nodes,), of each named stress; all other entries are
+        0.
+        """
+        vector = np.zeros(self.unknowns)
         for name, numbers in values.items():
-            self.field(row, name)[:] = numbers
-        return row
+            self.field(vector, name)[:] = numbers
+        return vector
 
 
-def plane_layout(nodes: int, kept: tuple[int, ...] = ()) -> StateLayout:
-    """Layout of a rod in the plane; nodes: without the tip, kept: indices of unknown components of V."""
-    return StateLayout(COMPONENTS, nodes, kept)
+def plane_layout(nodes: int, unknown_velocities: tuple[int, ...] = ()) -> StateLayout:
+    """Layout of a rod in the plane. nodes: number without the tip. unknown_velocities: indices of unknown
+    components of V.
+    """
+    return StateLayout(PLANE_COMPONENTS, nodes, unknown_velocities)
 
 
 @compiled_for_vectors
-def stress_place(a: int, node: int, nodes: int) -> int:
-    """Index in a state of stress component a at a node; nodes: without the tip."""
+def stress_index(a: int, node: int, nodes: int) -> int:
+    """Index in a state of stress component a at a node; nodes: number of nodes without the tip."""
     return a * nodes + node
 
 
 @compiled_for_vectors
-def velocity_place(k: int, node: int, components: int, nodes: int) -> int:
-    """Index in a state of the k-th unknown velocity at a node; nodes: without the tip."""
+def velocity_index(k: int, node: int, components: int, nodes: int) -> int:
+    """Index in a state of the k-th unknown velocity at a node; nodes: number of nodes without the tip."""
     return components * nodes + k * (nodes + 1) + node

@@ -102,7 +102,7 @@ class Estimate:
     unknowns: tuple[int, int] | None = None
     """Smallest and largest number of unknowns in the sample; None without a mesh."""
     too_large: int = 0
-    """Number of sampled points whose mesh would exceed RESOLUTION.most_unknowns."""
+    """Number of sampled points whose mesh would exceed RESOLUTION.max_unknowns."""
 
 
 def estimate_lines(lines: int, certify: bool, of_arms: bool) -> Estimate:
@@ -167,12 +167,12 @@ def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool)
     if not sizes:  # no rod covers any point of the sample
         return Estimate(0.0)
     varied = sum(not rod.standard for rod in rods) / len(rods)
-    n = np.minimum(np.array(sizes, dtype=float), RESOLUTION.most_unknowns)
+    n = np.minimum(np.array(sizes, dtype=float), RESOLUTION.max_unknowns)
     dense = FIXED_MS + LINEAR_MS * n + CUBIC_MS * n**3
     each = np.where(n <= SPARSE_FROM, dense, SPARSE_MS * n) + (CERTIFICATE_MS if certify else 0)
     each += varied * ARM_MS
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
-    too_large = int((np.array(sizes) > RESOLUTION.most_unknowns).sum())
+    too_large = int((np.array(sizes) > RESOLUTION.max_unknowns).sum())
     return Estimate(float(each.mean()) * 1e-3 * points.count, memory, (min(sizes), max(sizes)), too_large)
 
 

@@ -11,7 +11,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from ..determinant.certificate.covering import cover
+from ..determinant.certificate.covering import cover_with_boxes
 from ..determinant.certificate.first_boxes import first_boxes
 from ..determinant.parameter_path import Path, coefficients_at, determinant_along
 from ..determinant.roots.newton import LocatedZero
@@ -113,7 +113,7 @@ def _first_up_to(path: Path, end: float) -> float:
             "the flutter threshold of a relative load is not found: no a-priori bound on the eigenvalues "
             "applies to this rod"
         )
-    zeros, left, _ = cover(boxes, path.origin, path.direction)
+    zeros, left, _ = cover_with_boxes(boxes, path.origin, path.direction)
     first = min((zero.p for zero in zeros if _grows(path, zero)), default=inf)
     if any(min(box.p_from, box.p_to) < first for box in left):
         raise FlutterUnknown(

@@ -9,13 +9,13 @@ from surveyed import RODS
 from rodsweep.determinant.arm.completeness import (
     COMPLETENESS,
     none_is_missing,
+    points_right_of_hull,
     remainder_of_sum,
-    right_of_hull,
 )
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull.hull import hull_of
 from rodsweep.determinant.arm.hull.region import Hull
-from rodsweep.determinant.arm.newton import refined
+from rodsweep.determinant.arm.newton import refine_eigenvalue
 from rodsweep.model.rod import Rod
 
 
@@ -23,7 +23,7 @@ def known_roots(rod, determinant, wanted):
     """(w, error) of so many leading eigenvalues, pairs whole: roots of D from another discretisation."""
     dense = eigenvalues(rod)[: wanted + 1].astype(complex)
     number = wanted + (dense[wanted - 1].imag > 0)
-    upper = np.array([refined(complex(w), determinant) for w in dense[:number] if w.imag >= 0])
+    upper = np.array([refine_eigenvalue(complex(w), determinant) for w in dense[:number] if w.imag >= 0])
     w = np.append(upper, upper[upper.imag > 0].conj())
     return w, 1e-12 * np.abs(w)
 
@@ -55,11 +55,11 @@ def test_a_number_that_is_no_eigenvalue_proves_nothing():
         assert not none_is_missing(line, more, np.append(error, 0.0), determinant, hull)[0]
 
 
-@pytest.mark.parametrize("k", COMPLETENESS.powers)
+@pytest.mark.parametrize("k", COMPLETENESS.point_counts)
 @pytest.mark.parametrize("hull", [Hull(0.0, 0.0), Hull(7.0, 0.0), Hull(7.0, 0.1), Hull(300.0, 0.05)])
 def test_every_term_is_positive_in_the_hull_and_as_large_as_stated_right_of_the_line(k, hull):
     line = -1000.0
-    points = right_of_hull(line, hull.a, hull.c, k)
+    points = points_right_of_hull(line, hull.a, hull.c, k)
     n = np.linspace(0, 400, 4001)
     share = np.linspace(0, 1, 21)[:, None]
     v = hull.a * n - (1 - hull.c) * n**2 + 1j * share * (hull.a * n + hull.c * n**2)
@@ -67,7 +67,7 @@ def test_every_term_is_positive_in_the_hull_and_as_large_as_stated_right_of_the_
     assert (phi.real >= 0).all()
     rod = Rod(F=5.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)
     none, level = np.empty(0, complex), ArmDeterminant(rod).level(points[-1])
-    least = remainder_of_sum(line, none, np.empty(0), hull, points, level).least
+    least = remainder_of_sum(line, none, np.empty(0), hull, points, level).least_contribution
     right = v.real >= line
     contribution = np.where(v.imag == 0, 1, 2) * phi.real
     assert least <= contribution[right].min() * (1 + 1e-12)

@@ -6,12 +6,12 @@ from reference.dense_arm import eigenvalues
 from reference.random_arms import random_arm
 from surveyed import RODS
 
-from rodsweep.determinant.arm.count.beside_axis import modes_beside_axis
+from rodsweep.determinant.arm.count.beside_axis import modes_near_axis
 from rodsweep.determinant.arm.count.count import count_right_of
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull.hull import hull_of
 from rodsweep.determinant.arm.hull.region import Hull, clearance
-from rodsweep.determinant.arm.newton import refined, root_error
+from rodsweep.determinant.arm.newton import refine_eigenvalue, root_error
 from rodsweep.determinant.arm.roots import roots
 from rodsweep.determinant.certificate.box import eigenvalue_box, squared_amplification
 from rodsweep.determinant.certificate.winding_number import count_right_of as count_of_uniform
@@ -128,7 +128,7 @@ def test_modes_beside_the_axis_are_those_of_the_dense_eigenvalues(F):
     rod = Rod(F=F, k1=1e5, k2=100.0, gamma3=1e-3, taper=0.117)
     dense = eigenvalues(rod, 24)
     beside = dense[(dense.imag > 0) & (dense.imag < 3000) & (np.abs(dense.real) < 0.3 * dense.imag)]
-    found = modes_beside_axis(ArmDeterminant(rod), 3000.0, np.empty(0, complex))
+    found = modes_near_axis(ArmDeterminant(rod), 3000.0, np.empty(0, complex))
     assert len(beside) == 1
     np.testing.assert_allclose(found, beside, rtol=1e-7)
 
@@ -152,7 +152,7 @@ def test_roots_are_those_of_the_mesh_and_within_their_errors_on_a_finer_grid(see
     assert len(found.w) == 5
     assert found.displacement.max() < 1e-5
     for value, error in zip(found.w.tolist(), found.error.tolist(), strict=True):
-        assert abs(refined(value, determinant) - value) <= 4 * error + 1e-15 * abs(value)
+        assert abs(refine_eigenvalue(value, determinant) - value) <= 4 * error + 1e-15 * abs(value)
         assert root_error(value, determinant) == error
 
 
@@ -161,5 +161,5 @@ def test_eigenvalues_that_are_no_roots_are_left_out():
     w = eigenvalues(rod)[:4]
     raw = np.array([*w, -1000.0, np.inf, 1e9, w[0] + 40])
     found = roots(raw, ArmDeterminant(rod), hull_of(rod), 100.0)
-    assert sorted(found.chosen.tolist()) == [0, 1, 2, 3]
-    np.testing.assert_allclose(found.w, w[found.chosen], rtol=1e-6)
+    assert sorted(found.indices.tolist()) == [0, 1, 2, 3]
+    np.testing.assert_allclose(found.w, w[found.indices], rtol=1e-6)

@@ -6,7 +6,12 @@ from reference.random_arms import random_arm
 
 from rodsweep.determinant.arm.along_path import ArmAlongPath
 from rodsweep.determinant.arm.determinant import ArmDeterminant
-from rodsweep.determinant.arm.family import eigenvalue_in, family_of, propagators_at, value_in
+from rodsweep.determinant.arm.family import (
+    determinant_in_family,
+    eigenvalue_in_family,
+    family_of,
+    propagators_at,
+)
 from rodsweep.determinant.arm.value import chain_along
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
@@ -42,9 +47,9 @@ def test_families_have_the_determinants_of_their_arms_and_their_slopes(name, see
             blur = 1e-13 + 20 * own.noise / abs(own.D)
             assert abs(here.D * scale / own.D - 1) < blur
             assert abs(here.D_w * scale / own.D_w - 1) < 20 * blur
-            assert value_in(family, w, p).D == here.D
+            assert determinant_in_family(family, w, p).D == here.D
             if 0 < share < 1:
-                slope = between.derivative(w, p, own.S)
+                slope = between.derivative_by_p(w, p, own.S)
                 assert abs(here.D_p * scale - slope) < 1e-5 * (abs(slope) + abs(own.D / p))
 
 
@@ -61,14 +66,14 @@ def test_a_family_of_compressed_rubber_is_spaced_by_the_force():
             here, value = along(family, w, p), own.value(w)
             assert abs(here.D * np.exp(here.S - value.S) - value.D) < 1e-13 + 20 * value.noise
             if 0 < p < 60:
-                slope = ArmAlongPath(path).derivative(w, p, value.S)
+                slope = ArmAlongPath(path).derivative_by_p(w, p, value.S)
                 assert here.D_p * np.exp(here.S - value.S) == pytest.approx(slope, rel=1e-5, abs=1e-8)
 
 
 def test_eigenvalues_of_a_family_are_those_of_the_arm_within_their_errors():
     path = Path(Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5), "F")
     family = family_of(path, 10.0, 20.0, 4.0**5)
-    w, slope, error = eigenvalue_in(family, -1.0 + 175j, 15.4627583986)
+    w, slope, error = eigenvalue_in_family(family, -1.0 + 175j, 15.4627583986)
     assert abs(w - 175.530930682j) < 1e-8
     own = ArmAlongPath(path).eigenvalue(w, 15.4627583986)
     assert abs(w - own[0]) <= 4 * (error + own[2])
@@ -90,6 +95,6 @@ def test_errors_of_double_eigenvalues_hold_where_minors_are_large_amid_the_arm()
     build = Build("neo_hookean", "fixed", Profile(u, tuple((*row, 1.0, 1.0, 1.0) for row in factors)))
     path = Path(Rod(F=20.0, k1=151.37, k2=10.358, gamma3=0.08934, build=build), "F")
     family = family_of(path, 0.0, 60.0, 4.0**8)
-    of_family = ArmAlongPath(path, lambda p: family).double(254.4652, 22.71770, 0.5)
-    of_arms = ArmAlongPath(path).double(254.4652, 22.71770, 0.5)
+    of_family = ArmAlongPath(path, lambda p: family).double_eigenvalue(254.4652, 22.71770, 0.5)
+    of_arms = ArmAlongPath(path).double_eigenvalue(254.4652, 22.71770, 0.5)
     assert abs(of_family.p - of_arms.p) <= of_family.error_of_p + of_arms.error_of_p < 1e-9

@@ -5,8 +5,12 @@ import pytest
 from rods import rod_of
 
 from rodsweep.determinant.certificate.box import eigenvalue_box
-from rodsweep.determinant.certificate.dominance import dominant_factors, dominated
-from rodsweep.determinant.certificate.winding_number import count_right_of, phase_change, stepped_change
+from rodsweep.determinant.certificate.dominance import dominant_factors, is_dominated
+from rodsweep.determinant.certificate.winding_number import (
+    count_right_of,
+    phase_change,
+    phase_change_by_nodes,
+)
 from rodsweep.determinant.value import scaled_determinant
 from rodsweep.model.rod import Rod
 
@@ -108,7 +112,7 @@ def test_where_one_exponential_is_said_to_outweigh_the_rest_it_does():
         for _ in range(10):
             w = 10 ** rng.uniform(0, 7) * np.exp(1j * rng.uniform(0, np.pi))
             rho = abs(w) * rng.choice([0.25, 0.12, 0.06, 0.02])
-            if not dominated(w, rho, rod.coefficients):
+            if not is_dominated(w, rho, rod.coefficients):
                 continue
             proved += 1
             factor_here, root_here = dominant_factors(w, rod.coefficients)
@@ -131,7 +135,7 @@ def test_long_strides_give_the_phase_of_short_steps():
         corner, end = complex(real, imag), complex(-(10 ** rng.uniform(0, 4)), imag)
         for start, stop in ((complex(real, 0.0), corner), (end, corner)):
             change, used = phase_change(start, stop, rod.coefficients)
-            stepped, nodes = stepped_change(start, stop, rod.coefficients)
+            stepped, nodes = phase_change_by_nodes(start, stop, rod.coefficients)
             assert (used > 0) == (nodes > 0)
             assert change == pytest.approx(stepped, abs=1e-9), rod
 
@@ -153,4 +157,4 @@ def test_nothing_outweighs_between_the_eigenvalues(reference_spectra):
             for rho in (0.01, 0.1, 0.3):
                 for turn in (1, 1j, -1, -1j):
                     centre = root + 0.99 * rho * abs(root) * turn
-                    assert not dominated(centre, rho * abs(root), rod.coefficients)
+                    assert not is_dominated(centre, rho * abs(root), rod.coefficients)

@@ -8,14 +8,19 @@ import numpy as np
 import pytest
 
 from rodsweep.determinant.certificate.box import (
-    quiet_radius,
     squared_amplification,
     squared_amplification_over,
+    zero_free_radius,
 )
-from rodsweep.determinant.certificate.covering import cover, distance_bound, examine_box
-from rodsweep.determinant.certificate.discs import bound_on_bidisc, centre_at
-from rodsweep.determinant.certificate.first_boxes import first_boxes, slabs
-from rodsweep.determinant.parameter_path import Path, changes, coefficients_at, determinant_along
+from rodsweep.determinant.certificate.covering import cover_with_boxes, distance_from_zero_bound, examine_box
+from rodsweep.determinant.certificate.discs import bidisc_centre, bound_on_bidisc
+from rodsweep.determinant.certificate.first_boxes import first_boxes, path_intervals
+from rodsweep.determinant.parameter_path import (
+    Path,
+    coefficient_derivatives,
+    coefficients_at,
+    determinant_along,
+)
 from rodsweep.determinant.roots.newton import eigenvalue_newton
 from rodsweep.determinant.value import scaled_determinant
 from rodsweep.model.rod import Rod
@@ -74,7 +79,7 @@ def test_bound_on_a_bidisc_holds_for_the_determinant_in_complex_p(path):
     for eta in (2.0, 190.0, 2500.0):
         w = complex(0.0, eta)
         D, D_w, D_p, S, _ = determinant_along(w, c, direction)
-        centre = centre_at(w, c, changes(c, direction), S)
+        centre = bidisc_centre(w, c, coefficient_derivatives(c, direction), S)
         for share in (0.3, 0.05):
             for rates in ((0j, 0j), (D_w / D, D_p / D)):
                 radii = share * eta, share * abs(p)
@@ -109,14 +114,14 @@ def complex_determinant(w, path, p):
 
 def test_distance_of_a_parallelogram_from_zero():
     """Exact along its sides, never too large, zero where it holds zero."""
-    assert distance_bound(5 + 0j, 1 + 0j, 1j) == pytest.approx(4.0)
-    assert distance_bound(0.5 + 0.5j, 1 + 0j, 1j) == 0.0
+    assert distance_from_zero_bound(5 + 0j, 1 + 0j, 1j) == pytest.approx(4.0)
+    assert distance_from_zero_bound(0.5 + 0.5j, 1 + 0j, 1j) == 0.0
     rng = np.random.default_rng(8)
     for _ in range(200):
         value, a, b = rng.normal(size=3) + 1j * rng.normal(size=3)
         grid = np.linspace(-1, 1, 41)
         nearest = np.abs(value + grid[:, None] * a + grid[None, :] * b).min()
-        assert distance_bound(value, a, b) <= nearest + 1e-12
+        assert distance_from_zero_bound(value, a, b) <= nearest + 1e-12
 
 
 @pytest.mark.parametrize("path", PATHS)
@@ -126,7 +131,7 @@ def test_no_box_with_a_crossing_is_called_empty_and_regular_ones_hold_one_at_mos
     value = getattr(path.rod, path.name)
     shares = (1.01, 2.0) if path.name == "k1" else (0.5, min(1.5, 0.99 * path.rod.k1 / abs(path.rod.F)))
     low, high = sorted(path.variable(share * value) for share in shares)
-    zeros, left, _ = cover(first_boxes(path, low, high), path.origin, path.direction)
+    zeros, left, _ = cover_with_boxes(first_boxes(path, low, high), path.origin, path.direction)
     assert not left
     for eta, p, *_ in zeros:
         for scale in 10.0 ** rng.uniform(-6, 0, 20):
@@ -151,7 +156,7 @@ def test_a_priori_bounds_over_a_path_hold_at_each_of_its_rods(path):
     shares = (1.01, 2.5) if path.name == "k1" else (0.4, 0.99)
     ends = sorted(path.variable(share * value) for share in shares)
     largest = squared_amplification_over(path, *ends)
-    radius = quiet_radius(path, *ends, 1e3)
+    radius = zero_free_radius(path, *ends, 1e3)
     assert radius > 0
     for p in np.linspace(*ends, 9):
         rod = path.at(float(p))
@@ -163,7 +168,7 @@ def test_a_priori_bounds_over_a_path_hold_at_each_of_its_rods(path):
 
 def test_slabs_reach_from_end_to_end_and_grow_finer_towards_a_crushed_rod():
     path = Path(Rod(F=0.0, k1=100.0, k2=1e4, gamma3=1e-4), "F")
-    parts = slabs(path, 0.0, 99.9999)
+    parts = path_intervals(path, 0.0, 99.9999)
     assert parts[0][0] == 0.0
     assert parts[-1][1] == 99.9999
     assert all(a[1] == b[0] for a, b in zip(parts[:-1], parts[1:], strict=True))

@@ -5,12 +5,12 @@ import pytest
 from reference.random_arms import random_arm
 
 from rodsweep.determinant.arm.determinant import ArmDeterminant
-from rodsweep.determinant.arm.newton import refined
+from rodsweep.determinant.arm.newton import refine_eigenvalue
 from rodsweep.discretization.elements.elements import Elements
 from rodsweep.discretization.straight.arm_pencil import ArmPencil
 from rodsweep.discretization.straight.arm_resolution import ArmMesh, arm_mesh, finer_arm_mesh
 from rodsweep.discretization.straight.dense_form import dense_form
-from rodsweep.discretization.straight.pencil import assemble
+from rodsweep.discretization.straight.pencil import assemble_pencil
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
@@ -33,7 +33,7 @@ def leading(rod, mesh, number):
 )
 def test_uniform_arm_has_the_pencil_of_the_uniform_rod(rod):
     form = dense_form(rod, ArmPencil(ArmMesh((0.0, 0.5, 1.0), 10)))
-    expected = dense_form(rod, assemble(2, 10))
+    expected = dense_form(rod, assemble_pencil(2, 10))
     np.testing.assert_allclose(form.A, expected.A, rtol=0, atol=1e-14 * np.abs(expected.A).max())
     np.testing.assert_allclose(form.B, expected.B, rtol=1e-14)
 
@@ -44,7 +44,7 @@ def test_eigenvalues_of_the_chosen_mesh_are_roots_of_the_determinant(seed):
     rod = random_arm(np.random.default_rng(seed), pulled=0.0)
     determinant = ArmDeterminant(rod)
     for w in leading(rod, arm_mesh(rod, 4, 1e-8), 4):
-        assert abs(refined(complex(w), determinant) / w - 1) < 1e-6
+        assert abs(refine_eigenvalue(complex(w), determinant) / w - 1) < 1e-6
 
 
 def test_elements_that_end_at_the_jump_are_worth_ten_digits():
@@ -53,7 +53,7 @@ def test_elements_that_end_at_the_jump_are_worth_ten_digits():
     determinant = ArmDeterminant(rod)
 
     def worst(mesh):
-        return max(abs(refined(complex(w), determinant) / w - 1) for w in leading(rod, mesh, 2))
+        return max(abs(refine_eigenvalue(complex(w), determinant) / w - 1) for w in leading(rod, mesh, 2))
 
     across = worst(ArmMesh((0.0, 0.25, 0.5, 0.75, 1.0), 14))
     along = worst(ArmMesh((0.0, 0.4, 1.0), 14))

@@ -4,10 +4,15 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.elements.basis import differentiation, interpolation
-from rodsweep.discretization.elements.mesh import configuration, mesh
+from rodsweep.discretization.elements.mesh import mesh, shape_from_strains
 from rodsweep.discretization.elements.quadrature import gauss, gauss_lobatto
-from rodsweep.discretization.elements.resolution import RESOLUTION, finer, required_order, resolution_for
-from rodsweep.discretization.straight.pencil import assemble
+from rodsweep.discretization.elements.resolution import (
+    RESOLUTION,
+    finer_resolution,
+    required_order,
+    resolution_for,
+)
+from rodsweep.discretization.straight.pencil import assemble_pencil
 from rodsweep.discretization.stress.tip_motion import tip_matrices, tip_motion
 from rodsweep.model.rod import Rod
 
@@ -36,7 +41,7 @@ def test_basis_reproduces_polynomials_and_their_slopes(p):
 
 def dense(rod, elements, order):
     """All finite eigenvalues of the pencil by LAPACK, largest real part first."""
-    pencil = assemble(elements, order)
+    pencil = assemble_pencil(elements, order)
     A = np.zeros((pencil.unknowns,) * 2)
     A[pencil.rows, pencil.columns] = pencil.stiffness(rod)
     T = np.linalg.solve(A, np.diag(pencil.inertia(rod)))[: 2 * pencil.nodes, : 2 * pencil.nodes]
@@ -56,7 +61,7 @@ def test_eigenvalues_converge_with_twice_the_order(order):
 
 def test_pencil_at_rest_is_symmetric_and_negative():
     """At F = 0 the operator is self-adjoint and negative definite in the Gamma inner product (Sec. VI)."""
-    pencil = assemble(2, 7)
+    pencil = assemble_pencil(2, 7)
     rod = Rod(F=0.0, k1=50.0, k2=30.0, gamma3=0.5)
     A = np.zeros((pencil.unknowns,) * 2)
     A[pencil.rows, pencil.columns] = pencil.stiffness(rod)
@@ -68,7 +73,7 @@ def test_pencil_at_rest_is_symmetric_and_negative():
 
 
 def test_evaluation_at_points_is_the_polynomial():
-    pencil = assemble(3, 6)
+    pencil = assemble_pencil(3, 6)
     x, _ = gauss_lobatto(6)
     nodes = np.unique(np.round(np.concatenate([(x + 1) / 6 + e / 3 for e in range(3)]), 14))
     points = np.array([0.0, 0.1, 1 / 3, 0.5, 0.999, 1.0])
@@ -80,9 +85,9 @@ def test_resolution_grows_with_waves_and_digits():
     last = 0
     for wave in (5, 20, 60, 200, 1000):
         resolution = resolution_for(wave, 1e-10)
-        assert resolution.order <= RESOLUTION.largest_order + 1
+        assert resolution.order <= RESOLUTION.max_order + 1
         assert resolution.unknowns > last
-        assert finer(resolution).unknowns >= 1.2 * resolution.unknowns
+        assert finer_resolution(resolution).unknowns >= 1.2 * resolution.unknowns
         last = resolution.unknowns
 
 
@@ -93,6 +98,6 @@ def test_the_compiled_motion_of_the_tip_is_that_of_the_whole_shape(elements, ord
     tip, velocity = np.empty((2, 4, 3))
     tip_motion(strains, rates, tip_matrices(grid), tip, velocity)
     tiny = 1e-30
-    exact = configuration(grid, strains + 1j * tiny * rates, np.zeros(3))[..., -1].T
+    exact = shape_from_strains(grid, strains + 1j * tiny * rates, np.zeros(3))[..., -1].T
     assert np.abs(tip - exact.real).max() < 1e-13 * np.abs(exact.real).max()
     assert np.abs(velocity - exact.imag / tiny).max() < 1e-13 * np.abs(exact.imag / tiny).max()

@@ -7,13 +7,13 @@ from rodsweep.discretization.elements.periodic import (
     fourier_coefficients,
     hermite_coefficients,
     hermite_columns,
+    interpolate_samples,
     maxima,
     minima,
-    resampled,
-    rise_through_mean,
-    sampled_at,
-    samples_of,
+    series_at,
+    series_samples,
     time_derivative,
+    time_of_rise_through_mean,
 )
 
 SAMPLES = pytest.mark.parametrize("n", [31, 32])
@@ -30,7 +30,7 @@ def test_a_smooth_period_is_interpolated_and_differentiated(n):
     samples = wave(t)[:, None]
     assert maxima(fourier_coefficients(samples), samples)[0] == pytest.approx(np.e, rel=1e-12)
     at = np.array([0.01, 0.373, 0.9, 1.9])
-    assert resampled(wave(t), at) == pytest.approx(wave(at), rel=1e-12)
+    assert interpolate_samples(wave(t), at) == pytest.approx(wave(at), rel=1e-12)
     slope = 2 * np.pi * np.cos(2 * np.pi * (t - 0.123)) * wave(t)
     assert time_derivative(wave(t)) == pytest.approx(slope, abs=1e-10)
 
@@ -39,7 +39,9 @@ def test_a_smooth_period_is_interpolated_and_differentiated(n):
 def test_every_column_is_a_function_of_its_own(n):
     t, at = np.arange(n) / n, np.array([0.2, 0.7])
     both = np.stack([wave(t), np.cos(2 * np.pi * t)], axis=1)
-    assert resampled(both, at)[:, 0] == pytest.approx(resampled(both[:, 0], at), rel=1e-13)
+    assert interpolate_samples(both, at)[:, 0] == pytest.approx(
+        interpolate_samples(both[:, 0], at), rel=1e-13
+    )
     assert time_derivative(both)[:, 1] == pytest.approx(-2 * np.pi * np.sin(2 * np.pi * t), abs=1e-10)
 
 
@@ -47,13 +49,13 @@ def test_every_column_is_a_function_of_its_own(n):
 @pytest.mark.parametrize("shift", [0.0, 0.013, 0.51])
 def test_the_rise_through_the_mean_is_found_between_samples(n, shift):
     sine = 3.0 + np.sin(2 * np.pi * (np.arange(n) / n - shift))
-    late = rise_through_mean(sine) - shift
+    late = time_of_rise_through_mean(sine) - shift
     assert late - round(late) == pytest.approx(0.0, abs=1e-12)
 
 
 def test_the_highest_harmonic_of_an_even_number_of_samples_is_a_cosine():
     alternating = np.array([1.0, -1.0, 1.0, -1.0])
-    assert resampled(alternating, np.array([0.125])) == pytest.approx(0.0, abs=1e-14)
+    assert interpolate_samples(alternating, np.array([0.125])) == pytest.approx(0.0, abs=1e-14)
     assert time_derivative(alternating) == pytest.approx(np.zeros(4), abs=1e-14)
 
 
@@ -68,7 +70,7 @@ def test_values_and_slopes_tell_twice_as_many_harmonics_as_values(m):
     assert np.abs(found - exact).max() < 1e-13 * np.abs(exact).max()
     for count in (7, 8, 4 * m, 4 * m + 1):
         t = np.arange(count) / count
-        assert samples_of(found, count) == pytest.approx(sampled_at(exact, t), abs=1e-11)
+        assert series_samples(found, count) == pytest.approx(series_at(exact, t), abs=1e-11)
 
 
 @pytest.mark.parametrize("nodes", [5, 8])
@@ -86,7 +88,7 @@ def test_extrema_are_those_of_dense_samples():
     rng = np.random.default_rng(7)
     decay = 0.6 ** np.arange(12)[:, None]
     c = decay * (rng.standard_normal((12, 5)) + 1j * rng.standard_normal((12, 5)))
-    dense, samples = samples_of(c, 40000), samples_of(c, 48)
+    dense, samples = series_samples(c, 40000), series_samples(c, 48)
     for beyond in (maxima(c, samples) - dense.max(axis=0), dense.min(axis=0) - minima(c, samples)):
         assert np.all(beyond >= -1e-13) and np.all(beyond < 1e-6)
 

@@ -30,10 +30,10 @@ def test_a_state_is_made_of_its_fields_and_taken_apart_again(layout, many):
     x = states(layout, *many)
     S, known = layout.stresses(x), layout.velocities(x)
     assert S.shape == (layout.components, *many, layout.nodes + 1)
-    assert known.shape == (len(layout.kept), *many, layout.nodes + 1)
+    assert known.shape == (len(layout.unknown_velocities), *many, layout.nodes + 1)
     assert not S[..., -1].any()
     V = np.full(S.shape, np.nan)
-    V[list(layout.kept)] = known
+    V[list(layout.unknown_velocities)] = known
     assert np.array_equal(layout.state(S, V), x)
 
 
@@ -42,9 +42,9 @@ def test_a_field_is_known_by_its_name():
     x = states(layout, 2)
     for number, name in enumerate(("n1", "n2", "m3")):
         assert np.array_equal(layout.field(x, name), layout.stresses(x)[number, :, :-1])
-        assert np.array_equal(layout.at(x, name, 3), layout.field(x, name)[:, 3])
-        assert np.array_equal(x[:, layout.place(name, 2)], layout.at(x, name, 2))
-    row = layout.row({"m3": np.arange(4.0)})
+        assert np.array_equal(layout.stress_at(x, name, 3), layout.field(x, name)[:, 3])
+        assert np.array_equal(x[:, layout.index(name, 2)], layout.stress_at(x, name, 2))
+    row = layout.vector({"m3": np.arange(4.0)})
     assert x @ row == pytest.approx(layout.field(x, "m3") @ np.arange(4.0))
     layout.field(x, "n2")[:] = 0
     assert not layout.stresses(x)[1].any(), "a field is a view"
@@ -78,7 +78,7 @@ def test_the_reflection_is_the_one_of_the_mixed_form(form):
 @pytest.mark.parametrize("layout", [StateLayout(3, 4, (2,)), StateLayout(6, 3)], ids=["plane", "space"])
 def test_a_symmetry_is_a_matrix_and_is_undone(layout):
     turn, _ = np.linalg.qr(np.random.default_rng(1).standard_normal((layout.components,) * 2))
-    if layout.kept:  # what leaves Omega alone
+    if layout.unknown_velocities:  # what leaves Omega alone
         turn = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, -1.0]])
     symmetry, x, P = Symmetry(turn, 3), states(layout, 2), states(layout, layout.unknowns)
     S = symmetry.matrix(layout)

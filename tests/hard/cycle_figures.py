@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 from matplotlib.quiver import Quiver
 
 import rodsweep as rs
-from rodsweep.discretization.elements.periodic import resampled
+from rodsweep.discretization.elements.periodic import interpolate_samples
 from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import RodBranches
@@ -366,12 +366,12 @@ class _Cycle:
             return d.compare(axes, (t, values), true)
         phase = (t / period) % 1.0
         if kind == "rate":
-            true = resampled(self.fine["injection"] - self.fine["dissipation"], phase)
+            true = interpolate_samples(self.fine["injection"] - self.fine["dissipation"], phase)
             error = self.error("injection")
         else:
             name = names[kind] if names[kind] in self.fine else names[kind].replace("tip", "shape")
             samples = self.fine[name] if self.fine[name].ndim == 1 else self.fine[name][:, -1]
-            true, error = resampled(samples, phase), self.error(name)
+            true, error = interpolate_samples(samples, phase), self.error(name)
         height = np.ptp(axes.get_ylim())
         return d.compare(axes, (t, values), (t, true * unit), LINE + error * unit / height, whole=False)
 
@@ -401,7 +401,7 @@ class _Cycle:
             else [x[:, -1] * length, y[:, -1] * length]
         )
         phase = np.linspace(0, 1, 401)
-        path = [resampled(values, phase) for values in tips]
+        path = [interpolate_samples(values, phase) for values in tips]
         return [*found, ("path of the tip", d.compare(axes, xy(d.lines(axes)), path))]
 
 

@@ -8,7 +8,7 @@ import mixed_motion as mixed
 import numpy as np
 
 from rodsweep.discretization.element_strains import write_element_strains
-from rodsweep.discretization.elements.mesh import configuration
+from rodsweep.discretization.elements.mesh import shape_from_strains
 from rodsweep.discretization.elements.periodic import fourier_coefficients, maxima
 from rodsweep.discretization.plane import balance
 from rodsweep.discretization.straight.mixed_form import MixedForm
@@ -32,7 +32,7 @@ def guess_at(orbit, m):
     for x, velocities in zip(states, V, strict=True):
         balance(x, velocities, reaction, form.nodal, form.mesh.matrices)
     mixed = MixedForm(form.rod, form.mesh)
-    return mixed.unknown(form.stresses(states), V.swapaxes(0, 1))
+    return mixed.state(form.stresses(states), V.swapaxes(0, 1))
 
 
 def solved_cycle(form, X, frequency):
@@ -65,6 +65,6 @@ def period_and_largest_y(orbit, phases):
     S, _ = form.fields(X)
     E = np.empty((*S.shape[:-1], form.mesh.element_nodes.size))
     write_element_strains(np.ascontiguousarray(S), orbit.form.nodal, form.mesh.order, E)
-    y = configuration(form.mesh, E, np.zeros(3))[1, :, -1]
+    y = shape_from_strains(form.mesh, E, np.zeros(3))[1, :, -1]
     whole = np.append(y, -y)[:, None]
     return 2 * np.pi / frequency, float(maxima(fourier_coefficients(whole), whole)[0])

@@ -139,7 +139,7 @@ def test_energy_law(material, size):
 def stress_of(beam, z):
     """Sigma of z at all nodes, (3, nodes + 1), the tip's load included; complex for a complex z."""
     Sigma = np.zeros((3, beam.mesh.nodes + 1), z.dtype)
-    Sigma[:, :-1] = z.reshape(3, -1) / beam.roots[:, :-1]
+    Sigma[:, :-1] = z.reshape(3, -1) / beam.sqrt_compliance[:, :-1]
     Sigma[0] -= beam.rod.F
     return Sigma
 
@@ -151,7 +151,7 @@ def collocated(beam, z):
     V = PLANE.velocity(Sigma, Sigma @ D.T)
     rate = (V @ D.T + ad(PLANE.strain(Sigma), V))[:, :-1]
     rate[:, 0] += V[:, 0] / w[0]
-    return (rate / beam.roots[:, :-1]).ravel()
+    return (rate / beam.sqrt_compliance[:, :-1]).ravel()
 
 
 def rough(beam):
@@ -181,6 +181,6 @@ def test_compiled_rate_of_a_smooth_rod_is_that_of_the_balance(elements, order):
     u = beam.mesh.positions
     Sigma, dSigma, ddSigma = stresses(u, 3)
     _, exact = rates(PLANE, Sigma, dSigma, ddSigma)
-    z = beam.unknown(PLANE.strain(Sigma))
-    rate = beam.rate(z).reshape(3, -1) * beam.roots[:, :-1]
+    z = beam.state_of_strains(PLANE.strain(Sigma))
+    rate = beam.rate(z).reshape(3, -1) * beam.sqrt_compliance[:, :-1]
     assert np.abs(rate - exact[:, :-1])[:, 1:].max() <= 1e-7 * np.abs(exact).max()

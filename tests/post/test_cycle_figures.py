@@ -14,7 +14,7 @@ from matplotlib.text import Annotation
 from PIL import Image
 from surveyed import few
 
-from rodsweep.discretization.elements.periodic import resampled, time_derivative
+from rodsweep.discretization.elements.periodic import interpolate_samples, time_derivative
 from rodsweep.errors import EnvironmentIncomplete, InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
@@ -45,7 +45,7 @@ def test_interpolant_and_derivative_are_exact_for_harmonics(n):
 
     t = np.linspace(-0.3, 1.9, 50)
     samples = np.arange(n) / n
-    assert resampled(f(samples), t) == pytest.approx(f(t), abs=1e-12)
+    assert interpolate_samples(f(samples), t) == pytest.approx(f(t), abs=1e-12)
     exact = -2 * np.pi * np.sin(2 * np.pi * samples) - 30 * np.pi * np.cos(10 * np.pi * samples)
     assert time_derivative(f(samples)) == pytest.approx(exact, abs=1e-10)
 

@@ -3,7 +3,7 @@
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.kept import KEPT, LruPool
-from rodsweep.solve.spectrum.krylov_schur import EigenSolver
+from rodsweep.solve.spectrum.krylov_schur import UniformSolver
 
 
 class Grown:
@@ -39,7 +39,7 @@ def test_a_pool_drops_the_least_recently_used_beyond_its_number():
 
 
 def test_a_solver_of_many_modes_knows_its_memory():
-    solver = EigenSolver(Resolution(8, 20))
+    solver = UniformSolver(Resolution(8, 20))
     rod = Rod(F=1e4, k1=1e6, k2=1e6, gamma3=1e-6)
     taken = []
     for modes in (4, 100):

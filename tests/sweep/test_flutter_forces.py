@@ -134,6 +134,6 @@ def test_a_search_that_overflows_fails_in_words(monkeypatch, error):
     def overflowing(*_):
         raise error
 
-    monkeypatch.setattr(relative, "cover", overflowing)
+    monkeypatch.setattr(relative, "cover_with_boxes", overflowing)
     with pytest.raises(relative.FlutterUnknown, match="relative load fails: (too large|ZeroDivisionError)"):
         relative.first_hopf_force(Rod(F=0.0, k1=1234.5, k2=1e3, gamma3=1e-4))

@@ -102,7 +102,7 @@ def state_on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
     """(beam of an orbit for integrators, state z of the orbit at the largest y of the tip, (unknowns,))."""
     form = orbit.form
     beam = Beam(form.rod, form.mesh)
-    return beam, (orbit.start.reshape(3, -1) * beam.roots[:, :-1]).ravel()
+    return beam, (orbit.start.reshape(3, -1) * beam.sqrt_compliance[:, :-1]).ravel()
 
 
 def solve_reference() -> ReferenceCycle:

@@ -14,8 +14,8 @@ import numpy as np
 from ...arrays import Complex
 from ...discretization.elements.resolution import RESOLUTION, Resolution
 from ...model.rod import Rod
-from ...solve.spectrum.krylov_schur import eigen_solver
-from ...solve.spectrum.problem import problem_of
+from ...solve.spectrum.krylov_schur import uniform_solver
+from ...solve.spectrum.problem import transverse_problem
 from ...solve.spectrum.search import warm_up
 from ..peers import Peers
 from ..study import (
@@ -190,7 +190,7 @@ def pencil_mesh(order: int) -> Resolution:
     """Mesh of one element of an order, or of several equal elements if the order exceeds the largest
     allowed.
     """
-    elements = ceil(order / RESOLUTION.largest_order)
+    elements = ceil(order / RESOLUTION.max_order)
     return Resolution(elements, ceil(order / elements))
 
 
@@ -198,7 +198,7 @@ def krylov_schur(rod: Rod, size: int) -> Complex:
     """Leading eigenvalues, (modes,), of a rod by SLEPc's Krylov-Schur, without refinement on D; size:
     order.
     """
-    w = eigen_solver(pencil_mesh(size)).solve(rod, problem_of(rod).shift, MODE_COUNT, tight=True)
+    w = uniform_solver(pencil_mesh(size)).solve(rod, transverse_problem(rod).shift, MODE_COUNT, tight=True)
     return leading_eigenvalues(w, MODE_COUNT + 1)
 
 

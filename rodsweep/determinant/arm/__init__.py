@@ -1,1 +1,1 @@
-"""D(w) of arms that are not uniform or not of linear material, from propagators of short elements."""
+"""D of arms that vary along their length, from propagators of elements, and all computations with this D."""

@@ -1,10 +1,10 @@
-"""D of arms along a path of one parameter: eigenvalues with slopes, and double eigenvalues.
+"""D of the arms of a path as a function of the path variable p: eigenvalues with slopes, and double
+eigenvalues.
 
-D depends on the parameter through all coefficients along the arm. Where a family of arms
-(`rodsweep.determinant.arm.family`) contains the arm, D and its derivative by the parameter come from it.
-Elsewhere derivatives with respect to the parameter are central differences between determinants of
-neighbouring arms. These need not be accurate: Newton's method and predictors use them, and the residual D
-decides convergence.
+D depends on p through all coefficients along the arm. Where a family of arms
+(`rodsweep.determinant.arm.family`) contains the arm at p, D and its derivative by p come from the family.
+Elsewhere derivatives by p are central differences between determinants of neighbouring arms. The differences
+need not be accurate: only Newton's method and predictors use them, and the residual D decides convergence.
 """
 
 import math
@@ -17,38 +17,43 @@ from ..roots.newton import FAILED, ROOT_NEWTON, LocatedZero
 from ..roots.settings import ROOTS
 from ..value import DETERMINANT, DeterminantValue
 from .determinant import ArmDeterminant, arm_determinant
-from .family import ARM_FAMILY, ArmFamily, eigenvalue_in, value_in
-from .newton import refined_root
+from .family import ARM_FAMILY, ArmFamily, determinant_in_family, eigenvalue_in_family
+from .newton import refine_eigenvalue_and_error
 
 CENTRAL_DIFFERENCE = ((1, 0.5), (-1, -0.5))
 FORWARD_DIFFERENCE = ((0, -1.5), (1, 2.0), (2, -0.5))
-"""Central and forward difference of second order: (offset in steps, weight times step) of each value."""
+"""CENTRAL_DIFFERENCE and FORWARD_DIFFERENCE, of second order: (offset in steps, weight times step) of each
+value."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ArmDoubleSettings:
-    """Settings for double eigenvalues of arms along a path and for differences by the parameter."""
+class ArmDoubleEigenvalueSettings:
+    """Settings for double eigenvalues of arms along a path, and for differences by the path variable."""
 
-    noise: float = 5.0
-    """Rounding error of D at a double eigenvalue, in units of its noise: 4.7 at most at 44 double eigenvalues
-    of stepped arms, against 19 digits."""
-    compared_levels: tuple[int, ...] = (1, 4, 16)
-    """Elements for these multiples of |w| are compared to estimate rounding errors at a double eigenvalue."""
+    rounding_over_noise: float = 5.0
+    """Rounding error of D at a double eigenvalue, in units of its `noise`: at most 4.7 at 44
+    double eigenvalues of stepped arms, compared with 19 digits."""
+    compared_level_factors: tuple[int, ...] = (1, 4, 16)
+    """Multiples of |w|. D on the elements for each multiple is compared to estimate its rounding error at a
+    double eigenvalue."""
     spread_factor: float = 3.0
-    """Safety factor on the spread of four values."""
+    """Safety factor on the largest difference between values of D on different elements, as an estimate of
+    rounding."""
     max_shortenings: int = 20
-    """Maximum number of divisions of a difference step, down to 1e-12 of the first step."""
-    shortening: float = 4.0
-    """Divisor of a difference step that reaches beyond the valid arms."""
+    """Maximum number of times that a difference step is divided by `step_divisor`, down to 1e-12 of the first
+    step."""
+    step_divisor: float = 4.0
+    """Divisor of a difference step whose neighbour is not a valid arm."""
 
 
-ARM_DOUBLES = ArmDoubleSettings()
+ARM_DOUBLE_EIGENVALUES = ArmDoubleEigenvalueSettings()
 
 
 class ArmAlongPath:
     """D of the arms of one path, as a function of the path variable p.
 
-    family: the family of arms that contains p; None to compute D from the arm at p itself.
+    family: function that returns the family of arms that contains p, or None to compute D from the arm at p
+    itself.
     """
 
     def __init__(self, path: Path, family: Callable[[float], ArmFamily | None] = lambda p: None):
@@ -56,7 +61,7 @@ class ArmAlongPath:
         self.family = family
 
     def determinant(self, p: float) -> ArmDeterminant:
-        """D of the arm at p."""
+        """The determinant D of the arm at p."""
         return arm_determinant(self.path.at(p))
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
@@ -64,17 +69,17 @@ class ArmAlongPath:
         family = self.family(p)
         # The family holds for |w| <= W: half of W leaves Newton's method room.
         if family is not None and abs(guess) < family.W / 2:
-            w, slope, error = eigenvalue_in(family, guess, p)
+            w, slope, error = eigenvalue_in_family(family, guess, p)
             # Beside a double eigenvalue the interpolation errors of the family are magnified.
-            if error <= ROOTS.blurred * abs(w):
+            if error <= ROOTS.double_root_correction * abs(w):
                 return w, slope, error
         here = self.determinant(p)
-        w, error = refined_root(guess, here)
+        w, error = refine_eigenvalue_and_error(guess, here)
         value = here.value(w)
-        return w, -self.derivative(w, p, value.S) / value.D_w, error
+        return w, -self.derivative_by_p(w, p, value.S) / value.D_w, error
 
-    def derivative(self, w: complex, p: float, S: float) -> complex:
-        """dD/dp exp(-S) at w and p."""
+    def derivative_by_p(self, w: complex, p: float, S: float) -> complex:
+        """dD/dp exp(-S) at w and p, by a difference between neighbouring arms."""
         stencil, h = self._stencil(p, math.inf)
         slope = 0j
         for offset, weight in stencil:
@@ -82,10 +87,10 @@ class ArmAlongPath:
             slope += weight * neighbour.D * math.exp(neighbour.S - S)
         return slope / h
 
-    def double(self, x: float, p: float, reach: float) -> LocatedZero:
-        """The double real eigenvalue D = D_w = 0 near (x, p).
+    def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
+        """The double real eigenvalue D = D_w = 0 near the guess (x, p), by Newton's method.
 
-        FAILED if p moves by more than twice `reach`, if the sign of x changes, or without convergence.
+        `FAILED` if p moves by more than twice `reach`, if the sign of x changes, or without convergence.
         """
         start = x
         first = p
@@ -96,7 +101,7 @@ class ArmAlongPath:
             D_w = value.D_w.real
             S = value.S
             noise = value.noise
-            h = DETERMINANT.second_step * abs(x)
+            h = DETERMINANT.second_difference_step * abs(x)
             D_ww = (self._real(x + h, p, S)[1] - self._real(x - h, p, S)[1]) / (2 * h)
             stencil, k = self._stencil(p, ROOT_NEWTON.jacobian_step * reach)
             neighbours = [(weight, self._real(x, p + offset * k, S)) for offset, weight in stencil]
@@ -106,17 +111,21 @@ class ArmAlongPath:
                 return FAILED
             in_x = (D_p * D_w - D_wp * D) / cross
             in_p = (D_ww * D - D_w * D_w) / cross
-            blur = ARM_DOUBLES.noise * noise + ROUND_OFF * abs(p * D_p)
+            blur = ARM_DOUBLE_EIGENVALUES.rounding_over_noise * noise + ROUND_OFF * abs(p * D_p)
             e_p = blur * abs(D_ww) / abs(cross)
             e_x = (
-                blur * abs(D_wp) + ARM_DOUBLES.noise * noise / max(abs(x), EXPONENTS.least_divisor) * abs(D_p)
+                blur * abs(D_wp)
+                + ARM_DOUBLE_EIGENVALUES.rounding_over_noise
+                * noise
+                / max(abs(x), EXPONENTS.least_divisor)
+                * abs(D_p)
             ) / abs(cross)
             x += in_x
             p += in_p
             if not abs(p - first) <= 2 * reach or not x * start > 0:
                 return FAILED
-            small = abs(in_p) <= ROOT_NEWTON.last_step * e_p
-            if small and (abs(in_x) <= ROOT_NEWTON.last_step * e_x or abs(in_x) > last / 2):
+            small = abs(in_p) <= ROOT_NEWTON.converged_step * e_p
+            if small and (abs(in_x) <= ROOT_NEWTON.converged_step * e_x or abs(in_x) > last / 2):
                 # Only now: the spread takes D on further elements.
                 more = max(self._spread(x, p, S) / blur, 1.0)
                 e_p = max(more * e_p, abs(in_p)) + ARM_FAMILY.rounding * abs(p)
@@ -125,34 +134,35 @@ class ArmAlongPath:
         return FAILED
 
     def _spread(self, x: float, p: float, S: float) -> float:
-        """Rounding error of D exp(-S) at real w = x: the spread between different elements, times a safety
-        factor.
+        """Estimated rounding error of D exp(-S) at real w = x: the spread of D over different elements, times
+        a factor.
 
-        Minors that are large in the middle of an arm have rounding errors that the noise of D does not show.
+        Minors that are large in the middle of an arm have rounding errors that the `noise` of D
+        does not contain.
         """
         arm = self.determinant(p)
         values = [
             self._value(x, p),
-            *(arm.value_at_level(x, factor) for factor in ARM_DOUBLES.compared_levels),
+            *(arm.value_at_level(x, factor) for factor in ARM_DOUBLE_EIGENVALUES.compared_level_factors),
         ]
         D = [value.D.real * math.exp(value.S - S) for value in values]
-        return ARM_DOUBLES.spread_factor * (max(D) - min(D))
+        return ARM_DOUBLE_EIGENVALUES.spread_factor * (max(D) - min(D))
 
     def _value(self, x: float, p: float) -> DeterminantValue:
-        """D and D_w at real w = x."""
+        """D and D_w at real w = x, for the arm at p."""
         family = self.family(p)
         if family is not None and abs(x) < family.W:
-            return value_in(family, complex(x, 0.0), p)
+            return determinant_in_family(family, complex(x, 0.0), p)
         return self.determinant(p).value(complex(x, 0.0))
 
     def _real(self, x: float, p: float, S: float) -> tuple[float, float]:
-        """(D, D_w) exp(-S) at real w = x."""
+        """D exp(-S) and D_w exp(-S), real, at real w = x, for the arm at p."""
         value = self._value(x, p)
         scale = math.exp(value.S - S)
         return value.D.real * scale, value.D_w.real * scale
 
     def _stencil(self, p: float, largest: float) -> tuple[tuple[tuple[int, float], ...], float]:
-        """(stencil, step) of a difference with respect to p, with a step of at most `largest`.
+        """(stencil, step) of a difference by p, with a step of at most `largest`.
 
         The step is shortened until both neighbours are valid arms: not crushed, no negative compliance or
         drag. The stencil is one-sided at a compliance or a drag of 0.
@@ -160,10 +170,10 @@ class ArmAlongPath:
         step = min(ROOT_NEWTON.jacobian_step * max(abs(p), 1.0), largest)
         if p == 0 and self.path.name != "F":
             return FORWARD_DIFFERENCE, step
-        for _ in range(ARM_DOUBLES.max_shortenings):
+        for _ in range(ARM_DOUBLE_EIGENVALUES.max_shortenings):
             if self._exists(p + step) and self._exists(p - step):
                 break
-            step /= ARM_DOUBLES.shortening
+            step /= ARM_DOUBLE_EIGENVALUES.step_divisor
         return CENTRAL_DIFFERENCE, step
 
     def _exists(self, p: float) -> bool:

@@ -1,18 +1,18 @@
-"""Proof that no eigenvalue of an arm is missing among known ones, from D at a few real points.
+"""Proof that no eigenvalue of an arm is missing from a list of known ones, from D at a few real points.
 
 D is entire of order 1/2 with D(0) = 1, so that D'/D(x) = sum 1/(x - w_n) over all eigenvalues. With points
 x_1 < ... < x_k right of the hull of the spectrum and c_j = prod_(i != j) 1/(x_i - x_j),
 
     phi(v) = prod_j 1/(x_j - v) = sum_j c_j/(x_j - v),   sum_n phi(w_n) = sum_j c_j D'/D(x_j).
 
-What the known eigenvalues leave of this sum is R = sum phi over the unknown ones. The points lie so far to
-the right that sum_j arg(x_j - v) is at most pi/2 everywhere in the hull: every term of R has a real part of
-at least 0. An unknown eigenvalue right of a line would contribute the least Re phi there at least, twice as
-much if it is one of a pair. If R is less, there is none.
+Subtracting phi at the known eigenvalues leaves R = sum phi over the unknown eigenvalues. The points lie so
+far to the right that sum_j arg(x_j - v) is at most pi/2 everywhere in the hull, so every term of R has a real
+part >= 0. An unknown eigenvalue right of a line would contribute at least the smallest Re phi there, and
+twice as much if it is one of a pair. If R is smaller, no eigenvalue right of the line is unknown.
 
-The far eigenvalues, infinitely many, contribute like |w_n|^-k: a few known ones beyond the line suffice. The
-proof rests on the hull, on the known ones being eigenvalues within their errors, and on the rounding error of
-D and the error of its elements, which are estimates.
+The infinitely many eigenvalues far to the left contribute only like |w_n|^-k, so it suffices to know a few
+eigenvalues left of the line. The proof relies on the hull, on the known eigenvalues being eigenvalues within
+their errors, and on estimates of the rounding error of D and of the error of its elements.
 """
 
 import math
@@ -32,62 +32,61 @@ from .value import chain_value
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CompletenessSettings(CompiledSettings):
-    """Settings for proofs of completeness, and for the points of w at which D'/D is summed."""
+    """Settings for proofs of completeness, and for the points x_j at which D'/D is summed."""
 
-    spare: int = 2
-    """Further eigenvalues of an arm whose list is proved complete: of 100 random arms 59 then need a count,
-    which costs more than they do, and 73 without them."""
-    powers: tuple[int, ...] = (3, 6)
-    """Numbers k of points that are tried: few, which are closer, before many, which suffice for a wide
+    spare_eigenvalues: int = 2
+    """Number of eigenvalues requested beyond the modes to prove: with two, 59 of 100 random arms still need a
+    count, without 73. A count costs more than two eigenvalues."""
+    point_counts: tuple[int, ...] = (3, 6)
+    """Numbers k of points x_j of successive trials: few lie closer to the hull, many suffice for a wider
     hull."""
-    farthest: tuple[float, ...] = (1.5, 6.0)
-    """Largest distance of the last of k points from 0 for each of `powers`, in units of the largest known
-    |w|: from farther away, unknown eigenvalues contribute like known ones. Most proofs that fail lie beyond,
-    and most that succeed do not."""
-    first_point: float = 0.35
-    """Least distance of the first point from 0, in units of the depth of the line."""
-    least_point: float = 1e-6
-    """Least distance of the first point from 0, in 1/tau2, for a line and a hull near 0."""
-    spread: float = 1.0
-    """Distance of the last point from the first, in units of the first one's from 0."""
-    wider: float = 1.3
-    """Factor by which the points are moved outwards until every term of R is positive."""
-    slabs: int = 24
-    """Vertical strips of the region right of the line, in each of which Re phi has a bound of its own."""
-    allowed: float = 0.7
-    """Largest |R| with its rounding error in units of what an unknown eigenvalue would contribute."""
+    max_last_point: tuple[float, ...] = (1.5, 6.0)
+    """Largest x_k, for each of `point_counts`, in units of the largest known |w|. Most proofs with a larger
+    x_k fail, because unknown eigenvalues contribute like known ones; most that succeed have a smaller x_k."""
+    min_first_point: float = 0.35
+    """Smallest x_1, in units of the distance of the line from the imaginary axis."""
+    min_first_distance: float = 1e-6
+    """Smallest x_1, in 1/tau2, for a line and a hull near 0."""
+    point_spread: float = 1.0
+    """x_k - x_1, in units of x_1."""
+    widening_factor: float = 1.3
+    """Factor by which the points x_j move outwards until every term of R has a real part >= 0."""
+    strip_count: int = 24
+    """Number of vertical strips of the hull right of the line, each with its own bound of Re phi."""
+    max_remainder: float = 0.7
+    """Largest |R| of a proof, rounding error included, over the least contribution of an unknown
+    eigenvalue."""
     rounding_of_slope: float = 10.0
-    """Rounding error of D'/D, relative, in units of the relative noise of D: 0.08 at most between two levels
+    """Relative rounding error of D'/D, in units of the relative `noise` of D: at most 0.08 between two sets
     of elements, over 45 random arms."""
-    ranges: ClassVar = {"wider": (1.0, math.inf), "allowed": (0.0, 1.0)}
+    ranges: ClassVar = {"widening_factor": (1.0, math.inf), "max_remainder": (0.0, 1.0)}
 
-    def tried(self) -> list[tuple[int, float]]:
-        """(k, largest distance of the last point) of each trial, in order."""
-        return list(zip(self.powers, self.farthest, strict=True))
+    def trials(self) -> list[tuple[int, float]]:
+        """(k, largest x_k in units of the largest known |w|) of each trial, in order."""
+        return list(zip(self.point_counts, self.max_last_point, strict=True))
 
 
 COMPLETENESS = CompletenessSettings()
 
 
 class Remainder(NamedTuple):
-    """Remainder R of the sum of phi over all eigenvalues, after the known ones are subtracted (see the
-    module).
+    """Remainder R of the sum of phi over all eigenvalues, less the known ones (see the module).
 
-    blur: rounding error of R. least: smallest contribution to R of an unknown eigenvalue right of the line.
+    rounding: rounding error of R. least_contribution: of an unknown eigenvalue right of the line.
     """
 
     R: float
-    blur: float
-    least: float
+    rounding: float
+    least_contribution: float
 
 
 def none_is_missing(
     line: float, known: Complex, error: Array, determinant: ArmDeterminant, hull: Hull
 ) -> tuple[bool, int]:
-    """(whether every eigenvalue with Re w >= line is proved to be known, number of evaluations of D).
+    """(whether all eigenvalues with Re w >= line are proved to be known, number of evaluations of D).
 
-    known, error: known eigenvalues, (n,), and the error of each, (n,). Of each conjugate pair both must be
-    known.
+    known, error: known eigenvalues, (n,), and their absolute errors, (n,). Known eigenvalues without their
+    conjugate are ignored.
     """
     if not math.isfinite(hull.a) or not line <= 0:
         return False, 0
@@ -95,8 +94,8 @@ def none_is_missing(
     pairs = has_conjugate(known)
     largest = float(np.abs(known).max())
     examined = 0
-    for k, farthest in COMPLETENESS.tried():
-        points = right_of_hull(line, hull.a, hull.c, k)
+    for k, farthest in COMPLETENESS.trials():
+        points = points_right_of_hull(line, hull.a, hull.c, k)
         if _last(points) <= farthest * largest:
             found = remainder_of_sum(
                 line, known[pairs], error[pairs], hull, points, determinant.level(points[-1])
@@ -108,30 +107,33 @@ def none_is_missing(
 
 
 def has_conjugate(known: Complex) -> Array:
-    """Mask, (n,), of the known eigenvalues that are real, or whose conjugate is known too."""
+    """Mask, (n,), of known eigenvalues that are real or whose conjugate is known too."""
     conjugates = set(known.conj().tolist())
     return np.array([w in conjugates for w in known.tolist()], dtype=bool)
 
 
 def largest_w_of_proof(line: float, hull: Hull, known: Complex) -> float:
-    """The largest |w| of the first proof that is tried, from eigenvalues, (n,); inf if none is tried."""
+    """Largest |w| at which the first trial of `none_is_missing` evaluates D; inf if no trial is possible.
+    known: (n,).
+    """
     largest = float(np.abs(known).max())
-    tried = ((_last(right_of_hull(line, hull.a, hull.c, k)), most) for k, most in COMPLETENESS.tried())
+    trials = COMPLETENESS.trials()
+    tried = ((_last(points_right_of_hull(line, hull.a, hull.c, k)), most) for k, most in trials)
     return next((last for last, most in tried if last <= most * largest), math.inf)
 
 
 def cheapest_proof(line: float, hull: Hull, known: Complex, modes: int) -> tuple[int, float]:
-    """(number of leading eigenvalues to know, at least `modes`; largest |w| at which D is evaluated) of the
-    cheapest proof.
+    """(number of leading eigenvalues that the cheapest proof must know, largest |w| at which this proof
+    evaluates D).
 
-    known: eigenvalues, (n,), leading first. Proofs with smaller |w| need fewer elements. The number is 0 if
-    no proof is possible.
+    known: approximate eigenvalues, (n,), leading first. The cheapest proof has the smallest |w|, and so the
+    fewest elements. The number is at least `modes`, or 0 if no proof is possible.
     """
     best = 0, math.inf
     sizes = np.maximum.accumulate(np.abs(known)).tolist()
     whole = [*(known[1:] != known[:-1].conj()).tolist(), True]
-    for k, farthest in COMPLETENESS.tried():
-        last = _last(right_of_hull(line, hull.a, hull.c, k))
+    for k, farthest in COMPLETENESS.trials():
+        last = _last(points_right_of_hull(line, hull.a, hull.c, k))
         for number in range(modes, len(sizes) + 1):
             largest = sizes[number - 1]
             if last <= farthest * largest and max(last, largest) < best[1] and whole[number - 1]:
@@ -140,39 +142,41 @@ def cheapest_proof(line: float, hull: Hull, known: Complex, modes: int) -> tuple
 
 
 def _last(points: Array) -> float:
-    """The last of the points of a proof, (k,); inf without points."""
+    """The last point x_k of a proof, (k,); inf without points."""
     return float(points[-1]) if len(points) else math.inf
 
 
 @compiled
 def proves_completeness(found: Remainder) -> bool:
-    """Whether no unknown eigenvalue lies right of the line. R far below 0 would mean that a known eigenvalue
-    is not a root of D.
+    """Whether R excludes an unknown eigenvalue right of the line.
+
+    It does not if R is far below 0: a known eigenvalue is then no root of D.
     """
-    allowed = COMPLETENESS.allowed * found.least
-    return found.R + found.blur < allowed and -allowed < found.R
+    allowed = COMPLETENESS.max_remainder * found.least_contribution
+    return found.R + found.rounding < allowed and -allowed < found.R
 
 
 @compiled
-def right_of_hull(line: float, a: float, c: float, k: int) -> Array:
-    """k points, (k,), for which the term of R of every w in the hull right of the line is positive; empty if
-    no such points exist.
+def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
+    """Points x_1 < ... < x_k, (k,), so far right that every term of R has a real part >= 0; may be empty.
+
+    a, c: constants of the hull.
     """
     # As close to the hull as allowed: from farther away all eigenvalues contribute alike.
-    x = max(COMPLETENESS.first_point * abs(line), a * a, COMPLETENESS.least_point)
+    x = max(COMPLETENESS.min_first_point * abs(line), a * a, COMPLETENESS.min_first_distance)
     points = np.empty(k)
     for j in range(k):
-        points[j] = x * (1 + COMPLETENESS.spread * j / max(k - 1, 1))
+        points[j] = x * (1 + COMPLETENESS.point_spread * j / max(k - 1, 1))
     while not _turn_of_hull(points, a, c) < math.pi / 2:
         if not points[0] < 1 / EXPONENTS.least_divisor:
             return points[:0]
-        points *= COMPLETENESS.wider
+        points *= COMPLETENESS.widening_factor
     return points
 
 
 @compiled
 def _turn_of_hull(points: Array, a: float, c: float) -> float:
-    """An upper bound of sum_j arg(x_j - v) over the hull."""
+    """An upper bound of sum_j arg(x_j - v) over all v in the hull."""
     b = 1 - c
     total = 0.0
     for x in points:
@@ -190,11 +194,11 @@ def _turn_of_hull(points: Array, a: float, c: float) -> float:
 def remainder_of_sum(
     line: float, known: Complex, error: Array, hull: Hull, points: Array, level: tuple[float, Array]
 ) -> Remainder:
-    """The remainder R of the sum over all eigenvalues, its rounding error, and the least contribution right
-    of the line.
+    """The remainder R, its rounding error, and the smallest contribution of an unknown eigenvalue right of
+    the line.
 
-    known, error: known eigenvalues, (n,), closed under conjugation, and the error of each, (n,). points:
-    (k,). level: (W, propagators) for |w| up to the last point.
+    known, error: known eigenvalues, (n,), closed under conjugation, and their errors, (n,). points: x_j,
+    (k,). level: (W, propagators), W at least the last point.
     """
     k = len(points)
     R = 0.0
@@ -223,15 +227,15 @@ def remainder_of_sum(
 
 @compiled
 def _least_right_of(line: float, points: Array, a: float, c: float) -> float:
-    """A lower bound of Re phi at real points of the hull right of the line, and of 2 Re phi at others."""
+    """A lower bound of Re phi at real points of the hull right of the line, and of 2 Re phi elsewhere."""
     b = 1 - c
     right = max(a * a / (4 * b), line)
     least = 1.0
     for x in points:
         least /= x - line
-    for i in range(COMPLETENESS.slabs):
-        start = line + (right - line) * i / COMPLETENESS.slabs
-        stop = line + (right - line) * (i + 1) / COMPLETENESS.slabs
+    for i in range(COMPLETENESS.strip_count):
+        start = line + (right - line) * i / COMPLETENESS.strip_count
+        stop = line + (right - line) * (i + 1) / COMPLETENESS.strip_count
         depth = max(-start, 0.0)
         n = (a + math.sqrt(a * a + 4 * b * depth)) / (2 * b)
         height = a * n + c * n * n

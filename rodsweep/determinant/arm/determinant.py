@@ -1,9 +1,9 @@
-"""D(w) of one arm at any w, from elements whose length depends on |w|.
+"""D(w) of one arm that varies along its length, from elements whose length depends on |w|.
 
-The propagators of an element are polynomials in w/W for |w| <= W. Each level W has its own elements, computed
-at first use. Elements are so short that the fastest local exponential grows at most by
-exp(`ARM_ELEMENTS.longest`) and that the Gauss points resolve the coefficients; every break of the profile is
-an end of an element.
+The propagators of an element are polynomials in w/W that hold for |w| <= W. Every bound W has its own
+elements, made at first use. Elements are so short that the fastest local exponential grows at most by
+exp(`ARM_ELEMENTS.longest`) over an element, and that the Gauss points resolve the coefficients. Elements end
+at every break of the profile.
 """
 
 from functools import cached_property, lru_cache
@@ -23,20 +23,21 @@ from .elements.settings import ARM_ELEMENTS
 from .local_waves import ArmSamples, arm_samples, scales_at, scales_at_all
 from .value import chain_value
 
-Level = tuple[float, Array]
-"""W, and propagators for |w| <= W, (elements, terms, PADDED)."""
+BoundedPropagators = tuple[float, Array]
+"""(W, propagators that hold for |w| <= W, (elements, terms, PADDED))."""
 
 
 class ArmDeterminant:
-    """Characteristic determinant D(w) of one arm; propagators are made for |w| <= W and kept.
+    """Characteristic determinant D(w) of one arm; propagators are made for |w| <= W and kept for later values
+    of w.
 
-    known: (W, propagators) made earlier. Methods raise FloatingPointError if `max_elements` do not resolve
-    the arm.
+    known: (W, propagators) of this arm made earlier. Methods raise FloatingPointError if `max_elements`
+    elements do not resolve the arm.
     """
 
-    def __init__(self, rod: Rod, known: Level | None = None):
+    def __init__(self, rod: Rod, known: BoundedPropagators | None = None):
         self.rod = rod
-        self._levels: list[Level] = [] if known is None else [known]
+        self._levels: list[BoundedPropagators] = [] if known is None else [known]
         points, weights, local = sampled(rod)
         self.samples = arm_samples(float(rod.F), local, weights)
         each = LocalCoefficients(*(x[None] for x in local))
@@ -48,43 +49,47 @@ class ArmDeterminant:
         return chain_value(complex(w), W, polynomials)
 
     def value_at_level(self, w: complex, factor: float) -> DeterminantValue:
-        """D and D' at w times exp(-S), with elements that serve |w| times a factor of at least 1."""
+        """D and D' at w times exp(-S), from elements made for |w| times `factor`, at least 1.
+
+        Comparing values for several factors shows the rounding error of D.
+        """
         W, polynomials = self.level(factor * abs(w), ARM_ELEMENTS.highest_compared)
         return chain_value(complex(w), W, polynomials)
 
     def elements(self, size: float) -> int:
-        """The number of elements for D at |w| = size."""
+        """Number of elements for D at |w| = size."""
         return len(self.level(size)[1])
 
     def wave_number(self, w: complex) -> float:
-        """The mean |q| of the fastest exponential along the arm, in 1/L."""
+        """|q| of the fastest exponential of D at w, averaged along the arm, in 1/L."""
         return self.scales(w)[0]
 
     def length(self, w: complex) -> float:
-        """Change of w that changes an exponent of D, integrated along the arm, by about one."""
+        """Change of w over which an exponent of D, integrated along the arm, changes by about one, in
+        1/tau2."""
         return self.scales(w)[1]
 
     def scales(self, w: complex) -> tuple[float, float]:
-        """(wave number, length) at w."""
+        """(`wave_number`, `length`) at w."""
         return scales_at(w, self.samples)
 
     def scales_of_all(self, w: Complex) -> Array:
-        """Wave numbers and lengths at n numbers, (2, n)."""
+        """`wave_number` and `length` at each w, (n,): an array (2, n)."""
         return scales_at_all(w, self.samples)
 
     @cached_property
     def gauss_samples(self) -> ArmSamples:
-        """The arm at the Gauss points of each smooth piece."""
+        """Samples of the arm at the Gauss points of each interval between breaks of the profile."""
         points, _, weights = gauss_method(ARM_ELEMENTS.stages)
         lengths = np.diff(self.rod.build.breaks)[:, None]
         local = self.rod.local((self.rod.build.breaks[:-1, None] + lengths * points).ravel())
         return arm_samples(float(self.rod.F), local, (lengths * weights).ravel())
 
-    def level(self, size: float, highest: float | None = None) -> Level:
-        """(W >= size, propagators for |w| <= W, (elements, terms, PADDED)) with the smallest W that exists.
+    def level(self, size: float, highest: float | None = None) -> BoundedPropagators:
+        """(W, propagators for |w| <= W) with the smallest existing W >= size, or new ones.
 
-        highest: largest W, in units of the size, that serves; beyond it new elements are made. None:
-        `ARM_ELEMENTS.highest`.
+        Propagators: (elements, terms, PADDED). highest: largest W of existing propagators that serve, in
+        units of `size`; by default `ARM_ELEMENTS.highest`. Beyond it, propagators on fewer elements are made.
         """
         highest = ARM_ELEMENTS.highest if highest is None else highest
         size = max(size, ARM_ELEMENTS.smallest_level)
@@ -104,7 +109,8 @@ class ArmDeterminant:
 class Samples(NamedTuple):
     """Samples of n arms between the breaks of their profile.
 
-    Points, (points,); `LocalCoefficients` there, each (n, points); squares of `ArmSamples`, (4, n, points).
+    points: material coordinates u, (points,). local: `LocalCoefficients` at the points, each (n, points).
+    squares: those of `ArmSamples`, (4, n, points).
     """
 
     points: Array
@@ -113,15 +119,16 @@ class Samples(NamedTuple):
 
 
 class PropagatorElements(NamedTuple):
-    """Lengths of elements, (elements,), and `LocalCoefficients` of n arms at the Gauss points, (6, n,
-    elements, stages)."""
+    """Elements of n arms: their lengths, (elements,), and `LocalCoefficients` at their Gauss points,
+    (6, n, elements, stages).
+    """
 
     lengths: Array
     local: Array
 
 
 def samples_of(rods: list[Rod]) -> Samples:
-    """Samples of arms of one build."""
+    """Samples of several arms with equal breaks of their profiles."""
     points, weights, _ = sampled(rods[0])
     local = Rod.local_of_all(rods, points)
     forces = np.array([[rod.F] for rod in rods])
@@ -129,7 +136,10 @@ def samples_of(rods: list[Rod]) -> Samples:
 
 
 def elements_for(rods: list[Rod], samples: Samples, W: float) -> PropagatorElements:
-    """Elements that resolve every arm of a list, all of one build, for |w| <= W."""
+    """The elements that resolve every arm of `rods` for |w| <= W; all arms have the same build.
+
+    Raises FloatingPointError if `max_elements` elements do not resolve an arm.
+    """
     tapers = np.array([rod.taper for rod in rods])
     edges = element_edges(W, samples.squares, tapers, samples.points, rods[0].build.breaks)
     points, _, _ = gauss_method(ARM_ELEMENTS.stages)
@@ -148,5 +158,5 @@ def elements_for(rods: list[Rod], samples: Samples, W: float) -> PropagatorEleme
 
 @lru_cache(maxsize=ARM_ELEMENTS.arms_kept)
 def arm_determinant(rod: Rod) -> ArmDeterminant:
-    """D of the arm `rod`, cached."""
+    """The determinant D of an arm, cached: propagators made for one w serve later calls."""
     return ArmDeterminant(rod)

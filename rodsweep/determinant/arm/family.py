@@ -1,8 +1,8 @@
-"""Propagators of all arms of an interval of a path, as polynomials in the path variable.
+"""The propagators of all arms on an interval of a path, as polynomials in the path variable p.
 
-The propagator of an element is smooth in the path variable p, as the coefficients along the arm are. On
-elements that serve the whole interval, some arms at Chebyshev points give it for all others by
-interpolation, with its derivative by p. Its last coefficients show the error.
+The propagator of an element is smooth in p, like the coefficients along the arm. On elements that resolve all
+arms of the interval, the propagators of a few arms, at Chebyshev points, determine those of all others and
+their derivatives by p. The last Chebyshev coefficients show the interpolation error.
 """
 
 import math
@@ -27,44 +27,44 @@ from .elements.settings import ARM_ELEMENTS
 from .value import ARM_VALUE, chain_along, chain_value
 
 LINEAR_SCALE = math.inf
-"""Scale of equal spacing."""
+"""`ArmFamily.scale` of series in p itself, not in a logarithm of p."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmFamilySettings(CompiledSettings):
-    """Settings for the arms from which a family is interpolated."""
+    """Settings for the number and spacing of the arms from which a family is interpolated."""
 
-    numbers: tuple[int, ...] = (12, 17, 24, 24, 34)
-    """Number of arms of each trial. For 21 of 24 random paths from 0 to three times a load the first trial is
-    enough."""
-    scales: tuple[float, ...] = (LINEAR_SCALE, LINEAR_SCALE, LINEAR_SCALE, 0.05, 0.05)
-    """Scale of the spacing of each trial's arms, in units of the interval. The stretch of compressed rubber
-    has branch points at complex forces of the size of its stiffness; beside them a spacing that grows needs
-    fewer arms."""
-    most_entries: int = 500_000
-    """Largest number of entries of the propagators of a family: more take longer than arms one by one."""
-    converged: float = 1e-15
-    """Size of the last two coefficients of a propagator, in units of its largest entry, that is rounding."""
-    resolved: float = 10.0
-    """`converged` of the coefficients along the arms, in units of that of a propagator, made of them."""
+    arm_counts: tuple[int, ...] = (12, 17, 24, 24, 34)
+    """Number of arms in each trial. In 21 of 24 random paths from 0 to three times a load the first
+    suffices."""
+    spacing_scales: tuple[float, ...] = (LINEAR_SCALE, LINEAR_SCALE, LINEAR_SCALE, 0.05, 0.05)
+    """`ArmFamily.scale` of each trial, over the interval's length. The stretch of compressed rubber has
+    branch points at complex forces of the size of its stiffness, near which a logarithmic spacing needs fewer
+    arms."""
+    max_entries: int = 500_000
+    """Maximum number of entries of one arm's propagators; beyond, arms one by one are faster."""
+    converged_tail: float = 1e-15
+    """Last two Chebyshev coefficients of a propagator, over its largest entry, that are rounding errors."""
+    coefficient_tail_factor: float = 10.0
+    """Factor on `converged_tail` for the coefficients along the arms."""
 
     @property
     def rounding(self) -> float:
-        """Relative error of eigenvalues and crossings, as from changes of w and p by as much."""
-        return 2 * self.converged
+        """Error of eigenvalues and crossings from interpolation, as a relative change of w and of p."""
+        return 2 * self.converged_tail
 
     def trials(self) -> list[tuple[int, float]]:
-        """(number of arms, scale) of each trial, in order."""
-        return list(zip(self.numbers, self.scales, strict=True))
+        """(number of arms, scale over the length of the interval) of each trial, in order."""
+        return list(zip(self.arm_counts, self.spacing_scales, strict=True))
 
 
 ARM_FAMILY = ArmFamilySettings()
 
 
 class ArmFamily(NamedTuple):
-    """Propagators of all arms from p = low to p = high, for |w| <= W, as Chebyshev polynomials in p.
+    """Propagators of all arms with p from `low` to `high`, for |w| <= W, as Chebyshev series in p.
 
-    scale: the polynomials are in log(1 + (p - low)/scale), or in p if scale is `LINEAR_SCALE`. coefficients:
+    scale: the series are in log(1 + (p - low)/scale), or in p if scale is `LINEAR_SCALE`. coefficients:
     Chebyshev coefficients, (nodes, elements, terms, PADDED).
     """
 
@@ -76,9 +76,10 @@ class ArmFamily(NamedTuple):
 
 
 def family_of(path: Path, low: float, high: float, W: float) -> ArmFamily | None:
-    """The family of an interval; None where it is no smooth function of p, or too large.
+    """The family of the arms of `path` with p from `low` to `high`, for |w| <= W.
 
-    Raises ValueError where the model has no arm, FloatingPointError where no elements resolve one.
+    None if the arms are not smooth in p, or the propagators have too many entries. Raises ValueError at a p
+    without a valid arm, FloatingPointError if no elements resolve an arm.
     """
     for number, share in ARM_FAMILY.trials():
         scale = share * (high - low)
@@ -88,19 +89,19 @@ def family_of(path: Path, low: float, high: float, W: float) -> ArmFamily | None
         if not _resolves(samples):
             continue
         found = elements_for(arms, samples, W)
-        if len(found.lengths) * ARM_ELEMENTS.max_terms * PADDED > ARM_FAMILY.most_entries:
+        if len(found.lengths) * ARM_ELEMENTS.max_terms * PADDED > ARM_FAMILY.max_entries:
             return None
         values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
-        if _converged(values, ARM_FAMILY.converged):
+        if _converged(values, ARM_FAMILY.converged_tail):
             coefficients = np.tensordot(_to_series(number), values, 1)
             return ArmFamily(low, high, scale, W, np.ascontiguousarray(coefficients))
     return None
 
 
 def is_smooth(path: Path, low: float, high: float) -> bool:
-    """Whether the coefficients along the arms of an interval allow a family: a cheap necessary condition.
+    """Whether the arms' coefficients are smooth in p from `low` to `high`, as a family needs: a cheap test.
 
-    Raises ValueError where the model has no arm.
+    Raises ValueError at a p without a valid arm.
     """
     for number, share in reversed(ARM_FAMILY.trials()):
         p = _places(low, high, share * (high - low), number)
@@ -110,12 +111,13 @@ def is_smooth(path: Path, low: float, high: float) -> bool:
 
 
 def _resolves(samples: Samples) -> bool:
-    """Whether the Chebyshev series of the coefficients over the arms converges, at all samples."""
-    return _converged(np.moveaxis(np.array(samples.local), 1, 0), ARM_FAMILY.resolved * ARM_FAMILY.converged)
+    """Whether the Chebyshev series in p of the coefficients along the arms converges at every sample."""
+    tail = ARM_FAMILY.coefficient_tail_factor * ARM_FAMILY.converged_tail
+    return _converged(np.moveaxis(np.array(samples.local), 1, 0), tail)
 
 
 def _places(low: float, high: float, scale: float, number: int) -> Array:
-    """The path variables of the arms of an interval, (number,), increasing; both ends exactly."""
+    """Values of p at which arms are interpolated, (number,), increasing, with exactly both ends."""
     t = (chebyshev_points(number) + 1) / 2
     if scale < LINEAR_SCALE:
         t = np.expm1(t * math.log1p((high - low) / scale)) * scale / (high - low)
@@ -133,19 +135,19 @@ def _converged(values: Array, tolerance: float) -> bool:
 
 @cache
 def chebyshev_points(number: int) -> Array:
-    """Chebyshev points of [-1, 1] with both ends, (number,), increasing."""
+    """Chebyshev points of [-1, 1] including both ends, (number,), increasing."""
     return np.asarray(-np.cos(np.pi * np.arange(number) / (number - 1)))
 
 
 @cache
 def _to_series(number: int) -> Array:
-    """Matrix from values at `number` Chebyshev points to Chebyshev coefficients, (number, number)."""
+    """Matrix that maps values at `number` Chebyshev points to Chebyshev coefficients, (number, number)."""
     return np.asarray(np.linalg.inv(chebyshev.chebvander(chebyshev_points(number), number - 1)))
 
 
 @compiled
 def propagators_at(family: ArmFamily, p: float, polynomials: Array, changes: Array) -> None:
-    """Fills the propagators at p and their derivatives by p, both (elements, terms, PADDED)."""
+    """Fills the propagators of the arm at p and their derivatives by p, both (elements, terms, PADDED)."""
     half = (family.high - family.low) / 2
     t = (p - (family.low + family.high) / 2) / half
     if family.scale < LINEAR_SCALE:
@@ -177,7 +179,7 @@ def propagators_at(family: ArmFamily, p: float, polynomials: Array, changes: Arr
 
 @compiled_for_vectors
 def _sum_series(series: Array, T: Array, rates: Array, values: Array, slopes: Array) -> None:
-    """values = T series and slopes = rates series, (n,) each; series: (nodes, n); T, rates: (nodes,)."""
+    """values = sum_k T[k] series[k], slopes = sum_k rates[k] series[k], (n,) each; series: (nodes, n)."""
     nodes, n = series.shape
     values[:] = 0.0
     slopes[:] = 0.0
@@ -200,16 +202,16 @@ def _sum_series(series: Array, T: Array, rates: Array, values: Array, slopes: Ar
 
 
 @compiled
-def level_at(family: ArmFamily, p: float) -> tuple[float, Array]:
-    """(W, propagators for |w| <= W, shape (elements, terms, PADDED)) of the arm at p."""
+def propagators_in_family(family: ArmFamily, p: float) -> tuple[float, Array]:
+    """(W, propagators for |w| <= W, (elements, terms, PADDED)) of the arm at p of a family."""
     polynomials = np.empty(family.coefficients.shape[1:])
     propagators_at(family, p, polynomials, np.empty_like(polynomials))
     return family.W, polynomials
 
 
 @compiled
-def value_in(family: ArmFamily, w: complex, p: float) -> DeterminantValue:
-    """D and dD/dw times exp(-S) at w, |w| <= W, of the arm at p."""
+def determinant_in_family(family: ArmFamily, w: complex, p: float) -> DeterminantValue:
+    """D and dD/dw times exp(-S) of the arm at p of a family; |w| <= W."""
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)
     changes = np.empty(shape)
@@ -218,11 +220,11 @@ def value_in(family: ArmFamily, w: complex, p: float) -> DeterminantValue:
 
 
 @compiled
-def eigenvalue_in(family: ArmFamily, guess: complex, p: float) -> tuple[complex, complex, float]:
-    """(eigenvalue near the guess, its slope by p, its error) at p by Newton's method, away from double
-    eigenvalues.
+def eigenvalue_in_family(family: ArmFamily, guess: complex, p: float) -> tuple[complex, complex, float]:
+    """(w, dw/dp, error of w) of the eigenvalue near the guess, for the arm at p of a family, by Newton's
+    method.
 
-    The iteration ends where rounding keeps the steps from getting smaller. What is real stays real.
+    Not for a nearly double eigenvalue. Steps end where rounding stops their decrease; a real w stays real.
     """
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)

@@ -1,4 +1,4 @@
-"""Local exponents of D along an arm, as of a uniform rod with the coefficients at a point.
+"""Local exponents of D along an arm: those of a uniform rod with the coefficients at a point of the arm.
 
 The minors of `rodsweep.determinant.arm.elements.collocation` grow like exp(+-sqrt(z+-) u), with
 
@@ -18,7 +18,7 @@ from ..exponents import EXPONENTS
 
 
 class ArmSamples(NamedTuple):
-    """Numbers of z+- at points along an arm, and weights of a quadrature.
+    """Coefficients of z+-(w) at points along an arm, and the weights of a quadrature over these points.
 
     squares: c2 gamma2 + c3 gamma3, F c3 g, g nu gamma2 c3 and c2 c3 gamma2 gamma3, (4, points). weights:
     (points,).
@@ -29,9 +29,9 @@ class ArmSamples(NamedTuple):
 
 
 def arm_samples(F: float | Array, local: LocalCoefficients, weights: Array) -> ArmSamples:
-    """The samples of an arm from its coefficients at points, (points,), and weights, (points,).
+    """Samples of an arm from the force F, its coefficients at points, (points,), and weights, (points,).
 
-    Of n arms with forces (n, 1) and coefficients (n, points), squares have the shape (4, n, points).
+    For n arms, F is (n, 1), each coefficient (n, points), and squares get the shape (4, n, points).
     """
     nu, c2, c3, gamma2, gamma3, g = local
     shear = c2 * gamma2
@@ -41,7 +41,7 @@ def arm_samples(F: float | Array, local: LocalCoefficients, weights: Array) -> A
 
 @compiled_for_vectors
 def root_of_upper_half(real: float, imag: float) -> tuple[float, float]:
-    """(real, imaginary) part of the square root of a number with an imaginary part of at least 0."""
+    """(real part, imaginary part) of the square root of real + i imag, imag >= 0."""
     larger = math.sqrt((math.sqrt(real * real + imag * imag) + abs(real)) / 2)
     smaller = imag / (2 * max(larger, EXPONENTS.least_divisor))
     return (larger, smaller) if real >= 0 else (smaller, larger)
@@ -49,13 +49,15 @@ def root_of_upper_half(real: float, imag: float) -> tuple[float, float]:
 
 @compiled_for_vectors
 def size_of(real: float, imag: float) -> float:
-    """The modulus of a number."""
+    """Modulus of the number real + i imag."""
     return math.sqrt(real * real + imag * imag)
 
 
 @compiled_for_vectors
 def scales_at(w: complex, samples: ArmSamples) -> tuple[float, float]:
-    """(mean |q| of both pairs of exponents, 1 / mean of the larger |dq/dw|) along an arm."""
+    """(wave number, length) at w: |q| averaged along the arm over both pairs of exponents, and 1 over the
+    mean of the larger |dq/dw|.
+    """
     number = 0.0
     fast = 0.0
     a = w.real
@@ -79,7 +81,7 @@ def scales_at(w: complex, samples: ArmSamples) -> tuple[float, float]:
 
 @compiled
 def scales_at_all(w: Complex, samples: ArmSamples) -> Array:
-    """`scales_at` of n numbers, (2, n)."""
+    """`scales_at` of each w, (n,): an array (2, n)."""
     found = np.empty((2, len(w)))
     for n in range(len(w)):
         # Conjugates, which stand next to each other, have the same scales.

@@ -14,7 +14,7 @@ from ..roots.newton import ROOT_NEWTON
 from ..roots.roots import roots_of_parabola
 from ..roots.settings import ROOTS
 from ..value import DETERMINANT, DeterminantValue, second_difference
-from .determinant import ArmDeterminant, Level
+from .determinant import ArmDeterminant, BoundedPropagators
 from .value import ARM_VALUE, chain_value
 
 
@@ -23,21 +23,21 @@ class ArmRootSettings(CompiledSettings):
     """Settings for the refinement of eigenvalues of arms."""
 
     rounding: float = 16.0
-    """Rounding error of an eigenvalue, in units of the spacing of doubles, from the products of propagators,
-    where minors in the middle of an arm are large against those at its tip; of 1000 eigenvalues of stepped
-    arms against 19 digits it was 4e-15 at most."""
-    most_above: float = 16.0
-    """Largest ratio of |w| later to |w| of the roots for which elements are shared: they are at most four
-    times as many as the roots need, and errors from rounding grow with their number."""
+    """Rounding error of an eigenvalue, in units of the spacing of doubles at |w|, from the products of
+    propagators. Minors in the middle of an arm may be large against those at the tip. At most 4e-15,
+    relative, in 1000 eigenvalues of stepped arms, compared with 19 digits."""
+    max_w_ratio: float = 16.0
+    """Largest ratio of |w| needed later to |w| of the roots at which both share elements. The elements are
+    then at most four times as many as the roots need; rounding errors grow with their number."""
 
 
 ARM_ROOTS = ArmRootSettings()
 
 
 @compiled
-def _second_derivative(w: complex, S: float, level: Level) -> complex:
-    """`second_derivative` with the propagators of a level."""
-    h = DETERMINANT.second_step * abs(w)
+def _second_derivative(w: complex, S: float, level: BoundedPropagators) -> complex:
+    """D'' exp(-S) at w, by a central difference of D', from the propagators of `level`."""
+    h = DETERMINANT.second_difference_step * abs(w)
     after = chain_value(w + h, level[0], level[1])
     before = chain_value(w - h, level[0], level[1])
     second = second_difference(after, before, S, h)
@@ -45,31 +45,33 @@ def _second_derivative(w: complex, S: float, level: Level) -> complex:
 
 
 @compiled
-def _error(w: complex, value: DeterminantValue, level: Level) -> float:
-    """`root_error` from the value of D at w."""
+def _error(w: complex, value: DeterminantValue, level: BoundedPropagators) -> float:
+    """`root_error` at w, from the value of D at w and the propagators of `level`."""
     e = ARM_VALUE.root_residual * abs(value.D) + ARM_VALUE.root_noise * value.noise
     size = abs(value.D_w)
     error = e / max(size, EXPONENTS.least_divisor)
-    if error > ROOTS.blurred * abs(w):
+    if error > ROOTS.double_root_correction * abs(w):
         # Near a double root e/|D'| is unbounded, but a root of the second-order polynomial is near.
         second = abs(_second_derivative(w, value.S, level))
-        if size**2 < ROOTS.separated * e * second:
+        if size**2 < ROOTS.min_squared_slope * e * second:
             spread = math.sqrt(2 * e / second)
             error = min(max(error, spread), size / second + spread)
     return error + ARM_ROOTS.rounding * ROUND_OFF * abs(w)
 
 
 @compiled
-def _root_error(w: complex, level: Level) -> float:
-    """`root_error` with the propagators of a level."""
+def _root_error(w: complex, level: BoundedPropagators) -> float:
+    """`root_error` at w, from the propagators of `level`."""
     return _error(w, chain_value(w, level[0], level[1]), level)
 
 
 @compiled
-def _refined(guess: complex, level: Level, last: float) -> tuple[complex, float, float]:
-    """(w, error, length of the last step) of Newton's method, which stops at a step not below half of `last`.
+def _refined(guess: complex, level: BoundedPropagators, last: float) -> tuple[complex, float, float]:
+    """(w, error of w, length of the last step) after Newton's method from `guess`, with the propagators of
+    `level`.
 
-    The error is -1 where w leaves the level.
+    last: length of a previous step; a step of at least half of it ends the iteration. The error is -1 if |w|
+    exceeds the bound W of the level.
     """
     w = guess
     for _ in range(ROOT_NEWTON.max_refinements):
@@ -81,16 +83,16 @@ def _refined(guess: complex, level: Level, last: float) -> tuple[complex, float,
             return w, _error(w, value, level), last
         last = abs(step)
         w -= step
-        if abs(w.imag) <= ROOT_NEWTON.real_below * abs(w):
+        if abs(w.imag) <= ROOT_NEWTON.real_tolerance * abs(w):
             w = complex(w.real, 0.0)
-        if not (1 + DETERMINANT.second_step) * abs(w) <= level[0]:
+        if not (1 + DETERMINANT.second_difference_step) * abs(w) <= level[0]:
             return w, -1.0, last
     return w, _root_error(w, level), last
 
 
 @compiled
-def _two_roots(middle: complex, level: Level) -> tuple[complex, complex]:
-    """`two_roots` with the propagators of a level."""
+def _two_roots(middle: complex, level: BoundedPropagators) -> tuple[complex, complex]:
+    """`two_roots` with the propagators of `level`."""
     D, D_w, S, _ = chain_value(middle, level[0], level[1])
     if middle.imag == 0:
         D = complex(D.real, 0.0)
@@ -98,32 +100,35 @@ def _two_roots(middle: complex, level: Level) -> tuple[complex, complex]:
     return roots_of_parabola(middle, D, D_w, _second_derivative(middle, S, level))
 
 
-def _level(w: complex, determinant: ArmDeterminant) -> Level:
-    """(W, propagators) for D and its second derivative at w."""
-    return determinant.level((1 + DETERMINANT.second_step) * abs(w))
+def _level(w: complex, determinant: ArmDeterminant) -> BoundedPropagators:
+    """(W, propagators) that hold for D and D'' at w."""
+    return determinant.level((1 + DETERMINANT.second_difference_step) * abs(w))
 
 
 def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> complex:
-    """D'' exp(-S) at w, by a central difference of D'; real for real w."""
+    """D'' exp(-S) of an arm at w, by a central difference of D'; real for real w."""
     return _second_derivative(complex(w), S, _level(w, determinant))
 
 
 def root_error(w: complex, determinant: ArmDeterminant) -> float:
-    """Estimated distance from w to the nearest root of D, in 1/tau2, valid near a double root too."""
+    """Estimated distance from w to the nearest root of an arm's D, in 1/tau2, valid near a double root
+    too."""
     return _root_error(complex(w), _level(w, determinant))
 
 
-def refined(w: complex, determinant: ArmDeterminant) -> complex:
-    """The eigenvalue near w, of `refined_root`."""
-    return refined_root(w, determinant)[0]
+def refine_eigenvalue(w: complex, determinant: ArmDeterminant) -> complex:
+    """The eigenvalue of an arm near w, by Newton's method (`refine_eigenvalue_and_error`)."""
+    return refine_eigenvalue_and_error(w, determinant)[0]
 
 
-def refined_root(
+def refine_eigenvalue_and_error(
     w: complex, determinant: ArmDeterminant, farthest: float = math.inf
 ) -> tuple[complex, float]:
-    """(eigenvalue near w, its `root_error`), by Newton's method until rounding error stops the convergence.
+    """(eigenvalue of an arm near w, its error), by Newton's method until rounding error stops the
+    convergence.
 
-    A real guess gives a real eigenvalue. farthest: length of a first step that is not taken.
+    A real guess w gives a real eigenvalue. farthest: a first Newton step of at least this length is not
+    taken.
     """
     error = -1.0
     last = 2 * farthest
@@ -133,8 +138,8 @@ def refined_root(
 
 
 def two_roots(middle: complex, determinant: ArmDeterminant) -> tuple[complex, complex]:
-    """The two roots of the Taylor polynomial of D of second order about `middle`.
+    """The two roots of the quadratic Taylor polynomial of an arm's D about `middle`.
 
-    For a real `middle` both roots are real or complex conjugates.
+    For a real `middle` the two are both real, or complex conjugates.
     """
     return _two_roots(middle, _level(middle, determinant))

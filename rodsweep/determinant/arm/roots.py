@@ -19,7 +19,7 @@ from ..roots.roots import Roots
 from ..roots.settings import ROOTS
 from .determinant import ArmDeterminant
 from .hull.region import Hull
-from .newton import ARM_ROOTS, refined_root, root_error, second_derivative, two_roots
+from .newton import ARM_ROOTS, refine_eigenvalue_and_error, root_error, second_derivative, two_roots
 
 T = TypeVar("T")
 
@@ -27,13 +27,14 @@ T = TypeVar("T")
 def roots(
     raw: Complex, determinant: ArmDeterminant, hull: Hull, most_waves: float, largest: float = 0.0
 ) -> Roots:
-    """Roots of D, refined from those eigenvalues of a mesh that approximate a root.
+    """Roots of an arm's D refined from the eigenvalues `raw` of a mesh, complex, (n,), that approximate a
+    root of D.
 
-    raw: eigenvalues of a mesh, complex, shape (n,). most_waves: largest |q| that the mesh resolves. largest:
-    |w| at which D will be needed afterwards. Rounding makes infinite eigenvalues finite; these lie outside
-    the hull, beyond the mesh or far from every root.
+    most_waves: largest wave number |q| that the mesh resolves. largest: |w| at which D will be needed
+    afterwards. Infinite eigenvalues, which rounding makes finite, are dropped: they lie outside the hull,
+    have too large a |q|, or are far from every root.
     """
-    first = [w.real + 0j if abs(w.imag) <= ROOT_NEWTON.real_below * abs(w) else w for w in raw.tolist()]
+    first = [w.real + 0j if abs(w.imag) <= ROOT_NEWTON.real_tolerance * abs(w) else w for w in raw.tolist()]
     inside = [i for i, w in enumerate(first) if _inside(w, hull)]
     waves, lengths = determinant.scales_of_all(np.array([first[i] for i in inside], complex))
     scale = dict(zip(inside, lengths.tolist(), strict=True))
@@ -58,7 +59,7 @@ def roots(
     error = _with_equal_roots(found, determinant)
     length: Array = np.array([scale[i] for i in kept.tolist()], float)
     displacement = np.abs(w - np.array(first, complex)[kept]) / np.maximum(np.abs(w), length)
-    axis = np.abs(w.real) <= np.maximum(ROOTS.axis_errors * error, ROOTS.on_the_axis * np.abs(w))
+    axis = np.abs(w.real) <= np.maximum(ROOTS.axis_errors * error, ROOTS.axis_tolerance * np.abs(w))
     leader = w[0].real if len(w) else -math.inf
     # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
     ahead = sum(raw[i].real > leader for i in inside if i not in chosen)
@@ -66,7 +67,9 @@ def roots(
 
 
 def _of_each(w: list[complex], function: Callable[[complex], T]) -> list[T]:
-    """A function of each number; of conjugates next to each other, which have the same value, once."""
+    """The value of a function at each w; computed once for neighbouring conjugates, at which the value is
+    equal.
+    """
     values: list[T] = []
     for k, value in enumerate(w):
         pair = k > 0 and value == w[k - 1].conjugate()
@@ -75,16 +78,15 @@ def _of_each(w: list[complex], function: Callable[[complex], T]) -> list[T]:
 
 
 def _make_elements(determinant: ArmDeterminant, size: float, largest: float) -> None:
-    """Makes elements that serve all |w| up to `size`: the elements for `largest` if it is little more, else
-    new ones."""
-    if size < largest <= ARM_ROOTS.most_above * size:
+    """Makes elements for all |w| up to `size`, or up to `largest` if this needs only few more elements."""
+    if size < largest <= ARM_ROOTS.max_w_ratio * size:
         with suppress(FloatingPointError):  # too many elements: they are needed later, if at all
             determinant.level(largest)
     determinant.level(size)
 
 
 def _inside(w: complex, hull: Hull) -> bool:
-    """Whether w lies in the box that contains all eigenvalues with real parts of at least Re w."""
+    """Whether w lies in the box that contains all eigenvalues with real parts >= Re w."""
     if not cmath.isfinite(w):
         return False
     real, imag = hull.box(max(-w.real, 0.0))
@@ -94,22 +96,22 @@ def _inside(w: complex, hull: Hull) -> bool:
 def _separated(
     w: list[complex], error: list[float], determinant: ArmDeterminant
 ) -> tuple[list[complex], list[float]]:
-    """(w, reach) after moving each pair of eigenvalues closer than its errors to the two roots near it.
+    """(w, reach), after each two eigenvalues closer than their errors have been moved to two roots of D.
 
-    reach: half the distance from the other one of the pair, inf where an eigenvalue is not moved.
+    error: errors of w. reach: half the distance of a moved eigenvalue from its partner; inf for the unmoved.
     """
     w = w.copy()
     reach = [math.inf] * len(w)
     each = zip(w, error, strict=True)
-    if not any(abs(a - b) <= ROOTS.refined_together * (e + f) for (a, e), (b, f) in combinations(each, 2)):
+    if not any(abs(a - b) <= ROOTS.pair_distance * (e + f) for (a, e), (b, f) in combinations(each, 2)):
         return w, reach
     for i in range(len(w)):
         others = [j for j in range(len(w)) if j != i and reach[j] == math.inf]
         if reach[i] < math.inf or not others:
             continue
         partner = min(others, key=lambda j: abs(w[j] - w[i]))
-        if abs(w[partner] - w[i]) <= ROOTS.refined_together * (error[i] + error[partner]):
-            for _ in range(ROOTS.expansions):
+        if abs(w[partner] - w[i]) <= ROOTS.pair_distance * (error[i] + error[partner]):
+            for _ in range(ROOTS.parabolas_per_pair):
                 middle = (w[i] + w[partner]) / 2
                 if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
                     middle = complex(middle.real, 0.0)
@@ -119,7 +121,7 @@ def _separated(
 
 
 class _LocatedRoot(NamedTuple):
-    """A root with its error, and the place of its guess in the list."""
+    """A root w of D with its error; place: index of the guess from which it was refined."""
 
     w: complex
     error: float
@@ -127,27 +129,30 @@ class _LocatedRoot(NamedTuple):
 
 
 def _refined_all(guesses: list[tuple[complex, float]], determinant: ArmDeterminant) -> list[_LocatedRoot]:
-    """The root near each guess (w, reach of `_separated`); the conjugate of a root is not refined again."""
+    """The root near each guess (w, reach of `_separated`); the conjugate of a refined root is not refined
+    again.
+    """
     found: list[_LocatedRoot] = []
     for place, (w, reach) in enumerate(guesses):
         if place > 0 and w.imag != 0 and w == guesses[place - 1][0].conjugate():
             found.append(_LocatedRoot(found[-1].w.conjugate(), found[-1].error, place))
         else:
-            found.append(_LocatedRoot(*refined_root(w, determinant, reach), place))
+            found.append(_LocatedRoot(*refine_eigenvalue_and_error(w, determinant, reach), place))
     return found
 
 
 def _with_equal_roots(found: list[_LocatedRoot], determinant: ArmDeterminant) -> Array:
-    """Errors of roots, (n,); of two at the same root at least the distance of the next root, 2 |D'/D''|."""
+    """Errors of the roots, (n,). If two are one root of D, at least the distance 2 |D'/D''| of the next
+    root."""
     error = [root.error for root in found]
     for i, one in enumerate(found):
         for j in range(i + 1, len(found)):
             apart = abs(one.w - found[j].w)
-            if apart <= ROOTS.same_root * (error[i] + error[j]):
+            if apart <= ROOTS.same_root_distance * (error[i] + error[j]):
                 value = determinant.value(one.w)
                 second = abs(second_derivative(one.w, value.S, determinant))
                 next_root = 2 * abs(value.D_w) / max(second, EXPONENTS.least_divisor)
-                if apart < ROOTS.share_of_next * next_root:
+                if apart < ROOTS.same_root_fraction * next_root:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)
     return np.array(error, float)

@@ -1,1 +1,2 @@
-"""Certificates: no eigenvalue outside a box, none missed inside, no threshold between two forces."""
+"""Proofs about the spectrum of a uniform rod: a-priori box, counts of eigenvalues, covering of all
+crossings."""

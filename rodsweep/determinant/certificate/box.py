@@ -1,12 +1,12 @@
-"""An a-priori box that contains every transverse eigenvalue with Re w >= -depth.
+"""An a-priori box that contains every transverse eigenvalue of a uniform rod with Re w >= -depth.
 
 The inner product of the eigenproblem of Sec. VI with the eigenfunction, weighted by 1 for y and rho > 0 for
 theta, gives, with N^2 = |y|^2 + rho gamma3 |theta|^2 (L2 norms over the rod),
 
     w N^2 = -c2 |s|^2 - rho |theta'|^2 + (rho g - nu) <theta, s> - F <y, theta'>.
 
-With n^2 = (c2 |s|^2 + rho |theta'|^2)/N^2 the last two terms are at most a n N^2 in modulus, where
-a^2 = max(F^2/rho, (rho g - nu)^2/(c2 rho gamma3)), so that
+With n^2 = (c2 |s|^2 + rho |theta'|^2)/N^2 the last two terms are at most a n N^2 in modulus, where a^2 =
+max(F^2/rho, (rho g - nu)^2/(c2 rho gamma3)), so that
 
     Re w <= a n - n^2 <= a^2/4,   |Im w| <= a n,   and Re w >= -depth forces n^2 <= a n + depth.
 
@@ -22,43 +22,49 @@ from math import exp, inf, log, sqrt
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients, Rod
-from ..parameter_path import Path, changes, coefficients_at
+from ..parameter_path import Path, coefficient_derivatives, coefficients_at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoxSettings(CompiledSettings):
-    """Settings for the box of all eigenvalues."""
+    """Settings for the a-priori box of all eigenvalues."""
 
     padding: float = 0.01
-    """Padding of the box in units of the depth."""
+    """Length added to both bounds of the box, in units of the depth."""
     least_padding: float = 1e-6
-    """Padding of the box at depth 0, in 1/tau2; far below the smallest eigenvalue of a rod at rest, 12."""
+    """Length added to both bounds of the box, in 1/tau2; far below |w| of the first eigenvalue of a rod at
+    rest, 12."""
     margin: float = 0.01
-    """Relative excess of every bound, for rounding errors in the bound."""
+    """Relative excess of every bound, for the rounding errors of the bound itself."""
 
 
 BOX = BoxSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class QuietSettings:
-    """Settings for the disc about w = 0 without a zero of D."""
+class ZeroFreeDiscSettings:
+    """Settings for the disc about w = 0 in which D has no zero."""
 
-    departure: float = 0.5
-    """Bound of |D - 1| near w = 0, where D therefore has no zero; any bound below 1 would do."""
+    max_departure: float = 0.5
+    """Largest |D - 1| in the disc about w = 0. D has no zero where |D - 1| < 1, so any bound below 1 would
+    do."""
 
 
-QUIET = QuietSettings()
+ZERO_FREE_DISC = ZeroFreeDiscSettings()
 
 
 def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
-    """Bounds (max Re w, max |Im w|) of all eigenvalues with Re w >= -depth, depth >= 0; inf if unknown."""
-    return box_of(sqrt(squared_amplification(rod)), depth)
+    """Bounds (max Re w, max |Im w|), in 1/tau2, of all eigenvalues with Re w >= -depth, depth >= 0; inf
+    without a bound.
+    """
+    return box_from_amplification(sqrt(squared_amplification(rod)), depth)
 
 
 @compiled
-def box_of(a: float, depth: float) -> tuple[float, float]:
-    """`eigenvalue_box` from a, the square root of `squared_amplification`."""
+def box_from_amplification(a: float, depth: float) -> tuple[float, float]:
+    """Bounds (max Re w, max |Im w|) of all eigenvalues with Re w >= -depth; a: square root of
+    `squared_amplification`.
+    """
     n = (a + sqrt(a * a + 4 * depth)) / 2
     # Without the padding, F = 0 would make the box empty.
     pad = BOX.padding * depth + BOX.least_padding
@@ -67,7 +73,8 @@ def box_of(a: float, depth: float) -> tuple[float, float]:
 
 @lru_cache(maxsize=1)
 def squared_amplification(rod: Rod) -> float:
-    """The smallest a^2 over all weights rho; inf if no bound exists.
+    """The constant a^2 of the a-priori box, in its smallest value over all weights rho; inf if no bound
+    exists.
 
     For g > 0 the minimum is F^2 g/(nu + |F| sqrt(c2 gamma3)), in every limit. For g < 0 (a pull beyond the
     shear stiffness) rho g - nu has no zero, and gamma3 = 0 gives no bound.
@@ -84,16 +91,20 @@ def squared_amplification(rod: Rod) -> float:
 
 
 def squared_amplification_over(path: Path, start: float, stop: float) -> float:
-    """An upper bound of `squared_amplification` over all rods from start to stop; inf without a bound."""
+    """An upper bound of `squared_amplification` over all rods of a path with p from start to stop; inf
+    without a bound.
+    """
     ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
     return squared_amplification_between(ends[0], ends[1])
 
 
 @compiled
 def squared_amplification_between(first: Coefficients, last: Coefficients) -> float:
-    """An upper bound of `squared_amplification` between two rods on a path; inf without a bound.
+    """An upper bound of `squared_amplification` over all rods between two rods of a path; inf without a
+    bound.
 
-    Every factor used is monotone along a path, so the extremes are at the ends; nu g is not used.
+    Every factor of the bound is monotone along a path, so its extremes are at the two rods; nu g is not, and
+    not used.
     """
     load = max(abs(first.F), abs(last.F))
     # F passes 0 between loads of opposite signs.
@@ -114,40 +125,45 @@ def squared_amplification_between(first: Coefficients, last: Coefficients) -> fl
     return load**2 * least if least < inf else inf
 
 
-def quiet_radius(path: Path, start: float, stop: float, largest: float) -> float:
-    """A radius r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r and all p from start to stop."""
+def zero_free_radius(path: Path, start: float, stop: float, largest: float) -> float:
+    """A radius r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r and every p of a path from start to
+    stop.
+    """
     ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
     T = max(c2 + gamma3 for *_, c2, gamma3 in ends)
     X = max(c2 * gamma3 for *_, c2, gamma3 in ends)
-    bends = [changes(c, path.direction) for c in ends]
+    bends = [coefficient_derivatives(c, path.direction) for c in ends]
     # A function lies within (stop - start)^2/8 times its curvature of the chord between its ends.
     span = (stop - start) ** 2 / 8
     G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + span * max(abs(b.G2) for b in bends)
     pull = max(max(-F * (nu + F * c2) for F, nu, c2, _ in ends) + span * max(abs(b.N2) for b in bends), 0.0)
     if all(F >= 0 and nu + F * c2 >= 0 for F, nu, c2, _ in ends):
         pull = 0.0  # -F g is negative at the ends, and F and g are linear in p or constant
-    return _quiet(largest, T, X, G, pull)
+    return _zero_free_radius(largest, T, X, G, pull)
 
 
-def quiet_radius_of(coefficients: Coefficients, largest: float) -> float:
-    """A radius r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r, for a single rod."""
+def zero_free_radius_of_rod(coefficients: Coefficients, largest: float) -> float:
+    """A radius r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r, for one uniform rod."""
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
-    return _quiet(largest, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0))
+    return _zero_free_radius(largest, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0))
 
 
-def _quiet(r: float, T: float, X: float, G: float, pull: float) -> float:
-    """The first radius r of largest, largest/2, ...
+def _zero_free_radius(r: float, T: float, X: float, G: float, pull: float) -> float:
+    """The first of r, r/2, r/4, ... such that |D(i eta) - 1| < 1/2 for |eta| <= r; 0 if r underflows.
 
-    with |D(i eta) - 1| < 1/2 for |eta| <= r; 0 for underflow.
+    T, X, G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. pull: bound of -F g, at least 0.
     """
-    while _departure(r, T, X, G, pull) >= QUIET.departure:
+    while _departure(r, T, X, G, pull) >= ZERO_FREE_DISC.max_departure:
         r /= 2
     return r
 
 
 def _departure(r: float, T: float, X: float, G: float, pull: float) -> float:
-    """An upper bound of |D(i eta) - 1| for |eta| <= r; inf for a bound that is too large to be useful."""
+    """An upper bound of |D(i eta) - 1| for |eta| <= r; inf where it would be too large to be useful.
+
+    T, X, G, pull: as in `_zero_free_radius`.
+    """
     exponent = sqrt(pull + T * r + 2 * sqrt(r * (G + X * r)))
     if exponent > 1 + sqrt(pull):
         return inf

@@ -1,7 +1,7 @@
-"""All crossings of the imaginary axis along a path of rods, with a proof of completeness.
+"""All crossings of the imaginary axis along a path of uniform rods, with a proof of completeness.
 
 Along a path p -> rod a pair crosses where D(i eta; p) = 0, two real equations in (eta, p). The a-priori
-bounds leave a finite part of the (eta, p) plane (`first_boxes`), which is divided into boxes until each box
+bounds leave a finite region of the (eta, p) plane (`first_boxes`), which is divided into boxes until each box
 is
 
 * empty: with the centre c and half-widths (h_w, h_p) of the box, f = D exp(-L dw - K dp) is at most M in the
@@ -28,35 +28,36 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from ..exponents import EXPONENTS
-from ..parameter_path import changes, coefficients_at, determinant_along
+from ..parameter_path import coefficient_derivatives, coefficients_at, determinant_along
 from ..roots.newton import FAILED, LocatedZero, crossing_newton
-from .discs import DISCS, BidiscCentre, Pair, bound_on_bidisc, centre_at
+from .discs import DISCS, BidiscCentre, DerivativePair, bidisc_centre, bound_on_bidisc
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoxProofSettings(CompiledSettings):
-    """Settings for the proofs about one box, and for their number."""
+    """Settings for the proofs about one box of the (eta, p) plane, and for the number of boxes."""
 
-    largest_radius_share: float = 0.45
-    """Largest trial share t: half-width of a box over radius of the bidisc."""
-    next_radius_share: float = 0.6
-    """Ratio of the next trial share t to the present share."""
-    max_radius_shares: int = 30
-    """Maximum number of trial shares t, down to 2e-7."""
-    smallest_box: float = 1e-9
-    """Half-widths in units of eta and p below which a box is left open."""
+    first_radius_ratio: float = 0.45
+    """First trial ratio t of the half-width of a box to the radius of the bidisc on which D is bounded."""
+    radius_ratio_factor: float = 0.6
+    """Factor between one trial ratio t and the next."""
+    max_radius_ratios: int = 30
+    """Maximum number of trial ratios t, of which the last is 2e-7."""
+    min_half_width: float = 1e-9
+    """Half-widths of a box, in units of eta and |p|, below which an undecided box is left open instead of
+    divided."""
     max_boxes: int = 1_000_000
-    """Maximum number of boxes to examine; all others are left open."""
-    same_zero: float = 1.5
-    """Distance from the centre of a regular box, in half-widths, within which a known zero is the box's
-    zero."""
-    beside: float = 0.01
-    """Distance of a zero from the edge of a box, in half-widths, from which a neighbouring box finds the
-    zero."""
+    """Maximum number of boxes to examine; undecided boxes beyond it are left open."""
+    same_zero_distance: float = 1.5
+    """Distance of a zero from the centre of a regular box, in half-widths, within which a zero found before
+    is the one zero of this box."""
+    outside_distance: float = 0.01
+    """Distance of a zero outside a regular box from its edge, in half-widths, beyond which the zero is left
+    to the neighbouring box that contains it."""
     ranges: ClassVar = {
-        "largest_radius_share": (0.0, 1.0),
-        "next_radius_share": (0.0, 1.0),
-        "same_zero": (1.0, 2.0),
+        "first_radius_ratio": (0.0, 1.0),
+        "radius_ratio_factor": (0.0, 1.0),
+        "same_zero_distance": (1.0, 2.0),
     }
 
 
@@ -65,11 +66,12 @@ BOX_PROOF = BoxProofSettings()
 EMPTY = 0
 REGULAR = 1
 UNDECIDED = 2
-"""Result of examining a box: no zero, at most one zero in the doubled box, or no proof of either."""
+"""Outcomes of examining a box: EMPTY, no zero of D; REGULAR, at most one zero in the doubled box; UNDECIDED,
+no proof of either."""
 
 
 class Box(NamedTuple):
-    """A rectangle of the (eta, p) plane."""
+    """A rectangle of the (eta, p) plane: frequency eta on the imaginary axis, path variable p."""
 
     eta_from: float
     eta_to: float
@@ -78,8 +80,8 @@ class Box(NamedTuple):
 
 
 @compiled
-def distance_bound(value: complex, a: complex, b: complex) -> float:
-    """A lower bound of |value + x a + y b| over real x, y in [-1, 1]; 0 if no positive bound is found."""
+def distance_from_zero_bound(value: complex, a: complex, b: complex) -> float:
+    """A lower bound of |value + x a + y b| over all real x, y in [-1, 1]; 0 if no positive bound is found."""
     best = 0.0
     # The set is a parallelogram; a separating line is parallel to a side, or across the value.
     for normal in (value, 1j * a, 1j * b):
@@ -91,8 +93,10 @@ def distance_bound(value: complex, a: complex, b: complex) -> float:
 
 
 @compiled
-def mean_rates(centre: BidiscCentre) -> Pair:
-    """(L, K): d sqrt(z)/dw and d sqrt(z)/dp, averaged with the sizes of the two exponentials as weights."""
+def mean_growth_rates(centre: BidiscCentre) -> DerivativePair:
+    """(L, K): growth rates d sqrt(z)/dw and d sqrt(z)/dp, averaged over the two exponentials of D by their
+    sizes.
+    """
     root_plus = cmath.sqrt(centre.plus)
     root_minus = cmath.sqrt(centre.minus)
     # Removing the mean growth of the exponentials leaves a function that hardly changes over the box.
@@ -105,16 +109,18 @@ def mean_rates(centre: BidiscCentre) -> Pair:
 
 
 @compiled
-def remainder_fits(
-    centre: BidiscCentre, rates: Pair, half: tuple[float, float], room: float, power: int
+def is_remainder_below(
+    centre: BidiscCentre, rates: DerivativePair, half: tuple[float, float], room: float, power: int
 ) -> bool:
-    """Whether the Taylor remainder M t^2/(1 - t)^power of D over a box is proved below `room`.
+    """Whether the Taylor remainder M t^2/(1 - t)^power of D exp(-L dw - K dp) over a box is proved to be
+    below `room`.
 
-    t is a trial ratio of the box to the bidisc on which M bounds D. half: half-widths of the box.
+    t: trial ratio of the box to the bidisc on which M bounds the function. rates: (L, K). half: half-widths
+    of the box.
     """
-    t = BOX_PROOF.largest_radius_share
+    t = BOX_PROOF.first_radius_ratio
     last = math.inf
-    for _ in range(BOX_PROOF.max_radius_shares):
+    for _ in range(BOX_PROOF.max_radius_ratios):
         M = bound_on_bidisc(centre, rates, (half[0] / t, half[1] / t))
         rest = M * t * t / (1 - t) ** power
         if rest < room:
@@ -123,7 +129,7 @@ def remainder_fits(
         if rest > last:
             return False
         last = rest
-        t *= BOX_PROOF.next_radius_share
+        t *= BOX_PROOF.radius_ratio_factor
     return False
 
 
@@ -131,21 +137,23 @@ def remainder_fits(
 def examine_box(
     w: complex, coefficients: Coefficients, direction: Coefficients, half: tuple[float, float]
 ) -> tuple[int, float, float]:
-    """(EMPTY, REGULAR or UNDECIDED, cost in eta, cost in p) of the box about w with half-widths `half`.
+    """(EMPTY, REGULAR or UNDECIDED, cost in eta, cost in p) of the box about w = i eta with half-widths
+    `half`.
 
-    Costs are changes of the exponents over an undecided box in each variable; 0 for other boxes.
+    Cost: change of the exponents of D across an undecided box in this variable, by which the variable to
+    divide is chosen; 0 for other boxes.
     """
     D, D_w, D_p, S, noise = determinant_along(w, coefficients, direction)
-    centre = centre_at(w, coefficients, changes(coefficients, direction), S)
-    mean = mean_rates(centre)
-    rounding = DISCS.rounding * noise
+    centre = bidisc_centre(w, coefficients, coefficient_derivatives(coefficients, direction), S)
+    mean = mean_growth_rates(centre)
+    rounding = DISCS.rounding_over_noise * noise
     if abs(D) > 2 * rounding:
         # The logarithmic derivatives are best where one exponential dominates, the mean where both matter.
         for rates in ((D_w / D, D_p / D), mean):
             a = 1j * (D_w - rates[0] * D) * half[0]
             b = (D_p - rates[1] * D) * half[1]
-            room = DISCS.clearance * distance_bound(D, a, b) - rounding
-            if room > 0 and remainder_fits(centre, rates, half, room, 1):
+            room = DISCS.clearance * distance_from_zero_bound(D, a, b) - rounding
+            if room > 0 and is_remainder_below(centre, rates, half, room, 1):
                 return EMPTY, 0.0, 0.0
     # In the doubled box each derivative of f changes by at most 3 M t^2/(1 - t)^2.
     a = 2j * (D_w - mean[0] * D) * half[0]
@@ -156,15 +164,15 @@ def examine_box(
         least = abs((a * b.conjugate()).imag) / (abs(a) + abs(b))
         room = (DISCS.clearance * least - rounding) / 3
         double = (2 * half[0], 2 * half[1])
-        if room > 0 and remainder_fits(centre, mean, double, room, 2):
+        if room > 0 and is_remainder_below(centre, mean, double, room, 2):
             return REGULAR, 0.0, 0.0
-    in_eta, in_p = box_costs(centre, half)
+    in_eta, in_p = exponent_changes(centre, half)
     return UNDECIDED, in_eta, in_p
 
 
 @compiled
-def box_costs(centre: BidiscCentre, half: tuple[float, float]) -> tuple[float, float]:
-    """Changes of the exponents over a box in eta and in p; half: half-widths of the box."""
+def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[float, float]:
+    """Changes of the exponents of D across a box in eta and in p; half: half-widths of the box."""
     F, nu, c2, gamma3 = centre.coefficients
     size = abs(centre.w)
     root_plus = math.sqrt(max(abs(centre.plus), 1.0))
@@ -175,15 +183,18 @@ def box_costs(centre: BidiscCentre, half: tuple[float, float]) -> tuple[float, f
     in_p = max(abs(plus[1]) / root_plus, abs(minus[1]) / root_minus) * half[1] / 2
     stiffness = abs((nu + F * c2) * nu) + c2 * gamma3 * size
     # Besides the exponents the radicand of P must not change much, for the bounds on the bidisc.
-    factor = abs(centre.changes.G1) + abs(centre.changes.X1) * size
+    factor = abs(centre.derivatives.G1) + abs(centre.derivatives.X1) * size
     return max(in_w, half[0] / size), max(in_p, factor * half[1] / max(stiffness, EXPONENTS.least_divisor))
 
 
 @compiled
-def cover(
+def cover_with_boxes(
     first: Array, origin: Coefficients, direction: Coefficients
 ) -> tuple[list[LocatedZero], list[Box], int]:
-    """(zeros of D(i eta; p), open boxes, number of examined boxes) in the boxes `first`, shape (n, 4)."""
+    """(zeros of D(i eta; p), boxes left open, number of examined boxes) in the boxes `first`, (n, 4).
+
+    origin, direction: coefficients at p = 0 and their derivative by p.
+    """
     stack = [Box(first[i, 0], first[i, 1], first[i, 2], first[i, 3]) for i in range(len(first))]
     # numba infers the type of an empty list from its element.
     zeros = [FAILED for _ in range(0)]
@@ -203,13 +214,15 @@ def cover(
             zero = crossing_newton(eta, p, origin, direction, half)
             away = _half_widths_away(zero, eta, p, half)
             if away <= 2:  # false if Newton's method failed, which returns nan
-                known = away > 1 + BOX_PROOF.beside  # outside the box: a neighbouring box finds the same zero
+                known = (
+                    away > 1 + BOX_PROOF.outside_distance
+                )  # outside the box: a neighbouring box finds the same zero
                 for other in zeros:  # the doubled box contains at most one zero
-                    known = known or _half_widths_away(other, eta, p, half) <= BOX_PROOF.same_zero
+                    known = known or _half_widths_away(other, eta, p, half) <= BOX_PROOF.same_zero_distance
                 if not known:
                     zeros.append(zero)
                 continue
-        smallest = BOX_PROOF.smallest_box
+        smallest = BOX_PROOF.min_half_width
         if examined > BOX_PROOF.max_boxes or (half[0] < smallest * eta and half[1] < smallest * abs(p)):
             left.append(box)
         elif cost_w >= cost_p:

@@ -1,6 +1,7 @@
-"""Upper bounds of |D(w, p) exp(-L (w - c) - K (p - p_c))| over a bidisc, for Cauchy's estimate.
+"""Upper bounds of |D(w, p) exp(-L (w - c) - K (p - p_c))| over a bidisc about (c, p_c), for Cauchy's
+estimate.
 
-p is the variable of a path of rods (`parameter_path`); the disc of p has radius 0 for a single rod.
+p is the path variable (`parameter_path`); for a single rod the disc of p has radius 0.
 """
 
 import cmath
@@ -12,63 +13,66 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from ..exponents import EXPONENTS
-from ..parameter_path import CoefficientDerivatives, root_changes
-from ..value import branches
+from ..parameter_path import CoefficientDerivatives, exponent_slopes
+from ..value import exponent_derivatives
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiscSettings(CompiledSettings):
-    """Settings for bounds on discs and bidiscs."""
+    """Settings for upper bounds of D over discs in w and bidiscs in (w, p)."""
 
-    rounding: float = 4.0
-    """Bound of the rounding error of D, in units of its noise; 20 000 unfavourable values had at most 0.7."""
+    rounding_over_noise: float = 4.0
+    """Bound of the rounding error of D, in units of its `noise`; the worst of 20 000 unfavourable values had
+    0.7."""
     clearance: float = 0.9
-    """Largest allowed proved change, in units of |D|."""
-    away_from_zero: float = 0.5
-    """Largest relative change x of z over a disc at which sqrt(z) is expanded; the remainder, like x^2/(1 -
-    x), is small up to here."""
-    largest_change: float = 0.98
-    """Largest relative change of a factor of P^2 over a disc for which a bound is computed."""
+    """Largest change of D, in units of |D|, that a proof may allow for: below 1, so that D cannot vanish."""
+    max_expansion_change: float = 0.5
+    """Largest relative change x of z over a disc at which sqrt(z) is expanded about its centre. The
+    remainder, like x^2/(1 - x), is small up to here."""
+    max_factor_change: float = 0.98
+    """Largest relative change of each of the two factors of P^2 over a disc; a larger disc has no bound."""
     ranges: ClassVar = {
         "clearance": (0.0, 1.0),
-        "away_from_zero": (0.0, 1.0),
-        "largest_change": (0.0, 1.0),
+        "max_expansion_change": (0.0, 1.0),
+        "max_factor_change": (0.0, 1.0),
     }
 
 
 DISCS = DiscSettings()
 
 
-Pair = tuple[complex, complex]
-"""A derivative with respect to w and a derivative with respect to p."""
+DerivativePair = tuple[complex, complex]
+"""(derivative by w, derivative by p)."""
 Radii = tuple[float, float]
-"""Radii of a bidisc in w and in p."""
+"""(radius in w, radius in p) of a bidisc; also a pair of real bounds."""
 
 
 class BidiscCentre(NamedTuple):
-    """The centre of a bidisc in (w, p), with the exponents of D there.
+    """The centre (w, p) of a bidisc, with the exponents of D there.
 
-    w; the rod and its change; the scale S; P, z+ and z-; slopes (dz/dw, dz/dp) of z+ and of z-.
+    coefficients: of the rod at p. derivatives: of these coefficients by p. S: scale of D. P, plus, minus: P,
+    z+ and z-. slopes_plus, slopes_minus: (dz/dw, dz/dp) of z+ and of z-.
     """
 
     w: complex
     coefficients: Coefficients
-    changes: CoefficientDerivatives
+    derivatives: CoefficientDerivatives
     S: float
     P: complex
     plus: complex
     minus: complex
-    slopes_plus: Pair
-    slopes_minus: Pair
+    slopes_plus: DerivativePair
+    slopes_minus: DerivativePair
 
 
 @compiled
-def centre_at(
+def bidisc_centre(
     w: complex, coefficients: Coefficients, change: CoefficientDerivatives, S: float
 ) -> BidiscCentre:
-    """The centre of a bidisc at w, for the rod `coefficients` with derivatives `change` along the path."""
-    at = branches(w, coefficients)
-    along_plus, along_minus = root_changes(w, at, change)
+    """The centre of a bidisc at w, for the rod `coefficients`; change: derivatives by p. S: scale of D at
+    w."""
+    at = exponent_derivatives(w, coefficients)
+    along_plus, along_minus = exponent_slopes(w, at, change)
     drag = coefficients.c2 + coefficients.gamma3
     slopes_plus = (drag + 2 * at.P_w, along_plus)
     slopes_minus = (drag - 2 * at.P_w, along_minus)
@@ -76,19 +80,24 @@ def centre_at(
 
 
 @compiled
-def bend_of_root(root: complex, bend: float, x: float) -> float:
-    """Bound of the nonlinear part of sqrt(z). x: total change of z over |z|. bend: nonlinear change of z."""
+def nonlinear_root_bound(root: complex, bend: float, x: float) -> float:
+    """Bound of the nonlinear part of the change of sqrt(z) = `root`.
+
+    x: bound of the total change of z over |z|. bend: bound of the nonlinear part of the change of z.
+    """
     return bend / (2 * abs(root)) + abs(root) * x * x / (8 * (1 - x))
 
 
 @compiled
-def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: float, S: float) -> Radii:
-    """Bounds of |E(z)| and |dE/dz| over a bidisc, both times |exp(-L dw - K dp)| exp(-S).
+def bounds_of_E_on_bidisc(
+    z: complex, slopes: DerivativePair, rates: DerivativePair, radii: Radii, bend: float, S: float
+) -> Radii:
+    """Bounds of |E(z)| and |dE/dz| over a bidisc about z, both times |exp(-L dw - K dp)| exp(-S).
 
-    slopes: (dz/dw, dz/dp). rates: (L, K). bend: bound of the nonlinear change of z. The smaller of two bounds
-    of the exponents +-sqrt(z) - L dw - K dp applies: a bound from |sqrt(z)| alone, and a bound from the
-    Taylor polynomial of sqrt(z) if the disc is away from z = 0. Then |E| <= exp(Re sqrt z)/2 and
-    |dE/dz| <= cosh(Re sqrt z)/24; closed forms give smaller bounds for large z.
+    slopes: (dz/dw, dz/dp). rates: (L, K). bend: bound of the nonlinear change of z. Each exponent +-sqrt(z) -
+    L dw - K dp has two bounds, of which the smaller applies: one from |sqrt(z)| alone, one from the Taylor
+    polynomial of sqrt(z) if the disc is away from z = 0. Then |E| <= exp(Re sqrt z)/2 and |dE/dz| <=
+    cosh(Re sqrt z)/24; closed forms give smaller bounds for large z.
     """
     root = cmath.sqrt(z)
     drift = abs(rates[0]) * radii[0] + abs(rates[1]) * radii[1]
@@ -97,10 +106,10 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
     crude = math.sqrt(max((abs(z) + z.real) / 2 + change, 0.0)) + drift
     grow = crude
     decay = crude
-    if change < DISCS.away_from_zero * abs(z):
+    if change < DISCS.max_expansion_change * abs(z):
         in_w = slopes[0] / (2 * root)
         in_p = slopes[1] / (2 * root)
-        curve = bend_of_root(root, bend, change / abs(z))
+        curve = nonlinear_root_bound(root, bend, change / abs(z))
         with_rates = abs(in_w - rates[0]) * radii[0] + abs(in_p - rates[1]) * radii[1]
         against = abs(in_w + rates[0]) * radii[0] + abs(in_p + rates[1]) * radii[1]
         grow = min(grow, root.real + with_rates + curve)
@@ -121,12 +130,12 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
 
 
 @compiled
-def bound_together(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
-    """`bound_on_bidisc` for nearly equal exponents, from |E(z+) - E(z-)| <= 4 |P| max |dE/dz|."""
+def bound_for_equal_exponents(centre: BidiscCentre, rates: DerivativePair, radii: Radii) -> float:
+    """`bound_on_bidisc` for nearly equal z+ and z-, from |E(z+) - E(z-)| <= 4 |P| max |dE/dz|."""
     w = centre.w
     S = centre.S
     F, nu, c2, gamma3 = centre.coefficients
-    T1, N1, N2, G1, G2, X1, X2 = centre.changes
+    T1, N1, N2, G1, G2, X1, X2 = centre.derivatives
     rho, sigma = radii
     g = nu + F * c2
     X = c2 * gamma3
@@ -136,7 +145,7 @@ def bound_together(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
     dX = (abs(X1) + abs(X2) / 2 * sigma) * sigma
     largest = far * (abs(g * nu + X * w) + dG + X * rho + dX * far)
     bend = abs(T1) * sigma * rho + abs(N2) / 2 * sigma * sigma + 2 * math.sqrt(largest)
-    E, E1 = terms_on_bidisc(T * w - F * g, (complex(T), T1 * w - N1), rates, radii, bend, S)
+    E, E1 = bounds_of_E_on_bidisc(T * w - F * g, (complex(T), T1 * w - N1), rates, radii, bend, S)
     drift = abs(rates[0]) * rho + abs(rates[1]) * sigma
     steep = abs(g * nu + 2 * X * w) + dG + 2 * (X * rho + dX * far)
     still = math.exp(min(drift - S, EXPONENTS.largest_exponent))
@@ -144,18 +153,18 @@ def bound_together(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
 
 
 @compiled
-def bound_on_bidisc(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
-    """Bound of |D exp(-L dw - K dp)| exp(-S) over the bidisc about (w, p)."""
+def bound_on_bidisc(centre: BidiscCentre, rates: DerivativePair, radii: Radii) -> float:
+    """An upper bound of |D exp(-L dw - K dp)| exp(-S) over the bidisc about `centre`; rates: (L, K)."""
     F, nu, c2, _ = centre.coefficients
-    apart = bound_apart(centre, rates, radii)
+    apart = bound_for_distinct_exponents(centre, rates, radii)
     if F * (nu + F * c2) < 0:  # both exponentials grow at similar rates; separate bounds do not cancel
-        return min(apart, bound_together(centre, rates, radii))
+        return min(apart, bound_for_equal_exponents(centre, rates, radii))
     return apart
 
 
 @compiled
-def bound_apart(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
-    """`bound_on_bidisc` for distinct exponents, from separate bounds of E(z+) and E(z-); inf if the bidisc is
+def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, radii: Radii) -> float:
+    """`bound_on_bidisc` for distinct z+ and z-, from separate bounds of E(z+) and E(z-); inf if the bidisc is
     too large.
 
     Over the bidisc, w changes by a factor 1 + e1 and g nu + c2 gamma3 w by a factor 1 + e2, with bounds of
@@ -165,7 +174,7 @@ def bound_apart(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
     S = centre.S
     P = centre.P
     F, nu, c2, gamma3 = centre.coefficients
-    T1, _, N2, G1, G2, X1, X2 = centre.changes
+    T1, _, N2, G1, G2, X1, X2 = centre.derivatives
     rho, sigma = radii
     g = nu + F * c2
     X = c2 * gamma3
@@ -176,7 +185,7 @@ def bound_apart(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
     e1 = rho / abs(w)
     moved = dG + X * rho + dX * (abs(w) + rho)
     e2 = moved / base if base > moved else 1.0
-    if e1 > DISCS.largest_change or (moved > 0 and e2 > DISCS.largest_change):
+    if e1 > DISCS.max_factor_change or (moved > 0 and e2 > DISCS.max_factor_change):
         return math.inf
     if moved == 0:
         e2 = 0.0
@@ -190,7 +199,7 @@ def bound_apart(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
         bend += 2 * abs(P) * (majorant + second * sigma / base / 2)
         least = abs(P) * math.sqrt((1 - e1) * (1 - e2))
         steepest += (abs(g * nu + 2 * X * w) + dG + 2 * (X * rho + dX * (abs(w) + rho))) / least
-    terms = terms_on_bidisc(centre.plus, centre.slopes_plus, rates, radii, bend, S)[0]
-    terms += terms_on_bidisc(centre.minus, centre.slopes_minus, rates, radii, bend, S)[0]
+    terms = bounds_of_E_on_bidisc(centre.plus, centre.slopes_plus, rates, radii, bend, S)[0]
+    terms += bounds_of_E_on_bidisc(centre.minus, centre.slopes_minus, rates, radii, bend, S)[0]
     drift = abs(rates[0]) * rho + abs(rates[1]) * sigma
     return math.exp(min(drift - S, EXPONENTS.largest_exponent)) + (abs(w) + rho) / 2 * steepest * terms

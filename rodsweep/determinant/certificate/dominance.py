@@ -1,4 +1,4 @@
-"""Discs in which one exponential of D dominates: D has no zero there, and the phase of D is known.
+"""Discs of w in which one exponential of D dominates: D has no zero there, and the phase of D is known.
 
 With sqrt(z+) the root of larger real part, D (`rodsweep.determinant.value`) is
 
@@ -6,9 +6,9 @@ With sqrt(z+) the root of larger real part, D (`rodsweep.determinant.value`) is
     A e = 1 + (w z+'/(4 z+)) (exp(-sqrt z+) - 2) + (w/2) z-' E(z-).
 
 Over a disc |dw| <= rho with |e| < 1 and Re sqrt(z+) > Re sqrt(z-) the phase of D is arg A + arg(1 + e). The
-term arg(1 + e) stays within a right angle and is needed only at both ends of a chain of such discs. All
-bounds are relative to exp(L dw), L = z+'/(2 sqrt z+), as in `rodsweep.determinant.certificate.discs`. Far
-from the eigenvalues, which lie near the negative real axis, the radius may be a quarter of |w|.
+term arg(1 + e) stays within a right angle and is needed only at the two ends of a chain of such discs. All
+bounds are relative to exp(L dw), L = z+'/(2 sqrt z+), as in `rodsweep.determinant.certificate.discs`.
+Eigenvalues lie near the negative real axis; far from there the radius may be a quarter of |w|.
 """
 
 import cmath
@@ -19,24 +19,27 @@ from typing import ClassVar, NamedTuple
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
-from ..value import branches, scaled_determinant
-from .discs import DISCS, bend_of_root, terms_on_bidisc
+from ..value import exponent_derivatives, scaled_determinant
+from .discs import DISCS, bounds_of_E_on_bidisc, nonlinear_root_bound
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DominanceSettings(CompiledSettings):
-    """Settings for discs in which one exponential dominates."""
+    """Settings for discs in which one exponential of D dominates."""
 
     first_radius: float = 0.25
-    """Radius of the first trial disc, in units of the distance to the nearest branch point."""
-    halvings: int = 2
-    """Number of further trial discs, each half as large."""
+    """Radius of the first trial disc, in units of the distance of its edge point from the nearest branch
+    point of z+-."""
+    max_halvings: int = 2
+    """Maximum number of halvings of a trial disc before dominance counts as not proved."""
     overlap: float = 1e-3
-    """Relative excess of a disc's radius over half its step, so that rounding leaves no gap between discs."""
+    """Relative excess of a disc's radius over half the step that it covers, so that rounding leaves no gap
+    between discs."""
     end_rounding: float = 1e-15
-    """Relative distance from the end of a stretch that is rounding error: some units in the last place."""
+    """Relative distance from the end of a segment that is rounding error: a few units in the last place."""
     largest_factor_change: float = 0.5
-    """Largest relative change of each factor of A over a disc; keeps every phase within a right angle."""
+    """Largest relative change of each factor of A over a disc; the phase of each factor then stays within a
+    right angle."""
     ranges: ClassVar = {"first_radius": (0.0, 1.0), "largest_factor_change": (0.0, 1.0)}
 
 
@@ -44,7 +47,7 @@ DOMINANCE = DominanceSettings()
 
 
 class Exponent(NamedTuple):
-    """z+ or z- at a point w, with slope dz/dw and root sqrt z."""
+    """z+ or z- at a point w, with slope dz/dw and root sqrt(z)."""
 
     z: complex
     slope: complex
@@ -53,8 +56,8 @@ class Exponent(NamedTuple):
 
 @compiled
 def _ordered(w: complex, coefficients: Coefficients) -> tuple[complex, Exponent, Exponent]:
-    """(P, dominant exponent, recessive exponent) at w."""
-    P, P_w, _, plus, minus = branches(w, coefficients)
+    """(P, dominant exponent, recessive exponent) at w; the dominant one has the larger Re sqrt(z)."""
+    P, P_w, _, plus, minus = exponent_derivatives(w, coefficients)
     drag = coefficients.c2 + coefficients.gamma3
     of_plus = Exponent(plus, drag + 2 * P_w, cmath.sqrt(plus))
     of_minus = Exponent(minus, drag - 2 * P_w, cmath.sqrt(minus))
@@ -65,9 +68,10 @@ def _ordered(w: complex, coefficients: Coefficients) -> tuple[complex, Exponent,
 
 @compiled
 def _bend_and_turn(w: complex, rho: float, P: complex, coefficients: Coefficients) -> tuple[float, float]:
-    """Bounds over the disc of (nonlinear part of z+-, change of z+-'); inf if the disc is too large.
+    """Bounds over the disc |dw| <= rho of (nonlinear part of z+-, change of dz+-/dw); inf if the disc is too
+    large.
 
-    z = T w - F g +- 2 P, so only P has a nonlinear part, which 2 - sqrt(1 - e) majorises.
+    z+- = T w - F g +- 2 P, so only P has a nonlinear part, which 2 - sqrt(1 - e) majorises.
     """
     F, nu, c2, gamma3 = coefficients
     X = c2 * gamma3
@@ -85,9 +89,9 @@ def _bend_and_turn(w: complex, rho: float, P: complex, coefficients: Coefficient
 
 
 @compiled
-def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
-    """Whether |e| < 1 in D = A (1 + e) is proved on the disc of radius rho about w: one exponential then
-    dominates D.
+def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
+    """Whether one exponential is proved to dominate D = A (1 + e), |e| < 1, on the disc of radius rho about
+    w.
     """
     P, (z, slope, root), (z_other, slope_other, root_other) = _ordered(w, coefficients)
     if P == 0 or root.real <= root_other.real:
@@ -99,14 +103,14 @@ def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
         return False
     L = slope / (2 * root)
     drift = abs(L) * rho
-    curve = bend_of_root(root, bend, x)
+    curve = nonlinear_root_bound(root, bend, x)
     # If the recessive exponent changes little, the two are compared by their rates; otherwise by crude
     # extremes.
     lowest = root.real - drift - curve
     change_other = abs(slope_other) * rho + bend
     highest = math.sqrt(max((abs(z_other) + z_other.real) / 2 + change_other, 0.0))
     if change_other < DOMINANCE.largest_factor_change * abs(z_other):
-        curve_other = bend_of_root(root_other, bend, change_other / abs(z_other))
+        curve_other = nonlinear_root_bound(root_other, bend, change_other / abs(z_other))
         together = abs(slope_other / (2 * root_other) - L) * rho + curve_other
         if not root.real - curve > root_other.real + together:
             return False
@@ -120,31 +124,37 @@ def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     rest = still + far * (abs(slope) + turn) / (4 * (abs(z) - change)) * (
         2 * still + math.exp(2 * drift + curve - 2 * S)
     )
-    E = terms_on_bidisc(z_other, (slope_other, 0j), (L, 0j), (rho, 0.0), bend, S)[0]
+    E = bounds_of_E_on_bidisc(z_other, (slope_other, 0j), (L, 0j), (rho, 0.0), bend, S)[0]
     rest += far / 2 * (abs(slope_other) + turn) * E
     return rest < DISCS.clearance * A
 
 
 @compiled
 def dominant_factors(w: complex, coefficients: Coefficients) -> tuple[complex, complex]:
-    """(w z'/z, sqrt z) of the dominant exponential at w: factor and exponent of A in D = A (1 + e)."""
+    """(w z'/z, sqrt z) of the dominant exponential A of D at w, up to the factor 1/4: factor and exponent of
+    A.
+    """
     _, dominant, _ = _ordered(w, coefficients)
     return w * dominant.slope / dominant.z, dominant.root
 
 
 @compiled
 def _phase_beside(w: complex, factors: tuple[complex, complex], coefficients: Coefficients) -> float:
-    """arg(1 + e) = arg(D/A) at w; factors: `dominant_factors` at w."""
+    """arg(1 + e) = arg(D/A) at w, the phase of D beside the phase of A. factors: `dominant_factors` at w."""
     D, _, _, _ = scaled_determinant(w, coefficients)
     factor, root = factors
     return cmath.phase(D / (factor * cmath.exp(complex(0.0, root.imag))))
 
 
 @compiled
-def dominated_stretch(
+def phase_over_dominated_segment(
     start: complex, direction: complex, length: float, coefficients: Coefficients
 ) -> tuple[float, float, int]:
-    """(length of the stretch from `start` with proved dominance, change of arg D over it, disc count)."""
+    """(length of the segment from `start` on which dominance is proved, change of arg D over it, number of
+    discs).
+
+    direction: unit vector of the segment. length: its greatest length.
+    """
     F, nu, c2, gamma3 = coefficients
     X = c2 * gamma3
     gn = (nu + F * c2) * nu
@@ -161,10 +171,10 @@ def dominated_stretch(
         # A disc covers the step with its diameter.
         rho = min(rho, (length - t) / 2)
         found = False
-        for _ in range(DOMINANCE.halvings + 1):
+        for _ in range(DOMINANCE.max_halvings + 1):
             discs += 1
             # The disc is a little wider than the step, so that rounding leaves no gap between discs.
-            if dominated(w + direction * rho, (1 + DOMINANCE.overlap) * rho, coefficients):
+            if is_dominated(w + direction * rho, (1 + DOMINANCE.overlap) * rho, coefficients):
                 found = True
                 break
             rho /= 2

@@ -1,7 +1,8 @@
-"""The first boxes of a covering: the part of the (eta, p) plane outside which nothing crosses.
+"""The first boxes of a covering of the (eta, p) plane, outside which the a-priori bounds exclude every
+crossing.
 
-The a-priori bounds (`box`) hold on an interval of the path. Intervals are so short that no coefficient
-changes much over one of them.
+The a-priori bounds (`box`) hold on an interval of the path. Intervals of p are so short that no coefficient
+changes much over an interval.
 """
 
 import math
@@ -11,60 +12,66 @@ import numpy as np
 
 from ...arrays import Array
 from ..parameter_path import Path, coefficients_at
-from .box import BOX, quiet_radius, squared_amplification_over
+from .box import BOX, squared_amplification_over, zero_free_radius
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoveringSettings:
-    """Settings for the first boxes of a covering."""
+    """Settings for the first boxes of a covering of the (eta, p) plane."""
 
-    slabs: int = 8
-    """Minimum number of initial intervals of p."""
-    first_ratio: float = 4.0
-    """Ratio of the upper to the lower end of the initial boxes in eta."""
-    nu_step: float = 0.5
-    """Largest decrease of nu over an initial interval, in units of nu."""
-    least_step: float = 1e-6
-    """Length of an initial interval near p = 0, where drags and compliances double, in units of the first
-    length."""
-    last_step: float = 1e-3
-    """Length of a last interval, in units of its predecessor, that is joined to its predecessor."""
+    min_intervals: int = 8
+    """Minimum number of intervals of p into which the path is divided."""
+    max_eta_ratio: float = 4.0
+    """Largest ratio of the upper to the lower end of a first box in eta."""
+    max_nu_decrease: float = 0.5
+    """Largest decrease of nu over an interval of p, in units of nu at its start."""
+    min_interval: float = 1e-6
+    """Shortest interval, in units of the longest, near p = 0, where each interval doubles a drag or
+    compliance p."""
+    min_last_interval: float = 1e-3
+    """Shortest last interval of p, in units of the interval before it; a shorter one is merged with the
+    interval before it."""
     padding: float = 1e-6
-    """Added to the upper bound of eta, in 1/tau2: the bound is 0 at F = 0."""
+    """Length added to the upper bound of eta, in 1/tau2, because the bound is 0 at F = 0."""
 
 
 COVERING = CoveringSettings()
 
 
-def slabs(path: Path, start: float, stop: float) -> list[tuple[float, float]]:
-    """Intervals of p from start to stop; in each, nu at most halves, a drag or compliance at most doubles."""
+def path_intervals(path: Path, start: float, stop: float) -> list[tuple[float, float]]:
+    """Intervals (start, end) of p; over each interval nu at most halves, and a drag or compliance at most
+    doubles.
+    """
     edges = [start]
-    width = (stop - start) / COVERING.slabs
+    width = (stop - start) / COVERING.min_intervals
     while edges[-1] < stop:
         p = edges[-1]
         step = width
         nu = coefficients_at(p, path.origin, path.direction).nu
         slope = path.direction.nu
         if slope < 0:  # the rod is crushed at nu = 0
-            step = min(step, COVERING.nu_step * nu / -slope)
+            step = min(step, COVERING.max_nu_decrease * nu / -slope)
         if path.name != "F":  # drag and compliances vary over decades
-            step = min(step, max(p, COVERING.least_step * width))
+            step = min(step, max(p, COVERING.min_interval * width))
         end = p + step
-        edges.append(stop if stop - end < COVERING.last_step * step else end)
+        edges.append(stop if stop - end < COVERING.min_last_interval * step else end)
     return list(zip(edges[:-1], edges[1:], strict=True))
 
 
 def first_boxes(path: Path, start: float, stop: float) -> Array | None:
-    """Boxes that contain every crossing with p from start to stop, shape (n, 4); None without a bound."""
+    """Boxes (eta_from, eta_to, p_from, p_to) that contain every crossing with p from start to stop, (n, 4).
+
+    None without an a-priori bound.
+    """
     boxes = []
-    for a, b in slabs(path, start, stop):
+    for a, b in path_intervals(path, start, stop):
         top = (1 + BOX.margin) * squared_amplification_over(path, a, b) + COVERING.padding
         if not math.isfinite(top):
             return None
-        low = quiet_radius(path, a, b, top)
+        low = zero_free_radius(path, a, b, top)
         if low == 0.0:
             return None
-        count = max(1, math.ceil(math.log(top / low) / math.log(COVERING.first_ratio)))
+        count = max(1, math.ceil(math.log(top / low) / math.log(COVERING.max_eta_ratio)))
         edges = np.geomspace(low, top, count + 1)
         boxes += [(edges[i], edges[i + 1], a, b) for i in range(count)]
     return np.array(boxes).reshape(-1, 4)

@@ -1,4 +1,4 @@
-"""The reach of a node: the radius of a disc about a point within which D has no zero.
+"""The reach of a node: the radius of a disc about a point w within which D is proved to have no zero.
 
 About a node c the function f(w) = D(w) exp(-L (w - c)), L = D'(c)/D(c), has f'(c) = 0, so Cauchy's estimate
 on the disc of radius rho, where |f| <= M, gives
@@ -20,23 +20,23 @@ from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from ..exponents import EXPONENTS
 from ..parameter_path import CoefficientDerivatives
-from ..value import branches, scaled_determinant
-from .discs import DISCS, bound_on_bidisc, centre_at
+from ..value import exponent_derivatives, scaled_determinant
+from .discs import DISCS, bidisc_centre, bound_on_bidisc
 
 ZERO_CHANGES = CoefficientDerivatives(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-"""Zero changes along a path, for bounds of a single rod."""
+"""Derivatives of the coefficients along a path, all 0: bounds then apply to a single rod."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReachSettings(CompiledSettings):
-    """Settings for the disc about a node."""
+    """Settings for the disc about a node on which D is bounded."""
 
     branch_distance: float = 3.0
-    """Distance to the nearest branch point in units of the radius of a disc, at least."""
+    """Least distance of a node from the nearest branch point, in units of the radius of its disc."""
     factor_change: float = 0.4
-    """Largest relative change of z+- over a disc, for which its exponents change by order one."""
-    no_root: float = 1e-3
-    """Modulus of z+- below which its root does not limit the radius of a disc."""
+    """Largest relative change of z+- over a disc, so that the exponents of D change by order one."""
+    min_root_modulus: float = 1e-3
+    """|z+-| below which sqrt(z+-) does not limit the radius of a disc."""
     ranges: ClassVar = {"branch_distance": (1.0, math.inf)}
 
 
@@ -44,7 +44,7 @@ REACH = ReachSettings()
 
 
 class ReachNode(NamedTuple):
-    """A point w with D exp(-S), L = D'/D, and the reach: the distance within which D has no zero."""
+    """A point w with D exp(-S), L = D'/D, and the reach: the distance from w within which D has no zero."""
 
     w: complex
     D: complex
@@ -53,10 +53,14 @@ class ReachNode(NamedTuple):
 
 
 @compiled
-def radius(w: complex, coefficients: Coefficients, L: complex, S: float) -> float:
-    """Radius of a disc about w that avoids branch points and over which exponents change by order one."""
+def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -> float:
+    """Radius of a disc about w that avoids branch points and over which the exponents of D change by order
+    one.
+
+    L: D'/D at w. S: scale of D at w.
+    """
     F, nu, c2, gamma3 = coefficients
-    _, P1, P2, plus, minus = branches(w, coefficients)
+    _, P1, P2, plus, minus = exponent_derivatives(w, coefficients)
     stiffness = abs((nu + F * c2) * nu + c2 * gamma3 * w)
     rho = abs(w) / REACH.branch_distance
     if c2 * gamma3 > 0:
@@ -68,7 +72,7 @@ def radius(w: complex, coefficients: Coefficients, L: complex, S: float) -> floa
         root = cmath.sqrt(z)
         slack = S - root.real + 1
         rho = min(rho, REACH.factor_change * max(abs(z), 2.0) / max(abs(slope), EXPONENTS.least_divisor))
-        if abs(z) > REACH.no_root:
+        if abs(z) > REACH.min_root_modulus:
             rate = slope / (2 * root)
             rho = min(rho, slack / max(abs(rate - L), EXPONENTS.least_divisor))
             rho = min(rho, math.sqrt(2 * slack * abs(root) / (abs(P2) + abs(rate) ** 2)))
@@ -77,16 +81,18 @@ def radius(w: complex, coefficients: Coefficients, L: complex, S: float) -> floa
 
 @compiled
 def node_at(w: complex, coefficients: Coefficients) -> ReachNode:
-    """The node at w. The phase of f changes by less than pi/2 within the node's reach."""
+    """The point w with its reach, for a uniform rod. Within the reach the phase of D exp(-L dw) changes by
+    less than pi/2.
+    """
     D, D_w, S, noise = scaled_determinant(w, coefficients)
-    room = DISCS.clearance * abs(D) - DISCS.rounding * noise
+    room = DISCS.clearance * abs(D) - DISCS.rounding_over_noise * noise
     # |D| below its rounding error proves nothing; the reach of 0 ends the walk.
     if not room > 0:
         return ReachNode(w, D, 0j, 0.0)
     L = D_w / D
-    centre = centre_at(w, coefficients, ZERO_CHANGES, S)
+    centre = bidisc_centre(w, coefficients, ZERO_CHANGES, S)
     best = 0.0
-    rho = radius(w, coefficients, L, S)
+    rho = trial_radius(w, coefficients, L, S)
     for _ in range(2):
         M = bound_on_bidisc(centre, (L, 0j), (rho, 0.0))
         q = room / M

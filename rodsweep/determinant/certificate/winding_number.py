@@ -1,13 +1,13 @@
-"""Proved number of transverse eigenvalues right of a vertical line, without mesh or shift.
+"""Proved number of transverse eigenvalues of a uniform rod right of a vertical line, without mesh or shift.
 
 All eigenvalues with Re w >= -depth lie in the box of `rodsweep.determinant.certificate.box`, so their number
 is the winding number of the entire function D around the box. D is real on the real axis, so the upper half
 of the box suffices: count = (change of arg D along the upper half)/pi.
 
 The change of phase is proved. Where one exponential of D dominates, long steps are possible
-(`rodsweep.determinant.certificate.dominance`); elsewhere the proof goes from node to node. Within the
+(`rodsweep.determinant.certificate.dominance`); elsewhere the proof steps from node to node. Within the
 `reach` of a node D has no zero, and its phase, without a linear part, changes by less than pi/2. A step is
-accepted only if one end lies within the reach of the other. If the reach is 0, the rounding error of D
+accepted only if one end lies within the reach of the other end. If the reach is 0, the rounding error of D
 cannot separate a zero of D from the line, and the count fails.
 """
 
@@ -20,45 +20,55 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients, Rod
 from ..value import scaled_determinant
-from .box import eigenvalue_box, quiet_radius_of
-from .dominance import dominated_stretch
+from .box import eigenvalue_box, zero_free_radius_of_rod
+from .dominance import phase_over_dominated_segment
 from .reach import node_at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CountSettings(CompiledSettings):
-    """Settings for the contour of a count."""
+    """Settings for the contour around which the winding number of D is computed."""
 
     width_factor: float = 4.0
-    """Factor on the width of the box: one exponential dominates far from the eigenvalues, so a wider box is
-    cheaper."""
+    """Factor on the width of the box. A wider box is cheaper, because one exponential dominates D far from
+    the eigenvalues."""
     width_added: float = 50.0
-    """Width added to the box, in 1/tau2, for the same reason."""
-    least_height: float = 0.5
+    """Length added to the width of the box, in 1/tau2, because a wider box is cheaper to walk around."""
+    min_height: float = 0.5
     """Smallest height of the box, in units of the line's distance from the imaginary axis."""
-    not_an_integer: float = 1e-3
-    """Distance of a winding number from the nearest integer beyond which the count fails."""
-    patience: float = 0.25
-    """Length, in units of |w|, to walk from node to node before trying a disc of dominance again; doubled
-    after every failure."""
-    longest_step: float = 1.9
-    """Longest step tried in units of the reach of a node; beyond 1 the reach of the next node must cover the
-    step."""
-    within_reach: float = 0.999
-    """Step in units of the reach of a node that lies within it whatever the rounding."""
-    smallest_reach: float = 1e-13
-    """Reach in units of |w| below which the line counts as running through a zero of D."""
+    integer_tolerance: float = 1e-3
+    """Distance of the computed winding number from the nearest integer beyond which the count fails."""
+    walk_length: float = 0.25
+    """Length, in units of |w|, of a walk from node to node before dominance is tried again; doubled after
+    each failure."""
+    max_step: float = 1.9
+    """Longest step tried from a node, in units of its reach. Beyond 1 the reach of the next node must cover
+    the step."""
+    safe_step: float = 0.999
+    """Step from a node, in units of its reach, that is certainly within the reach despite rounding."""
+    min_reach: float = 1e-13
+    """Reach of a node, in units of |w|, below which the contour is taken to meet a zero of D, and the count
+    fails."""
     max_edge_nodes: int = 20_000
-    """Maximum nodes on one edge; the paper's rods need about 30 on all edges."""
-    ranges: ClassVar = {"within_reach": (0.0, 1.0)}
+    """Maximum number of nodes on one edge of the box; the paper's rods need about 30 on all edges
+    together."""
+    ranges: ClassVar = {"safe_step": (0.0, 1.0)}
 
 
 COUNT = CountSettings()
 
+PHASE_LOST = "an eigenvalue lies too close to the contour, or the contour is too long"
+"""Reason of a failed count: the change of arg D along the contour could not be proved."""
+NO_INTEGER = "the winding number of D is not an integer within rounding errors"
+"""Reason of a failed count: rounding errors are too large."""
+
 
 @dataclass(frozen=True, slots=True)
-class Count:
-    """Number of eigenvalues right of a line; None for a failed count, whose reason is `why_not`."""
+class EigenvalueCount:
+    """Number of eigenvalues right of a vertical line, and number of nodes on the contour.
+
+    number: None for a failed count, whose reason is `why_not`.
+    """
 
     number: int | None
     nodes: int
@@ -67,7 +77,8 @@ class Count:
 
 @compiled
 def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
-    """(change of arg D along the segment, number of nodes), alternating between both proofs.
+    """(change of arg D along the segment from start to end, number of nodes), by dominance or from node to
+    node.
 
     The number of nodes is negative after a failure.
     """
@@ -76,20 +87,20 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
     t = 0.0
     total = 0.0
     nodes = 0
-    patience = COUNT.patience
+    patience = COUNT.walk_length
     while t < length:
         w = start + direction * t
-        ahead, change, discs = dominated_stretch(w, direction, length - t, coefficients)
+        ahead, change, discs = phase_over_dominated_segment(w, direction, length - t, coefficients)
         total += change
         nodes += discs
         # Dominance that fails is tried again only after a longer walk: each failure costs three discs.
-        patience = COUNT.patience if ahead > 0 else 2 * patience
+        patience = COUNT.walk_length if ahead > 0 else 2 * patience
         t = length if ahead == length - t else t + ahead
         if t < length:
             w = start + direction * t
             goal = min(length, t + patience * abs(w))
             to = end if goal == length else start + direction * goal
-            change, used = stepped_change(w, to, coefficients)
+            change, used = phase_change_by_nodes(w, to, coefficients)
             nodes += abs(used)
             if used < 0 or nodes > COUNT.max_edge_nodes:
                 return 0.0, -nodes
@@ -99,8 +110,8 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
 
 
 @compiled
-def stepped_change(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
-    """(change of arg D along the segment, number of nodes), from node to node.
+def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
+    """(change of arg D along the segment from start to end, number of nodes), from node to node.
 
     The number of nodes is negative after a failure.
     """
@@ -111,17 +122,17 @@ def stepped_change(start: complex, end: complex, coefficients: Coefficients) -> 
     nodes = 1
     here = node_at(start, coefficients)
     while t < length:
-        if not here.reach > COUNT.smallest_reach * abs(here.w) or nodes > COUNT.max_edge_nodes:
+        if not here.reach > COUNT.min_reach * abs(here.w) or nodes > COUNT.max_edge_nodes:
             return 0.0, -nodes
         # The next node may lie beyond the reach of this node if its own reach covers the step.
-        ahead = min(COUNT.longest_step * here.reach, length - t)
+        ahead = min(COUNT.max_step * here.reach, length - t)
         while True:
             inside = ahead < here.reach
             there = node_at(start + direction * (t + ahead) if ahead < length - t else end, coefficients)
             nodes += 1
             if inside or abs(there.w - here.w) < max(here.reach, there.reach):
                 break
-            ahead = COUNT.within_reach * here.reach
+            ahead = COUNT.safe_step * here.reach
         # The linear part of arg D may be many turns; only the rest, less than pi/2, is read off the values.
         turn = ((here.L if here.reach >= there.reach else there.L) * (there.w - here.w)).imag
         total += turn + cmath.phase(there.D / here.D * cmath.exp(complex(0.0, -turn)))
@@ -131,13 +142,13 @@ def stepped_change(start: complex, end: complex, coefficients: Coefficients) -> 
 
 
 @compiled
-def contour_change(
+def contour_phase_change(
     line: float, foot: float, corner: complex, coefficients: Coefficients
 ) -> tuple[float, int]:
     """(change of arg D, number of nodes) along the upper half of the box.
 
-    The path goes from the real axis up to the corner, left to the line, down to the height `foot`. The number
-    of nodes is negative after a failure.
+    The contour goes from the real axis up to `corner`, left to Re w = line, and down to the height `foot`.
+    The number of nodes is negative after a failure.
     """
     top = complex(line, corner.imag)
     right, nodes = phase_change(complex(corner.real, 0.0), corner, coefficients)
@@ -153,34 +164,35 @@ def contour_change(
     return right + above - left, nodes if used > 0 else -nodes
 
 
-def count_right_of(line: float, rod: Rod) -> Count:
-    """Proved number of transverse eigenvalues of `rod` with Re w > line, for any real line.
+def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
+    """Proved number of transverse eigenvalues of a uniform rod with Re w > line, for any real `line`, in
+    1/tau2.
 
-    Raises no error: a failed proof is a Count without a number, with the reason.
+    No exception is raised: a failed proof is a Count without a number, with the reason.
     """
     real, imag = eigenvalue_box(rod, max(-line, 0.0))
     if not math.isfinite(imag) or not math.isfinite(real):
-        return Count(None, 0, "no a-priori bound on the eigenvalues applies to this rod")
+        return EigenvalueCount(None, 0, "no a-priori bound on the eigenvalues applies to this rod")
     if line >= real:
-        return Count(0, 0)
+        return EigenvalueCount(0, 0)
     foot = 0.0
     total = 0.0
     if line == 0.0:  # D(0) = 1, and D is near 1 up to `foot`, so this part of the line needs no nodes
-        foot = quiet_radius_of(rod.coefficients, imag)
+        foot = zero_free_radius_of_rod(rod.coefficients, imag)
         if foot == 0.0:
-            return Count(
+            return EigenvalueCount(
                 None, 0, f"the pull F = {rod.F:g} is so strong that floating-point numbers underflow"
             )
         # Downwards from the foot to w = 0, where D = 1 is real, arg D changes by minus its value at the foot.
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
     real = COUNT.width_factor * real + COUNT.width_added
-    imag = max(imag, COUNT.least_height * abs(line))
-    change, nodes = contour_change(line, foot, complex(real, imag), rod.coefficients)
+    imag = max(imag, COUNT.min_height * abs(line))
+    change, nodes = contour_phase_change(line, foot, complex(real, imag), rod.coefficients)
     if nodes < 0:
-        return Count(None, -nodes, "an eigenvalue lies too close to the contour, or the contour is too long")
+        return EigenvalueCount(None, -nodes, PHASE_LOST)
     total += change
     # Half the box has half the winding number: 2 pi times the count over both halves.
     number = round(total / math.pi)
-    if abs(total / math.pi - number) > COUNT.not_an_integer:
-        return Count(None, nodes, "the winding number of D is not an integer within rounding errors")
-    return Count(number, nodes)
+    if abs(total / math.pi - number) > COUNT.integer_tolerance:
+        return EigenvalueCount(None, nodes, NO_INTEGER)
+    return EigenvalueCount(number, nodes)

@@ -1,1 +1,1 @@
-"""Roots of D, by Newton's method."""
+"""Roots of D, refined by Newton's method from approximate eigenvalues."""

@@ -1,8 +1,10 @@
-"""Newton's method for eigenvalues, and for crossings and double eigenvalues along a path of rods.
+"""Newton's method for eigenvalues of a uniform rod, and for crossings and double eigenvalues along a path of
+rods.
 
 A crossing of the imaginary axis satisfies D(i eta; p) = 0, two real equations for (eta, p). A double real
 eigenvalue, at which two real eigenvalues become a complex pair, satisfies D = D_w = 0 in (x, p). Near a
-double eigenvalue the simple eigenvalues lose half of their digits, but p does not.
+double eigenvalue the simple eigenvalues lose half of their digits, but the p of the double eigenvalue does
+not.
 """
 
 import math
@@ -19,30 +21,35 @@ from ..value import scaled_determinant
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RootNewtonSettings(CompiledSettings):
-    """Settings for Newton's method to crossings and eigenvalues."""
+    """Settings of Newton's method for eigenvalues, crossings and double eigenvalues."""
 
     max_steps: int = 15
-    """Maximum Newton steps to a crossing; a double eigenvalue may need twice as many."""
+    """Maximum number of Newton steps to a crossing; twice as many to a double eigenvalue."""
     max_refinements: int = 12
-    """Maximum Newton steps to an eigenvalue."""
+    """Maximum number of Newton steps to an eigenvalue."""
     largest_step: float = 20.0
-    """Largest Newton step, in units of the given scale, before the iteration counts as failed."""
-    last_step: float = 4.0
-    """Step, in units of the rounding error, at which the iteration has converged."""
+    """Largest Newton step to a crossing, in units of the expected sizes of eta and p; a larger step is a
+    failure."""
+    converged_step: float = 4.0
+    """Newton step, in units of the rounding error of the zero, at which Newton's method has converged."""
     jacobian_step: float = 1e-5
-    """Relative step of the differences in the Jacobian, which need not be accurate."""
+    """Relative step of the differences in the Jacobian of a double eigenvalue, which need not be accurate."""
     stagnant_step: float = 1e-9
-    """Relative step of p below which a step that did not halve is rounding error: the iteration has
-    converged."""
-    real_below: float = 1e-14
-    """Relative imaginary part below which an eigenvalue is real: the size of rounding errors."""
+    """Newton step relative to p. A smaller step that is not half of its predecessor is rounding error:
+    Newton's method has converged."""
+    real_tolerance: float = 1e-14
+    """|Im w|/|w| below which an eigenvalue is taken to be real: the size of rounding errors."""
 
 
 ROOT_NEWTON = RootNewtonSettings()
 
 
 class LocatedZero(NamedTuple):
-    """A crossing (w = i eta) or a double eigenvalue (w = x) with error estimates; nan after a failure."""
+    """A crossing at w = i eta, or a double eigenvalue at w = x, with p and the errors of both; all nan after
+    a failure.
+
+    eta_or_x: eta or x. error: its error. error_of_p: error of p.
+    """
 
     eta_or_x: float
     p: float
@@ -51,16 +58,17 @@ class LocatedZero(NamedTuple):
 
 
 FAILED = LocatedZero(math.nan, math.nan, math.nan, math.nan)
+"""Returned when Newton's method fails: all fields are nan."""
 
 
 @compiled
 def crossing_newton(
     eta: float, p: float, origin: Coefficients, direction: Coefficients, scale: tuple[float, float]
 ) -> LocatedZero:
-    """The zero of D(i eta; p) near (eta, p), with error estimates from rounding and the last step.
+    """The zero of D(i eta; p) near the guess (eta, p), with errors from rounding and the last Newton step.
 
-    scale: expected sizes of eta and p. FAILED for a step beyond `ROOT_NEWTON.largest_step` or without
-    convergence.
+    origin, direction: coefficients at p = 0 and their derivative by p. scale: expected sizes of eta and p.
+    `FAILED` after a step beyond `ROOT_NEWTON.largest_step`, at eta <= 0, or without convergence.
     """
     last = math.inf
     for _ in range(ROOT_NEWTON.max_steps):
@@ -84,9 +92,10 @@ def crossing_newton(
             return FAILED
         eta += in_eta
         p += in_p
-        if (abs(in_eta) <= ROOT_NEWTON.last_step * e_eta and abs(in_p) <= ROOT_NEWTON.last_step * e_p) or (
-            step > last / 2 and step * scale[1] < ROOT_NEWTON.stagnant_step * abs(p)
-        ):
+        if (
+            abs(in_eta) <= ROOT_NEWTON.converged_step * e_eta
+            and abs(in_p) <= ROOT_NEWTON.converged_step * e_p
+        ) or (step > last / 2 and step * scale[1] < ROOT_NEWTON.stagnant_step * abs(p)):
             return LocatedZero(eta, p, max(e_eta, abs(in_eta)), max(e_p, abs(in_p)))
         last = step
     return FAILED
@@ -96,9 +105,10 @@ def crossing_newton(
 def double_newton(
     x: float, p: float, origin: Coefficients, direction: Coefficients, reach: float
 ) -> LocatedZero:
-    """The double real eigenvalue D = D_w = 0 near (x, p).
+    """The double real eigenvalue D = D_w = 0 near the guess (x, p).
 
-    FAILED if p moves by more than twice `reach`, if the sign of x changes, or without convergence.
+    origin, direction: coefficients at p = 0 and their derivative by p. `FAILED` if p moves by more than twice
+    `reach`, if the sign of x changes, or without convergence.
     """
     start = x
     first = p
@@ -126,8 +136,8 @@ def double_newton(
         # A double eigenvalue is never 0, since D(0) = 1: a change of sign means another root.
         if not abs(p - first) <= 2 * reach or not x * start > 0:
             return FAILED
-        if abs(in_p) <= ROOT_NEWTON.last_step * e_p and (
-            abs(in_x) <= ROOT_NEWTON.last_step * e_x or abs(in_x) > last / 2
+        if abs(in_p) <= ROOT_NEWTON.converged_step * e_p and (
+            abs(in_x) <= ROOT_NEWTON.converged_step * e_x or abs(in_x) > last / 2
         ):
             return LocatedZero(x, p, max(e_x, abs(in_x)), max(e_p, abs(in_p)))
         last = abs(in_x)
@@ -138,17 +148,19 @@ def double_newton(
 def _real(
     x: float, p: float, origin: Coefficients, direction: Coefficients
 ) -> tuple[float, float, float, float, float]:
-    """`determinant_along` at real w = x and p, where D and its derivatives are real."""
+    """D, D_w, D_p, S and the rounding error of D at real w = x and p, where D and its derivatives are
+    real."""
     coefficients = coefficients_at(p, origin, direction)
     D, D_w, D_p, S, noise = determinant_along(complex(x, 0.0), coefficients, direction)
     return D.real, D_w.real, D_p.real, S, noise
 
 
 @compiled
-def refined(w: complex, coefficients: Coefficients, farthest: float = math.inf) -> complex:
-    """The eigenvalue near w, by Newton's method until rounding error stops the convergence.
+def refine_eigenvalue(w: complex, coefficients: Coefficients, farthest: float = math.inf) -> complex:
+    """The eigenvalue of a uniform rod near w, by Newton's method until rounding error stops the convergence.
 
-    A real guess gives a real eigenvalue. farthest: length of a first step that is not taken.
+    A real guess w gives a real eigenvalue. farthest: a first Newton step of at least this length is not
+    taken.
     """
     real = w.imag == 0
     last = 2 * farthest
@@ -165,7 +177,7 @@ def refined(w: complex, coefficients: Coefficients, farthest: float = math.inf) 
         last = abs(step)
         w -= step
         # D is real on the real axis, where rounding leaves a tiny imaginary part.
-        if abs(w.imag) <= ROOT_NEWTON.real_below * abs(w):
+        if abs(w.imag) <= ROOT_NEWTON.real_tolerance * abs(w):
             w = complex(w.real, 0.0)
     return w
 
@@ -174,7 +186,7 @@ def refined(w: complex, coefficients: Coefficients, farthest: float = math.inf) 
 def eigenvalue_newton(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> tuple[complex, complex, float]:
-    """(w, dw/dp, error of w) of the simple eigenvalue near the guess w, by `refined`."""
-    w = refined(w, coefficients)
+    """(w, dw/dp, error of w) of the simple eigenvalue of a uniform rod near the guess w."""
+    w = refine_eigenvalue(w, coefficients)
     value = determinant_along(w, coefficients, direction)
     return w, -value.D_p / value.D_w, max(abs(value.D), value.noise) / abs(value.D_w)

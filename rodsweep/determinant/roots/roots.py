@@ -1,9 +1,10 @@
-"""Refinement of a mesh's eigenvalues to roots of D by Newton's method.
+"""Refinement of a mesh's eigenvalues to roots of D by Newton's method, for uniform rods.
 
 The mesh has to be only as fine as Newton's method needs. The accuracy of an eigenvalue is then the accuracy
 of D, at the cost of a few evaluations of D. Two eigenvalues closer than the errors of the mesh are first
-moved to the roots of the Taylor polynomial of D of second order about their middle. The polynomial decides
-whether the two are real or a complex pair; Newton's method from the wrong kind would not converge.
+moved to the roots of the quadratic Taylor polynomial of D about their middle. The polynomial decides whether
+the two are real or complex: Newton's method from two real guesses would not converge to a complex pair, nor
+the reverse.
 """
 
 import cmath
@@ -16,45 +17,54 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
-from ..certificate.box import box_of
-from ..value import DETERMINANT, distance_to_next, newton_correction, scaled_determinant, second_derivative
-from .newton import ROOT_NEWTON, refined
+from ..certificate.box import box_from_amplification
+from ..value import (
+    DETERMINANT,
+    distance_to_next_root,
+    newton_correction,
+    scaled_determinant,
+    second_derivative,
+)
+from .newton import ROOT_NEWTON, refine_eigenvalue
 from .settings import ROOTS
 
 
 class Roots(NamedTuple):
-    """Eigenvalues of a mesh refined to roots of D, sorted by descending real part, then frequency.
+    """Eigenvalues of a mesh refined to roots w of D, sorted by descending real part, then frequency; all
+    arrays are (k,).
 
-    chosen: index of each root in the list of the mesh. w: complex roots. error: error estimates.
-    displacement: error of the mesh, in units of |w| or of the length over which D changes, whichever is
-    larger. wave: largest |q|. on_the_axis: whether the root is imaginary within its error. All are (k,).
-    ahead: number of eigenvalues of the mesh inside the box, right of all roots, that approximate no root.
+    indices: index of each root in the list of the mesh. error: absolute error estimates. displacement:
+    distance of the mesh's eigenvalue from the root, in units of |w| or of the length over which D changes,
+    whichever is larger. wave_number: largest |q|, in 1/L. on_the_axis: whether the root is imaginary within
+    its error. unmatched_ahead: number of eigenvalues of the mesh inside the a-priori box and right of all
+    roots that approximate no root.
     """
 
-    chosen: NDArray[np.int64]
+    indices: NDArray[np.int64]
     w: Complex
     error: Array
     displacement: Array
-    wave: Array
+    wave_number: Array
     on_the_axis: NDArray[np.bool_]
-    ahead: int
+    unmatched_ahead: int
 
 
 @compiled
 def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
-    """(distance to the nearest root of D, length, wave number): `newton_correction` for double roots too.
+    """(distance from w to the nearest root of D, length, wave number), as `newton_correction`, but also near
+    double roots.
 
-    With the larger e of |D| and its rounding error, the Newton correction e/|D'| is valid if |D'|^2 is large
+    e is |D| or, if larger, its rounding error. The Newton correction e/|D'| is valid if |D'|^2 is large
     against e |D''|. Closer to a double root, at the distance |D'/D''| from the middle of both roots, the
     roots cannot be separated within sqrt(2 e/|D''|) of the middle.
     """
     error, length, wave = newton_correction(w, coefficients)
-    if error > ROOTS.blurred * abs(w):
+    if error > ROOTS.double_root_correction * abs(w):
         D, D1, S, noise = scaled_determinant(w, coefficients)
         e = max(abs(D), DETERMINANT.typical_noise * noise)
         second = abs(second_derivative(w, S, coefficients))
         # Close to a double root Newton's correction is useless: the roots of the parabola bound the distance.
-        if abs(D1) ** 2 < ROOTS.separated * e * second:
+        if abs(D1) ** 2 < ROOTS.min_squared_slope * e * second:
             spread = math.sqrt(2 * e / second)
             error = min(max(error, spread), abs(D1) / second + spread)
     return error, length, wave
@@ -62,9 +72,9 @@ def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, fl
 
 @compiled
 def two_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, complex]:
-    """The two roots of the Taylor polynomial of D of second order about `middle`.
+    """The two roots of the quadratic Taylor polynomial of D about `middle`, for a uniform rod.
 
-    For a real `middle` both roots are real or complex conjugates.
+    For a real `middle` the two are both real, or complex conjugates.
     """
     D, D1, S, _ = scaled_determinant(middle, coefficients)
     if middle.imag == 0:
@@ -75,7 +85,9 @@ def two_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, com
 
 @compiled
 def roots_of_parabola(middle: complex, D: complex, D1: complex, D2: complex) -> tuple[complex, complex]:
-    """The two roots of the Taylor polynomial about `middle` with value D, slope D1 and curvature D2."""
+    """The two roots of the quadratic polynomial about `middle` with value D, first derivative D1 and second
+    D2.
+    """
     if D2 == 0:
         return middle, middle
     root = cmath.sqrt(D1 * D1 - 2 * D * D2)
@@ -84,10 +96,10 @@ def roots_of_parabola(middle: complex, D: complex, D1: complex, D2: complex) -> 
 
 @compiled
 def _separate(w: Complex, error: Array, coefficients: Coefficients) -> Array:
-    """Moves pairs of eigenvalues closer than their errors to two roots, in place.
+    """Moves every two eigenvalues closer than their errors to two roots of D, in place.
 
-    Returns half the distance from the other one of the pair, (n,), inf where an eigenvalue is not moved.
-    w: eigenvalues, (n,). error: (n,).
+    w, error: (n,). Returns half the distance of each moved eigenvalue from its partner, (n,); inf for the
+    unmoved.
     """
     reach = np.full(len(w), math.inf)
     for i in range(len(w)):
@@ -99,8 +111,8 @@ def _separate(w: Complex, error: Array, coefficients: Coefficients) -> Array:
             if j != i and reach[j] == math.inf and abs(w[j] - w[i]) < least:
                 partner = j
                 least = abs(w[j] - w[i])
-        if partner >= 0 and least <= ROOTS.refined_together * (error[i] + error[partner]):
-            for _ in range(ROOTS.expansions):
+        if partner >= 0 and least <= ROOTS.pair_distance * (error[i] + error[partner]):
+            for _ in range(ROOTS.parabolas_per_pair):
                 middle = (w[i] + w[partner]) / 2
                 # The pair's centre is exactly real, and must stay so: its two roots are real or conjugate.
                 if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
@@ -120,7 +132,8 @@ def _descending(w: Complex) -> NDArray:
 
 @compiled
 def sort_descending(w: Complex, order: NDArray) -> None:
-    """Sorts the indices `order` of w, shape (n,), in place, by descending real part, then frequency.
+    """Sorts the indices `order` of w, (n,), in place, by descending real part of w, then descending
+    frequency.
 
     Insertion sort: fast for lists that are almost sorted.
     """
@@ -139,12 +152,11 @@ def sort_descending(w: Complex, order: NDArray) -> None:
 
 @compiled
 def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_waves: float) -> Roots:
-    """Roots of D, refined from those eigenvalues of a mesh that approximate a root.
+    """Roots of D refined from the eigenvalues `raw` of a mesh, complex, (n,), that approximate a root of D.
 
-    raw: eigenvalues of a mesh, complex, shape (n,). amplification: square root of
-    `rodsweep.determinant.certificate.box.squared_amplification`. most_waves: largest |q| that the mesh
-    resolves. Rounding makes infinite eigenvalues finite; these lie outside the box, beyond the mesh or far
-    from every root.
+    amplification: square root of `rodsweep.determinant.certificate.box.squared_amplification`. most_waves:
+    largest wave number |q| that the mesh resolves. Infinite eigenvalues, which rounding makes finite, are
+    dropped: they lie outside the a-priori box, have too large a |q|, or are far from every root.
     """
     error: Array = np.empty(len(raw))
     length: Array = np.empty(len(raw))
@@ -155,11 +167,11 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
     for i in range(len(raw)):
         if not (math.isfinite(raw[i].real) and math.isfinite(raw[i].imag)):
             continue
-        if abs(raw[i].imag) <= ROOT_NEWTON.real_below * abs(raw[i]):
+        if abs(raw[i].imag) <= ROOT_NEWTON.real_tolerance * abs(raw[i]):
             first[i] = complex(raw[i].real, 0.0)
         error[i], length[i], wave[i] = root_error(first[i], coefficients)
         # No eigenvalue lies outside the box; what the mesh has there is its artefact.
-        real, imag = box_of(amplification, max(-first[i].real, 0.0))
+        real, imag = box_from_amplification(amplification, max(-first[i].real, 0.0))
         inside[i] = first[i].real <= real and abs(first[i].imag) <= imag
         near[i] = inside[i] and wave[i] <= most_waves and error[i] <= ROOTS.largest_of_pair * length[i]
     chosen = np.flatnonzero(near)
@@ -176,7 +188,7 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
     error = error[order]
     wave = wave[order]
     _raise_errors_of_equal_roots(w, error, coefficients)
-    axis = np.abs(w.real) <= np.maximum(ROOTS.axis_errors * error, ROOTS.on_the_axis * np.abs(w))
+    axis = np.abs(w.real) <= np.maximum(ROOTS.axis_errors * error, ROOTS.axis_tolerance * np.abs(w))
     ahead = (inside & ~near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
     return Roots(chosen, w, error, displacement, wave, axis, ahead)
 
@@ -185,7 +197,7 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
 def _refined_all(
     first: Complex, error: Array, wave: Array, near: NDArray[np.bool_], coefficients: Coefficients
 ) -> tuple[Complex, NDArray[np.bool_]]:
-    """(w, mask): eigenvalues after refinement, and which of them are roots; both (k,).
+    """(w, mask): eigenvalues refined to roots of D, and whether each is a root; both (k,).
 
     first: eigenvalues of the mesh, (k,). near: which of these approximate a root. error, wave, both (k,), are
     updated in place.
@@ -205,22 +217,23 @@ def _refined_all(
             wave[i] = wave[i - 1]
         else:
             # Close to a double root D and D' are rounding errors, whose quotient may lead anywhere.
-            w[i] = refined(w[i], coefficients, reach[i])
+            w[i] = refine_eigenvalue(w[i], coefficients, reach[i])
             error[i], _, wave[i] = root_error(w[i], coefficients)
     return w, stands
 
 
 @compiled
 def _raise_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coefficients) -> None:
-    """Raises the errors of two eigenvalues at the same root to the distance of the next root, 2 |D'/D''|.
+    """Raises the errors of two eigenvalues that are one root to the distance 2 |D'/D''| of the next root, in
+    place.
 
     w, error: (n,).
     """
     for i in range(len(w)):
         for j in range(i + 1, len(w)):
             apart = abs(w[i] - w[j])
-            if apart <= ROOTS.same_root * (error[i] + error[j]):
-                next_root = distance_to_next(w[i], coefficients)
-                if apart < ROOTS.share_of_next * next_root:
+            if apart <= ROOTS.same_root_distance * (error[i] + error[j]):
+                next_root = distance_to_next_root(w[i], coefficients)
+                if apart < ROOTS.same_root_fraction * next_root:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)

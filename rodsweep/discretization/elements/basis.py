@@ -1,4 +1,4 @@
-"""Lagrange polynomials on given nodes: interpolation and differentiation, in barycentric form."""
+"""Interpolation and differentiation with Lagrange polynomials on given nodes, in barycentric form."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from ...arrays import Array
 
 
 def barycentric_weights(nodes: Array) -> Array:
-    """Weights 1/prod_j (x_i - x_j), scaled to largest modulus 1; shape (n,)."""
+    """Barycentric weights 1/prod_(j != i) (x_i - x_j) of the nodes x, (n,), scaled to largest modulus 1."""
     difference = nodes[:, None] - nodes[None, :]
     np.fill_diagonal(difference, 1.0)
     # A product of many differences would underflow; only ratios of weights count.
@@ -15,7 +15,7 @@ def barycentric_weights(nodes: Array) -> Array:
 
 
 def interpolation(nodes: Array, points: Array) -> Array:
-    """Matrix from values at `nodes` to values at `points`, shape (points, nodes)."""
+    """Matrix from values at `nodes`, (n,), to values of the interpolant at `points`, (m,): shape (m, n)."""
     difference = points[:, None] - nodes[None, :]
     hit = difference == 0
     difference[hit] = 1.0
@@ -28,7 +28,9 @@ def interpolation(nodes: Array, points: Array) -> Array:
 
 
 def differentiation(nodes: Array) -> Array:
-    """Matrix from values at `nodes` to derivatives at `nodes`, shape (n, n); rows sum to zero exactly."""
+    """Matrix from values at `nodes`, (n,), to derivatives of the interpolant there, (n, n); rows sum to
+    exactly 0.
+    """
     weights = barycentric_weights(nodes)
     difference = nodes[:, None] - nodes[None, :]
     np.fill_diagonal(difference, 1.0)

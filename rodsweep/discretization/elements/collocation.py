@@ -1,8 +1,8 @@
-"""Radau IIA collocation in time: a state is a polynomial on each interval of time.
+"""Radau IIA collocation in time: on each time interval the state is a polynomial in time.
 
-The polynomial satisfies the equations at the nodes, the last of which is the end of the interval. With s
-stages the error at the ends of intervals is of order 2 s - 1, also for algebraic unknowns, which have no time
-derivative.
+The polynomial satisfies the equations at the s collocation nodes, the last of which is the end of the
+interval. The error at the ends of intervals is of order 2 s - 1, also for algebraic unknowns, which have no
+time derivative.
 """
 
 from dataclasses import dataclass
@@ -18,21 +18,21 @@ from .basis import differentiation, interpolation
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RadauSettings:
-    """Settings for the nodes of Radau IIA."""
+    """Settings for the collocation nodes of Radau IIA."""
 
     newton_steps: int = 3
-    """Newton steps to the nodes, from the eigenvalues of a companion matrix, whose errors are 1e-15. The
-    first step already reaches rounding error."""
+    """Number of Newton steps to the nodes, from the eigenvalues of a companion matrix, whose errors are
+    1e-15. The first step already reaches rounding error."""
 
 
 RADAU = RadauSettings()
 
 
 class Collocation(NamedTuple):
-    """The collocation method with s stages on [0, 1].
+    """A collocation method with s stages on the interval [0, 1].
 
-    nodes, weights: (s,); the last node is 1. differentiation: (s, s + 1), matrix from values at 0 and at the
-    nodes to derivatives at the nodes.
+    nodes, weights: nodes and quadrature weights, (s,); the last node is 1. differentiation: (s, s + 1),
+    matrix from values at 0 and at the nodes to derivatives at the nodes.
     """
 
     nodes: Array
@@ -44,13 +44,17 @@ class Collocation(NamedTuple):
         return len(self.nodes)
 
     def evaluation(self, at: Array) -> Array:
-        """Matrix from values at 0 and at the nodes to values at `at` in [0, 1], shape (len(at), s + 1)."""
+        """Matrix from values at 0 and at the nodes to values at the times `at` in [0, 1], (m,): shape
+        (m, s + 1).
+        """
         return interpolation(np.append(0.0, self.nodes), at)
 
 
 @cache
-def radau(stages: int) -> Collocation:
-    """Radau IIA with s = `stages`; the nodes are the zeros of P_(s-1) - P_s."""
+def radau_method(stages: int) -> Collocation:
+    """The Radau IIA method with s = `stages` stages; its nodes are the zeros of P_(s-1) - P_s, mapped to [0,
+    1].
+    """
     series = np.zeros(stages + 1)
     series[-2:] = 1.0, -1.0
     x = np.sort(legendre.legroots(series).real)

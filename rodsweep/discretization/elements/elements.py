@@ -1,4 +1,4 @@
-"""Elements on the rod, and interpolation from their Lobatto nodes to other points."""
+"""Spectral elements on the rod, and interpolation from their Lobatto nodes to other points."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,17 +14,21 @@ from .quadrature import gauss_lobatto
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ElementSettings:
-    """Settings of the elements: samples inside an element, and numbers of meshes kept in memory."""
+    """Settings of elements: points just inside their ends, and numbers of meshes and matrices cached in
+    memory.
+    """
 
-    inside: float = 1e-15
-    """Distance of `Elements.points_inside` from the ends of an element, in L: some roundings of u. With 1e-9
-    of it, the largest y of cycles next to the Hopf point of a cone was off by 1e-8 on every mesh."""
-    meshes_kept: int = 64
-    """Number of meshes, and of matrices of one mesh, that are kept; a sweep uses some ten."""
-    pencils_kept: int = 16
-    """Number of pencils that are kept; for 300 growing modes each takes 10 MB."""
-    pairs_kept: int = 256
-    """Number of pairs of meshes whose transfer is kept, and of lists of edges."""
+    end_distance: float = 1e-15
+    """Distance of `Elements.points_inside` from the ends of an element, in L: a few rounding errors of u.
+    With 1e-9 instead, the largest y of cycles next to the Hopf point of a cone was off by 1e-8 on every
+    mesh."""
+    max_meshes: int = 64
+    """Maximum number of meshes, and of matrices of each kind, that are cached; a sweep needs about ten."""
+    max_pencils: int = 16
+    """Maximum number of pencils that are cached; for 300 growing modes each takes 10 MB."""
+    max_mesh_pairs: int = 256
+    """Maximum number of pairs of meshes whose interpolation matrix is cached, and of cached lists of
+    edges."""
 
 
 ELEMENTS = ElementSettings()
@@ -32,7 +36,9 @@ ELEMENTS = ElementSettings()
 
 @dataclass(frozen=True)
 class Elements:
-    """Elements between `edges`, which increase from 0 to 1, all of the same order."""
+    """Elements of equal order on the rod: element e reaches from edges[e] to edges[e + 1]; edges go from 0 to
+    1.
+    """
 
     edges: tuple[float, ...]
     order: int
@@ -44,7 +50,7 @@ class Elements:
 
     @property
     def nodes(self) -> int:
-        """Number of nodes without one end, the clamp or the tip."""
+        """Number of nodes without one end of the rod; which end is left out depends on the equations."""
         return self.elements * self.order
 
     @cached_property
@@ -54,7 +60,7 @@ class Elements:
 
     @cached_property
     def positions(self) -> Array:
-        """u of all nodes, both ends included, shape (nodes + 1,)."""
+        """Material coordinate u of all nodes, both ends included, (nodes + 1,)."""
         inner = (gauss_lobatto(self.order)[0][1:] + 1) / 2
         starts: Array = np.array(self.edges[:-1])
         positions: Array = np.append(0.0, (starts[:, None] + self.lengths[:, None] * inner).ravel())
@@ -69,16 +75,17 @@ class Elements:
 
     @cached_property
     def points_inside(self) -> Array:
-        """u of the nodes of every element, with the outer nodes moved just inside, (elements, order + 1).
+        """u of the nodes of every element, (elements, order + 1), with its end nodes moved just inside the
+        element.
 
-        At a jump between two elements each element therefore samples the coefficient on its own side.
+        At a jump between two elements each element therefore evaluates the coefficient on its own side.
         """
         edges: Array = np.array(self.edges)[:, None]
         points = edges[:-1] + self.lengths[:, None] * (gauss_lobatto(self.order)[0] + 1) / 2
-        return np.clip(points, edges[:-1] + ELEMENTS.inside, edges[1:] - ELEMENTS.inside)
+        return np.clip(points, edges[:-1] + ELEMENTS.end_distance, edges[1:] - ELEMENTS.end_distance)
 
     def evaluation(self, points: Array) -> Array:
-        """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""
+        """Matrix from values at all nodes to values at `points` in [0, 1], (n,): shape (n, nodes + 1)."""
         nodes = gauss_lobatto(self.order)[0]
         matrix = np.zeros((len(points), self.nodes + 1))
         for first, inside, local in self.by_element(points):
@@ -86,7 +93,10 @@ class Elements:
         return matrix
 
     def evaluation_by_element(self, points: Array) -> Array:
-        """Matrix from values at `element_nodes` to values at `points` in [0, 1], (points, element nodes)."""
+        """Matrix from values at the nodes of every element to values at `points` in [0, 1], (n,).
+
+        Shape (n, elements (order + 1)); a node between two elements has a value in each.
+        """
         nodes = gauss_lobatto(self.order)[0]
         matrix = np.zeros((len(points), self.element_nodes.size))
         for first, inside, local in self.by_element(points):
@@ -95,9 +105,10 @@ class Elements:
         return matrix
 
     def by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
-        """Points, (n,), grouped by element: (first node, indices of points, local coordinates in [-1, 1]).
+        """Yields, for each element with points, (its first node, indices of its points, their coordinates in
+        [-1, 1]).
 
-        A point between two elements belongs to the right element.
+        points: (n,). A point between two elements belongs to the right element.
         """
         element = np.clip(np.searchsorted(self.edges, points, side="right") - 1, 0, self.elements - 1)
         for e in np.unique(element):
@@ -105,13 +116,13 @@ class Elements:
             yield int(e) * self.order, inside, 2 * (points[inside] - self.edges[e]) / self.lengths[e] - 1
 
 
-@lru_cache(maxsize=ELEMENTS.pairs_kept)
+@lru_cache(maxsize=ELEMENTS.max_mesh_pairs)
 def equal_edges(elements: int) -> tuple[float, ...]:
-    """Edges of `elements` equal elements on [0, 1]."""
+    """Edges of `elements` elements of equal length on [0, 1]."""
     return tuple(k / elements for k in range(elements + 1))
 
 
-def halved(edges: tuple[float, ...]) -> tuple[float, ...]:
-    """Edges after halving every element."""
+def halve_elements(edges: tuple[float, ...]) -> tuple[float, ...]:
+    """The edges of the elements after halving every element."""
     middles = [(a + b) / 2 for a, b in zip(edges[:-1], edges[1:], strict=True)]
     return tuple(sorted([*edges, *middles]))

@@ -1,7 +1,7 @@
-"""Elements on the rod, matrices on the nodes, and integration of strains to a shape.
+"""Meshes of the rod with their differentiation matrices, and the shape of a rod from its strains.
 
-Fields are continuous and in P_p on each element, with Lobatto nodes and lumped mass.
-theta(u) = int Pi, r(u) = int R(theta) (h1, h2).
+Fields are continuous and in P_p on each element, with Lobatto nodes and lumped mass. The shape is theta(u) =
+int Pi, r(u) = int R(theta) (h1, h2).
 """
 
 from dataclasses import dataclass, field
@@ -18,20 +18,21 @@ from .quadrature import gauss, gauss_lobatto
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReconstructionSettings:
-    """Settings for the quadrature of the shape of a rod."""
+    """Settings for the quadrature by which the shape of a rod is computed."""
 
     extra_points: int = 10
-    """Gauss points of an element minus order, for integrals of shapes. Enough for theta to turn by two
-    radians in an element."""
+    """Number of Gauss points of an element, minus its order, for the integrals of the shape. Ten suffice if
+    theta turns by up to two radians within an element."""
 
 
 RECONSTRUCTION = ReconstructionSettings()
 
 
 class NodeMatrices(NamedTuple):
-    """D, D^T and -D^T W on all nodes of a mesh, (nodes + 1, nodes + 1), and W, (nodes + 1,).
+    """Matrices on all nodes of a mesh: D, D^T and -D^T W, (nodes + 1, nodes + 1), and the weights W,
+    (nodes + 1,).
 
-    All arrays are contiguous, for inner loops over the nodes.
+    D differentiates, W is the lumped mass. All arrays are contiguous, for inner loops over the nodes.
     """
 
     D: Array
@@ -42,31 +43,32 @@ class NodeMatrices(NamedTuple):
 
 @dataclass(frozen=True)
 class Mesh(Elements):
-    """Elements with matrices on all nodes; `nodes` is the number of nodes without the tip.
+    """Elements with differentiation and quadrature on all nodes; `nodes` is the number of nodes without the
+    tip.
 
-    Meshes with equal edges and order are equal, across processes too.
+    Meshes with equal edges and order compare equal, across processes too.
     """
 
     matrices: NodeMatrices = field(compare=False, repr=False)
 
     def __reduce__(self) -> tuple[Any, tuple[tuple[float, ...], int]]:
-        """Pickles edges and order only, also for messages to other ranks."""
+        """Pickles only edges and order, also in messages to other ranks."""
         return mesh_on, (self.edges, self.order)
 
     @property
     def quadrature(self) -> Array:
-        """Weights of all nodes, the tip included, shape (nodes + 1,)."""
+        """Quadrature weights of all nodes, the tip included, (nodes + 1,)."""
         return self.matrices.weights
 
 
 def mesh(elements: int, order: int) -> Mesh:
-    """The mesh of `elements` equal elements of order `order`."""
+    """The mesh of `elements` elements of equal length and of order `order`."""
     return mesh_on(equal_edges(elements), order)
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
-    """The mesh of elements between `edges`, all of order `order`."""
+    """The mesh of elements between `edges`, all of order `order`, cached."""
     x, w = gauss_lobatto(order)
     slopes = differentiation(x)
     lengths = np.diff(edges)
@@ -85,17 +87,17 @@ def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
     return Mesh(edges, order, NodeMatrices(*map(np.ascontiguousarray, parts)))
 
 
-@lru_cache(maxsize=ELEMENTS.pairs_kept)
+@lru_cache(maxsize=ELEMENTS.max_mesh_pairs)
 def transfer(source: Mesh, target: Mesh) -> Array:
-    """Matrix from values at all nodes of `source` to values at all nodes of `target`.
+    """Matrix from values at all nodes of `source` to values at all nodes of `target`, by interpolation.
 
-    Shape (target nodes + 1, source nodes + 1).
+    Shape (target.nodes + 1, source.nodes + 1).
     """
     return source.evaluation(target.positions)
 
 
-def configuration(grid: Mesh, strains: Array, clamp: Array) -> Array:
-    """(x, y, theta) at all nodes, (3, ..., nodes + 1), from strains (h1, h2, Pi).
+def shape_from_strains(grid: Mesh, strains: Array, clamp: Array) -> Array:
+    """Shape (x, y, theta) of a rod at all nodes, (3, ..., nodes + 1), from strains (h1, h2, Pi).
 
     strains: at the nodes of every element, (3, ..., elements (order + 1)). clamp: (x, y, theta) at u = 0,
     (3,).
@@ -121,11 +123,12 @@ def configuration(grid: Mesh, strains: Array, clamp: Array) -> Array:
 
 
 class Reconstruction(NamedTuple):
-    """Matrices on an element [0, 1] with p + 1 nodes and m Gauss points, all applied from the right.
+    """Matrices that integrate strains to a shape on one element [0, 1] with p + 1 nodes and m Gauss points.
 
-    values: interpolation from nodes to Gauss points, (p + 1, m). angles: integrals of nodal polynomials from
-    0 to the Gauss points, (p + 1, m). integrals: integrals from 0 to the nodes of functions given at the
-    Gauss points, (m, p + 1). ends: integrals of nodal polynomials from 0 to the nodes, (p + 1, p + 1).
+    All are applied from the right. values: interpolation from nodes to Gauss points, (p + 1, m). angles:
+    integrals of nodal polynomials from 0 to the Gauss points, (p + 1, m). integrals: integrals from 0 to the
+    nodes of functions given at the Gauss points, (m, p + 1). ends: integrals of nodal polynomials from 0 to
+    the nodes, (p + 1, p + 1).
     """
 
     values: Array
@@ -134,16 +137,17 @@ class Reconstruction(NamedTuple):
     ends: Array
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def reconstruction(order: int) -> Reconstruction:
-    """The matrices that turn strains into a shape, for elements of an order."""
+    """The `Reconstruction` matrices of elements of order `order`, cached."""
     x = gauss_lobatto(order)[0]
     g = gauss(order + RECONSTRUCTION.extra_points)[0]
     return Reconstruction(interpolation(x, g).T, primitive(x, g).T, primitive(g, x).T, primitive(x, x).T)
 
 
 def primitive(nodes: Array, ends: Array) -> Array:
-    """Matrix from values at `nodes` to half the integral of the interpolant from -1 to each end.
+    """Matrix from values at `nodes` in [-1, 1] to half the integral of the interpolant from -1 to each of
+    `ends`.
 
     nodes: (n,). ends: (m,). Shape (m, n).
     """

@@ -1,7 +1,7 @@
-"""The trigonometric polynomial through equidistant samples of one period.
+"""The trigonometric polynomial through equidistant samples of one period: values, slopes and extrema.
 
-Samples are at the times k/N, k = 0 ... N - 1, in periods. All functions are exact to the spectral accuracy of
-the samples. For even N the highest harmonic is a cosine.
+Samples are at the times k/N, k = 0 ... N - 1, in periods. All functions have the spectral accuracy of the
+samples. For even N the highest harmonic is a cosine.
 
 Compiled kernels may sum in any order, and the order of their assignments changes the last bit of results.
 """
@@ -18,22 +18,21 @@ from ...model.compiled.settings import CompiledSettings
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MaximumSettings(CompiledSettings):
-    """Settings for maxima of trigonometric polynomials."""
+    """Settings for maxima and zeros of trigonometric polynomials."""
 
     max_steps: int = 8
-    """Maximum Newton steps from the largest sample to the maximum."""
-    found: float = 1e-9
-    """Newton step, in periods, at which the search has converged; the error of the maximum is about the
-    square."""
-    bisections: int = 50
-    """Halvings of the interval between two samples, down to rounding error."""
+    """Maximum number of Newton steps from the largest sample to the maximum."""
+    converged_step: float = 1e-9
+    """Newton step, in periods, that ends the iteration; the error of the maximum is about its square."""
+    max_bisections: int = 50
+    """Number of bisections of the interval between two samples for a zero, down to rounding error."""
 
 
 MAXIMA = MaximumSettings()
 
 
 def fourier_coefficients(samples: Array) -> Complex:
-    """c, shape (N // 2 + 1, ...), with Re sum_k c_k exp(2 pi i k t) through the samples, shape (N, ...)."""
+    """Coefficients c, (N // 2 + 1, ...): Re sum_k c_k exp(2 pi i k t) interpolates samples, (N, ...)."""
     n = len(samples)
     c: Complex = np.fft.rfft(samples, axis=0) / n
     c[1 : (n + 1) // 2] *= 2  # adds the conjugate harmonic; the mean and the last of an even N have none
@@ -41,10 +40,10 @@ def fourier_coefficients(samples: Array) -> Complex:
 
 
 def hermite_coefficients(values: Array, slopes: Array) -> Complex:
-    """c, shape (m + 1, ...), with Re sum_k c_k exp(2 pi i k t) through values and slopes at k/m, (m, ...).
+    """Coefficients c, (m + 1, ...): Re sum_k c_k exp(2 pi i k t) interpolates values and slopes at k/m.
 
-    slopes: derivatives with respect to time in periods. The slopes distinguish harmonic k from harmonic m -
-    k, which have equal values at the nodes, so twice as many harmonics are resolved as from values alone.
+    values, slopes: (m, ...); slopes are derivatives by time in periods. They distinguish harmonics k and m -
+    k, equal at the nodes, so twice as many harmonics are resolved as from values alone.
     """
     flat = np.ascontiguousarray(values).reshape(len(values), -1)
     rates = np.ascontiguousarray(slopes).reshape(len(slopes), -1)
@@ -54,7 +53,7 @@ def hermite_coefficients(values: Array, slopes: Array) -> Complex:
 
 @compiled_for_vectors
 def hermite_columns(values: Array, slopes: Array, signs: Array) -> Complex:
-    """`hermite_coefficients` of columns, (m + 1, columns), given over half a period or a whole period.
+    """`hermite_coefficients`, (m + 1, columns), of columns given over half a period or a whole period.
 
     values, slopes: (nodes, columns). signs: factor of each column after half a period, (columns,), or 0 if
     the nodes cover the whole period. With the sums S_k of values and D_k of slopes over the nodes, times
@@ -101,7 +100,7 @@ def hermite_columns(values: Array, slopes: Array, signs: Array) -> Complex:
 
 @compiled_for_vectors
 def _waves(count: int) -> Array:
-    """Cosine and sine at `count` equidistant times of a period, (2, count)."""
+    """Cosine and sine of 2 pi k/count for k = 0 ... count - 1, (2, count)."""
     waves = np.empty((2, count))
     for i in range(count):
         turn = 2 * np.pi * i / count
@@ -110,15 +109,15 @@ def _waves(count: int) -> Array:
     return waves
 
 
-def samples_of(c: Complex, count: int) -> Array:
-    """Re sum_k c_k exp(2 pi i k t), c of shape (harmonics, ...), at times 0, 1/count, ..., (count, ...)."""
-    samples: Array = sampled_columns(np.ascontiguousarray(c).reshape(len(c), -1), count)
+def series_samples(c: Complex, count: int) -> Array:
+    """Re sum_k c_k exp(2 pi i k t) at `count` equidistant t, (count, ...); c: (harmonics, ...)."""
+    samples: Array = series_samples_of_columns(np.ascontiguousarray(c).reshape(len(c), -1), count)
     return samples.reshape(count, *c.shape[1:])
 
 
 @compiled_for_vectors
-def sampled_columns(c: Complex, count: int) -> Array:
-    """`samples_of` columns, (count, columns), from coefficients (harmonics, columns).
+def series_samples_of_columns(c: Complex, count: int) -> Array:
+    """`series_samples` of columns, (count, columns), from coefficients c, (harmonics, columns).
 
     For an even count, samples of the second half of the period come from the first half: even harmonics are
     equal, odd harmonics change their sign.
@@ -158,19 +157,19 @@ def sampled_columns(c: Complex, count: int) -> Array:
     return samples
 
 
-def resampled(samples: Array, at: NDArray[np.floating]) -> Array:
+def interpolate_samples(samples: Array, at: NDArray[np.floating]) -> Array:
     """The interpolant of samples, (N, ...), at the times `at` in periods, (m,): shape (m, ...)."""
-    return sampled_at(fourier_coefficients(samples), at)
+    return series_at(fourier_coefficients(samples), at)
 
 
-def sampled_at(c: Complex, at: NDArray[np.floating]) -> Array:
+def series_at(c: Complex, at: NDArray[np.floating]) -> Array:
     """Re sum_k c_k exp(2 pi i k t), c: (harmonics, ...), at times `at` in periods, (m,): shape (m, ...)."""
     waves = np.exp(2j * np.pi * np.outer(at, np.arange(len(c))))
     return (waves @ c.reshape(len(c), -1)).real.reshape(len(at), *c.shape[1:])
 
 
 def time_derivative(samples: Array) -> Array:
-    """Derivative of the interpolant with respect to time in periods, at the samples; both (N, ...)."""
+    """Derivative of the interpolant of samples by time in periods, at the samples; both (N, ...)."""
     n = len(samples)
     k = 2j * np.pi * np.arange(n // 2 + 1)
     if n % 2 == 0:
@@ -182,7 +181,7 @@ def time_derivative(samples: Array) -> Array:
 def maxima(c: Complex, samples: Array) -> Array:
     """Maxima, (m,), of Re sum_k c_k exp(2 pi i k t), by Newton's method from the largest samples.
 
-    c: (harmonics, m). samples: (n, m).
+    c: (harmonics, m). samples: equidistant over a period, (n, m).
     """
     n, m = samples.shape
     highest = np.empty(m)
@@ -196,7 +195,7 @@ def maxima(c: Complex, samples: Array) -> Array:
             # The extremum lies beside the largest sample, within one distance of samples.
             step = min(max(slope / curvature, -1 / n), 1 / n)
             t -= step
-            if abs(step) < MAXIMA.found:
+            if abs(step) < MAXIMA.converged_step:
                 break
         highest[column] = _expansion(c[:, column], t)[0]
     return highest
@@ -204,7 +203,7 @@ def maxima(c: Complex, samples: Array) -> Array:
 
 @compiled_for_vectors
 def minima(c: Complex, samples: Array) -> Array:
-    """Minima, (m,), of Re sum_k c_k exp(2 pi i k t); c: (harmonics, m), samples: (n, m)."""
+    """Minima, (m,), of Re sum_k c_k exp(2 pi i k t), as `maxima`; c: (harmonics, m), samples: (n, m)."""
     return -maxima(-c, -samples)
 
 
@@ -228,7 +227,7 @@ def _expansion(c: Complex, t: float) -> tuple[float, float, float]:
     return value, slope, curvature
 
 
-def rise_through_mean(samples: Array) -> float:
+def time_of_rise_through_mean(samples: Array) -> float:
     """Time, in periods, at which the interpolant of samples, (N,), rises through its mean after a minimum."""
     n = len(samples)
     deviation = samples - samples.mean()
@@ -239,8 +238,8 @@ def rise_through_mean(samples: Array) -> float:
 
 @compiled_for_vectors
 def _rise(c: Complex, low: float, high: float) -> float:
-    """The zero of Re sum_k c_k exp(2 pi i k t) between two times, by bisection; c: (harmonics,)."""
-    for _ in range(MAXIMA.bisections):
+    """The zero of Re sum_k c_k exp(2 pi i k t) between low and high, by bisection; c: (harmonics,)."""
+    for _ in range(MAXIMA.max_bisections):
         middle = (low + high) / 2
         if _expansion(c, middle)[0] < 0:
             low = middle

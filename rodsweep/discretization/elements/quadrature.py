@@ -1,4 +1,4 @@
-"""Gauss and Gauss-Lobatto-Legendre nodes and weights on [-1, 1]."""
+"""Nodes and weights of Gauss and Gauss-Lobatto-Legendre quadrature on [-1, 1]."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -14,8 +14,8 @@ class LobattoSettings:
     """Settings of Newton's method for the Lobatto nodes."""
 
     max_steps: int = 50
-    """Maximum Newton steps to the Lobatto nodes, for the rare case that rounding errors keep the steps above
-    the tolerance."""
+    """Maximum number of Newton steps to the Lobatto nodes, in the rare case that rounding errors keep the
+    steps above the tolerance."""
     tolerance: float = 4e-16
     """Newton step at which the Lobatto nodes have converged to rounding error."""
 
@@ -25,14 +25,14 @@ LOBATTO = LobattoSettings()
 
 @cache
 def gauss(n: int) -> tuple[Array, Array]:
-    """Nodes and weights of the n-point Gauss-Legendre rule, exact to degree 2n - 1; shape (n,)."""
+    """Nodes and weights, (n,) each, of the n-point Gauss-Legendre rule on [-1, 1], exact to degree 2n - 1."""
     nodes, weights = legendre.leggauss(n)
     return nodes, weights
 
 
 @cache
 def gauss_lobatto(p: int) -> tuple[Array, Array]:
-    """Nodes and weights of the (p + 1)-point Lobatto rule, exact to degree 2p - 1; shape (p + 1,).
+    """Nodes and weights, (p + 1,) each, of the (p + 1)-point Lobatto rule on [-1, 1], exact to degree 2p - 1.
 
     The inner nodes are the zeros of P_p', by Newton's method from Chebyshev points.
     """
@@ -52,12 +52,12 @@ def gauss_lobatto(p: int) -> tuple[Array, Array]:
 
 
 def lobatto_points(nodes: int) -> Array:
-    """The Gauss-Lobatto points on [0, 1], shape (nodes,)."""
+    """The `nodes` Gauss-Lobatto points on [0, 1], (nodes,)."""
     return (gauss_lobatto(nodes - 1)[0] + 1) / 2
 
 
 def _legendre_pair(p: int, x: Array) -> tuple[Array, Array]:
-    """P_p(x) and P_{p-1}(x) by the three-term recurrence; all arrays have the shape of x, (n,)."""
+    """Legendre polynomials P_p(x) and P_{p-1}(x), in the shape of x, (n,), by the three-term recurrence."""
     previous = np.ones_like(x)
     current = x.copy()
     for n in range(1, p):

@@ -1,1 +1,2 @@
-"""The eigenproblem of the straight rod on elements."""
+"""The rod linearised about its straight state: the transverse and longitudinal eigenproblems, and
+expansions."""

@@ -1,9 +1,9 @@
-"""The transverse eigenproblem of an arm with profiles and any law as a sparse matrix pencil.
+"""The transverse eigenproblem of an arm with any profiles and law, as a sparse matrix pencil.
 
-The weak form is that of `rodsweep.discretization.straight.pencil`, with weights c2(u), c3(u), nu(u), g(u) at
-the Gauss points and gamma2(u), gamma3(u) at the Lobatto nodes. Elements end where a coefficient jumps, so the
-solution is smooth within each element. The matrix is not affine in any parameter, and is filled for every
-arm.
+The weak form is that of `rodsweep.discretization.straight.pencil`, with coefficients c2(u), c3(u), nu(u),
+g(u) at the Gauss points and gamma2(u), gamma3(u) at the Lobatto nodes. Elements end where a coefficient
+jumps, so the solution is smooth within each element. The matrix is not affine in any parameter, and is filled
+anew for every arm.
 """
 
 import math
@@ -18,16 +18,18 @@ from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
 from ..elements.quadrature import gauss, gauss_lobatto
 from .arm_resolution import ArmMesh
-from .pencil import PENCIL_NORM, Matrices
+from .pencil import PENCIL_NORM, PencilMatrices
 
 
 class _Pieces(NamedTuple):
-    """What `_filled` needs of a mesh of elements of order p.
+    """Matrices and weights of a mesh of elements of order p, from which `_filled` computes the pencil of an
+    arm.
 
-    value, slope: matrices from nodes to Gauss points, (p, p + 1). both: slope^T weights value, (p + 1,
-    p + 1). constant: entries of the first two blocks, which are those of every arm, (n,). bending, weight:
-    Gauss weights over and times half the length of each element, (elements, p). lumped: mass of the nodes,
-    (elements, p + 1). where: index in the pattern of each entry of all blocks, (m,). rows, columns: (nnz,).
+    value, slope: matrices from nodes to Gauss points, (p, p + 1). both: slope^T weights value,
+    (p + 1, p + 1). constant: entries of the first two blocks, which are the same for every arm, (n,).
+    bending, weight: Gauss weights over and times half the length of each element, (elements, p). lumped: mass
+    of the nodes, (elements, p + 1). where: index in the pattern of each entry of all blocks, (m,). rows,
+    columns: (nnz,).
     """
 
     value: Array
@@ -43,10 +45,10 @@ class _Pieces(NamedTuple):
 
 
 class ArmPencil:
-    """Sparsity pattern on a mesh, and matrices of any arm whose breaks are edges of the mesh.
+    """Sparsity pattern of the transverse eigenproblem on a mesh, and the matrices of any arm.
 
-    rows, columns: indices of the pattern, (nnz,), sorted by row, then column, with the diagonal. The unknowns
-    are (y, theta, s), `mesh.nodes` of each.
+    Every break of the arm must be an edge of the mesh. rows, columns: indices of the pattern, (nnz,), sorted
+    by row, then column, with the diagonal. The unknowns are (y, theta, s), `mesh.nodes` of each.
     """
 
     def __init__(self, mesh: ArmMesh):
@@ -83,19 +85,19 @@ class ArmPencil:
 
     @property
     def positions(self) -> Array:
-        """u of all nodes, both ends included, shape (nodes + 1,)."""
+        """Material coordinate u of all nodes, both ends included, (nodes + 1,)."""
         return self.mesh.positions
 
-    def matrices(self, rod: Rod) -> Matrices:
-        """The pencil of an arm."""
-        return Matrices(*_filled(float(rod.F), np.array(rod.local(self._points)), self._pieces))
+    def matrices(self, rod: Rod) -> PencilMatrices:
+        """The matrices of the pencil of an arm."""
+        return PencilMatrices(*_filled(float(rod.F), np.array(rod.local(self._points)), self._pieces))
 
     def evaluation(self, points: Array) -> Array:
-        """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""
+        """Matrix from values at all nodes to values at `points` in [0, 1], (n,): shape (n, nodes + 1)."""
         return self.mesh.evaluation(points)
 
     def _pattern(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
-        """(rows, columns, index in the pattern of each entry of the blocks of `matrices`).
+        """(rows, columns, index in the pattern of each entry of all element blocks); (nnz,), (nnz,) and (m,).
 
         Entries of the clamp have an index beyond the pattern.
         """
@@ -116,7 +118,7 @@ class ArmPencil:
 
 
 def _keys(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> NDArray[np.int64]:
-    """row * size + column of each entry of the elements' blocks; -1 if the row or column is the clamp.
+    """row * size + column of each entry of all element blocks; -1 if the row or column is the clamp.
 
     rows, columns: (elements, n) and (elements, m).
     """
@@ -127,7 +129,8 @@ def _keys(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> NDA
 
 @compiled
 def _filled(F: float, local: Array, pieces: _Pieces) -> tuple[Array, Array, Array]:
-    """The fields of `Matrices` of an arm; local: its coefficients, (6, elements, 2 order + 1)."""
+    """A, B and scale of the `PencilMatrices` of an arm; local: its coefficients, (6, elements, 2 order +
+    1)."""
     elements, order = pieces.weight.shape
     nodes = elements * order
     push = np.zeros(nodes + 1)
@@ -138,7 +141,7 @@ def _filled(F: float, local: Array, pieces: _Pieces) -> tuple[Array, Array, Arra
             mass = pieces.lumped[e, i]
             push[e * order + i] += mass * local[3, e, order + i]
             turn[e * order + i] += mass * local[4, e, order + i]
-            least[e * order + i] += mass * PENCIL_NORM.least_angle_weight**2
+            least[e * order + i] += mass * PENCIL_NORM.min_angle_weight**2
     scale = np.empty(3 * nodes)
     B = np.zeros(3 * nodes)
     for k in range(nodes):
@@ -160,7 +163,11 @@ def _filled(F: float, local: Array, pieces: _Pieces) -> tuple[Array, Array, Arra
 
 @compiled
 def _add_entries(F: float, local: Array, pieces: _Pieces, A: Array) -> None:
-    """Adds the entries of all blocks, in the order of `where`, to those of the pattern, (nnz + 1,)."""
+    """Adds the entries of all element blocks, in the order of `where`, to the entries A of the pattern,
+    (nnz + 1,).
+
+    local: coefficients of the arm, (6, elements, 2 order + 1).
+    """
     elements, order = pieces.weight.shape
     value = pieces.value
     where = pieces.where
@@ -181,7 +188,7 @@ def _add_entries(F: float, local: Array, pieces: _Pieces, A: Array) -> None:
 
 @compiled
 def _bending(slope: Array, factors: Array) -> Array:
-    """-slope^T factors slope, (p + 1, p + 1); factors: at the Gauss points, (p,)."""
+    """The block -slope^T diag(factors) slope, (p + 1, p + 1); factors: at the Gauss points, (p,)."""
     block = np.zeros((slope.shape[1], slope.shape[1]))
     for q in range(len(factors)):
         for i in range(len(block)):
@@ -193,9 +200,9 @@ def _bending(slope: Array, factors: Array) -> Array:
 
 @compiled
 def _added(block: Array, at: int, where: NDArray[np.int64], A: Array) -> int:
-    """Adds the entries of a block, of any shape (...,), whose first one has the index `at` in `where`.
+    """Adds the entries of a block, of any shape (...,), to A; its first entry has the index `at` in `where`.
 
-    A: entries of the pattern, (nnz + 1,). Returns the index of the next entry.
+    A: entries of the pattern, (nnz + 1,). Returns the index of the entry after the block.
     """
     for entry in block.flat:
         A[where[at]] += entry

@@ -1,4 +1,4 @@
-"""Choice of the mesh of an arm: edges and order of the elements."""
+"""Choice of the mesh of an arm: edges and order of its elements."""
 
 from dataclasses import dataclass
 from math import ceil, hypot, log, pi
@@ -14,11 +14,12 @@ from ..elements.resolution import RESOLUTION, required_order
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmResolutionSettings:
-    """Settings for the elements of an arm that varies along its length."""
+    """Settings for the mesh of an arm that varies along its length."""
 
-    largest_ratio: float = 2.2
-    """Largest ratio of the radii at the ends of an element, for which order 12 gives eigenvalues to 1e-4."""
-    for_profiles: int = 2
+    max_radius_ratio: float = 2.2
+    """Largest ratio of the radii of a cone at both ends of an element; order 12 then gives eigenvalues to
+    1e-4."""
+    profile_order_increase: int = 2
     """Increase of the order for coefficients that vary within an element."""
 
 
@@ -26,39 +27,47 @@ ARM_RESOLUTION = ArmResolutionSettings()
 
 
 class ArmMesh(Elements):
-    """Elements for an `ArmPencil`; an element must end wherever a coefficient jumps."""
+    """Elements for an `ArmPencil`; elements must end wherever a coefficient of the arm jumps."""
 
     @property
     def unknowns(self) -> int:
-        """The total number of unknowns y, theta and s."""
+        """Number of unknowns y, theta and s together."""
         return 3 * self.nodes
 
 
 def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
-    """A mesh expected to give `modes` leading eigenvalues to the relative accuracy."""
+    """The mesh expected to give `modes` leading eigenvalues of an arm to a relative accuracy."""
     weights = sampled(rod).weights
     _, amplified = local_growth(rod)
     at_rest = (modes - RESOLUTION.mode_offset) * pi * _local_share(rod)
     waves = np.hypot(RESOLUTION.wave_factor * amplified, at_rest)
-    elements = _resolving(rod, waves * weights, accuracy, RESOLUTION.largest_order)
+    elements = _resolving(rod, waves * weights, accuracy, RESOLUTION.max_order)
     return ArmMesh(elements.edges, elements.order)
 
 
 def arm_elements(rod: Rod, wave_number: float, accuracy: float, largest_order: int | None = None) -> Elements:
-    """Elements that resolve a field with the mean wave number `wave_number` to the relative accuracy."""
+    """Elements that resolve a field along an arm with the mean wave number `wave_number`, in 1/L, to an
+    accuracy.
+
+    largest_order: maximum order, `RESOLUTION.max_order` by default.
+    """
     waves = wave_number * _local_share(rod)
-    return _resolving(rod, waves * sampled(rod).weights, accuracy, largest_order or RESOLUTION.largest_order)
+    return _resolving(rod, waves * sampled(rod).weights, accuracy, largest_order or RESOLUTION.max_order)
 
 
 def _local_share(rod: Rod) -> Array:
-    """Local wave number at one frequency at the samples of an arm, in units of the mean, (points,)."""
+    """Wave number at the samples of an arm, over its mean, of a wave with the same frequency everywhere,
+    (points,).
+    """
     _, weights, local = sampled(rod)
     at_rest: Array = (local.gamma2 * local.c3) ** 0.25
     return at_rest / (weights @ at_rest)
 
 
 def _resolving(rod: Rod, turns: Array, accuracy: float, largest_order: int) -> Elements:
-    """Elements that resolve waves; turns: phase, |q| times length, of each sample interval, (n,)."""
+    """Elements that resolve a wave along an arm; turns: |q| times length of each sample interval, its phase,
+    (n,).
+    """
     breaks = rod.build.breaks
     shares = turns.reshape(len(breaks) - 1, -1).sum(axis=1)
     edges = [0.0]
@@ -66,26 +75,29 @@ def _resolving(rod: Rod, turns: Array, accuracy: float, largest_order: int) -> E
     for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
         ratio = abs(log(_radius(rod, stop) / _radius(rod, start)))
         needed = _elements_for(float(share), accuracy, largest_order)
-        count = max(1, ceil(ratio / log(ARM_RESOLUTION.largest_ratio)), needed)
+        count = max(1, ceil(ratio / log(ARM_RESOLUTION.max_radius_ratio)), needed)
         edges += _edges(rod, start, stop, count)
         largest = max(largest, float(share) / count)
-    order = max(RESOLUTION.smallest_order, ceil(required_order(hypot(largest, 1.0), accuracy)))
-    return Elements(tuple(edges), order + (0 if rod.uniform else ARM_RESOLUTION.for_profiles))
+    order = max(RESOLUTION.min_order, ceil(required_order(hypot(largest, 1.0), accuracy)))
+    return Elements(tuple(edges), order + (0 if rod.uniform else ARM_RESOLUTION.profile_order_increase))
 
 
 def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
-    """The next finer mesh: the order times 4/3, or twice as many elements of 2/3 of the order."""
-    order = ceil(mesh.order * RESOLUTION.refinement)
-    if order <= RESOLUTION.largest_order:
+    """The next finer mesh of an arm: 4/3 of the order or, beyond the largest order, twice the elements of 2/3
+    of it.
+    """
+    order = ceil(mesh.order * RESOLUTION.refinement_ratio)
+    if order <= RESOLUTION.max_order:
         return ArmMesh(mesh.edges, order)
     edges = [0.0]
     for start, stop in zip(mesh.edges[:-1], mesh.edges[1:], strict=True):
         edges += _edges(rod, start, stop, 2)
-    return ArmMesh(tuple(edges), ceil(RESOLUTION.refinement / 2 * mesh.order))
+    return ArmMesh(tuple(edges), ceil(RESOLUTION.refinement_ratio / 2 * mesh.order))
 
 
 def _elements_for(share: float, accuracy: float, largest_order: int) -> int:
-    """Number of elements of the largest order that resolve a piece over which the phase grows by `share`."""
+    """Number of elements of the largest order that resolve an interval over which the phase grows by
+    `share`."""
     count = 1
     while required_order(share / count, accuracy) > largest_order:
         count += 1
@@ -97,7 +109,8 @@ def _radius(rod: Rod, u: float) -> float:
 
 
 def _edges(rod: Rod, start: float, stop: float, count: int) -> list[float]:
-    """Ends of `count` elements from start to stop, without start, with equal ratios of radii."""
+    """Edges of `count` elements from start to stop, without start; the radii at their ends have equal
+    ratios."""
     if count == 1:
         return [float(stop)]
     if rod.taper == 1:

@@ -1,6 +1,6 @@
-"""The transverse problem of one rod on one mesh as dense matrices, and fields of eigenvectors.
+"""The transverse eigenproblem of one rod on one mesh as dense matrices, and strains of its eigenvectors.
 
-Unknowns (y, theta, s) and scales are those of `pencil` and `arm_pencil`.
+Unknowns (y, theta, s) and their scales are those of `pencil` and `arm_pencil`.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from ...arrays import Array, Complex
 from ...model.rod import Rod
 from ..elements.elements import ELEMENTS, Elements
 from .arm_pencil import ArmPencil
-from .pencil import Pencil, derivatives_at, fields_of, shear_force
+from .pencil import Pencil, derivatives_at, fields_of_vectors, shear_force
 
 AnyPencil = Pencil | ArmPencil
 """The pencil of a uniform rod of linear material, or of any arm."""
@@ -20,9 +20,9 @@ AnyPencil = Pencil | ArmPencil
 
 @dataclass(frozen=True, eq=False)
 class DenseForm:
-    """The eigenproblem A x = w B x of one rod.
+    """The transverse eigenproblem A x = w B x of one rod, with dense A and diagonal B.
 
-    A: (unknowns, unknowns). B: diagonal of B, (unknowns,). scale: factors from unknowns to y and theta at the
+    A: (unknowns, unknowns). B: diagonal, (unknowns,). scale: factors from unknowns to y and theta at the
     nodes, (2, nodes).
     """
 
@@ -33,20 +33,24 @@ class DenseForm:
     scale: Array
 
     def fields(self, vectors: Complex) -> tuple[NDArray, NDArray]:
-        """(y, theta) at all nodes, clamp included, (nodes + 1, k), of k eigenvectors, (unknowns, k)."""
-        return fields_of(vectors, self.scale)
+        """(y, theta) at all nodes, clamp included, (nodes + 1, k) each, of k eigenvectors, (unknowns, k)."""
+        return fields_of_vectors(vectors, self.scale)
 
     def strains(self, vectors: Complex, points: Array) -> Complex:
-        """(h2, Pi) = (Y' - nu Theta, Theta') of k eigenvectors at points, (2, k, points).
+        """Strains (h2, Pi) = (Y' - nu Theta, Theta') of k eigenvectors, (unknowns, k), at points,
+        (2, k, points).
 
-        h2 = c2 s is exactly 0 in an unshearable rod. At a jump of a coefficient, both are right limits.
+        h2 = c2 s is exactly 0 in an unshearable rod. At a jump of a coefficient, both are limits from the
+        right.
         """
         c2 = self.rod.local(_inside(self.mesh, points)).c2
         shear = c2[:, None] * shear_force(self.mesh, vectors, points)
         return np.stack([shear.T, derivatives_at(self.mesh, self.fields(vectors)[1], points).T])
 
     def with_tip_terms(self, pair: float, tip: float) -> Array:
-        """A plus the tip term pair (a theta - b y) - tip a y, with test functions (a, b), at u = 1."""
+        """A plus the matrix of pair (a theta - b y) - tip a y at u = 1, with test functions (a, b):
+        (unknowns, unknowns).
+        """
         A = self.A.copy()
         n = self.mesh.nodes
         y, theta = self.scale[:, -1]
@@ -57,7 +61,7 @@ class DenseForm:
 
 
 def dense_form(rod: Rod, pencil: AnyPencil) -> DenseForm:
-    """The dense eigenproblem of a rod on the mesh of a pencil."""
+    """The dense eigenproblem of a rod on the mesh of `pencil`."""
     found = pencil.matrices(rod)
     A = np.zeros((pencil.unknowns, pencil.unknowns))
     A[pencil.rows, pencil.columns] = found.A
@@ -65,10 +69,13 @@ def dense_form(rod: Rod, pencil: AnyPencil) -> DenseForm:
 
 
 def _inside(mesh: Elements, points: Array) -> Array:
-    """Points, (n,), moved from the ends of elements into the element of `Elements.by_element`."""
+    """Points, (n,), moved just inside the element that `Elements.by_element` gives them, away from its
+    ends."""
     moved = np.array(points, dtype=float)
     for first, inside, local in mesh.by_element(points):
         e = first // mesh.order
         place = mesh.edges[e] + mesh.lengths[e] * (local + 1) / 2
-        moved[inside] = np.clip(place, mesh.edges[e] + ELEMENTS.inside, mesh.edges[e + 1] - ELEMENTS.inside)
+        moved[inside] = np.clip(
+            place, mesh.edges[e] + ELEMENTS.end_distance, mesh.edges[e + 1] - ELEMENTS.end_distance
+        )
     return moved

@@ -1,4 +1,5 @@
-"""Indices of the unknowns of the elements of a straight rod, inside the elements and between them."""
+"""Indices of the unknowns of equal elements of a straight rod: those inside an element and those at its
+ends."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -7,36 +8,39 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..elements.elements import ELEMENTS
-from ..state_layout import COMPONENTS
+from ..state_layout import PLANE_COMPONENTS
 
 Indices = NDArray[np.int_]
 
 
 @dataclass(frozen=True, eq=False)
 class ElementNumbering:
-    """Indices of the elements' unknowns.
+    """Indices of the unknowns of every element, for static condensation.
 
-    An element has `local` unknowns. unknowns: indices in the state, (elements, local); stresses at the tip
-    are not unknowns, and have the index behind the state. inside, ends: local indices of interior unknowns
-    and of unknowns at both ends, the left end first. between: indices of the end unknowns among all unknowns
-    between elements, (elements, ends). exists: False for stresses at the tip, (unknowns between elements,).
+    An element has `local` unknowns. state_indices: in the state, (elements, local); stresses at the tip are
+    not unknowns, and have the index behind the state. interior, interface: local indices of interior unknowns
+    and of unknowns at both ends, the left end first. interface_indices: indices of an element's end unknowns
+    among those of all elements, (elements, ends). is_unknown: False for stresses at the tip, one entry for
+    each of the end unknowns of all elements.
     """
 
-    unknowns: Indices
-    inside: Indices
-    ends: Indices
-    between: Indices
-    exists: NDArray[np.bool_]
+    state_indices: Indices
+    interior: Indices
+    interface: Indices
+    interface_indices: Indices
+    is_unknown: NDArray[np.bool_]
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def element_numbering(elements: int, order: int, components: tuple[int, ...]) -> ElementNumbering:
-    """Numbering of a mesh of equal elements of some order, for some components of stresses and velocities."""
+    """Numbering of `elements` equal elements of an order, for the given components of stresses and
+    velocities.
+    """
     last = elements * order
     nodes = np.arange(elements)[:, None] * order + np.arange(order + 1)
-    unknown = COMPONENTS * (2 * last + 1)
+    unknown = PLANE_COMPONENTS * (2 * last + 1)
     stresses = [np.where(nodes == last, unknown, c * last + nodes) for c in components]
-    velocities = [COMPONENTS * last + c * (last + 1) + nodes for c in components]
+    velocities = [PLANE_COMPONENTS * last + c * (last + 1) + nodes for c in components]
     width = 2 * len(components)
     node = np.tile(np.arange(order + 1), width)
     inside = np.flatnonzero((node > 0) & (node < order)) if elements > 1 else np.array([], int)

@@ -1,4 +1,4 @@
-"""The matrices of the mixed form about the straight rod, element by element.
+"""The matrices of the mixed form about the straight uniform rod, element by element.
 
 The equal elements of a uniform rod have equal matrices. A system with the matrix A - s M is solved by static
 condensation: the interior nodes of the elements are eliminated, with one factorisation for all elements; then
@@ -23,7 +23,7 @@ from ...model.balance import Values, ad, coad
 from ..elements.basis import differentiation
 from ..elements.elements import ELEMENTS
 from ..elements.quadrature import gauss_lobatto
-from ..state_layout import COMPONENTS
+from ..state_layout import PLANE_COMPONENTS
 from .element_numbering import ElementNumbering, element_numbering
 from .mixed_form import MixedForm
 
@@ -36,7 +36,7 @@ axis."""
 
 @dataclass(frozen=True, eq=False)
 class StraightElements:
-    """A and M of a `MixedForm` about its straight rod, for some components, element by element.
+    """A and M of a `MixedForm` about its straight rod, for the given components, as matrices of one element.
 
     Vectors are states of the form, (unknowns,); other components are ignored.
     """
@@ -46,7 +46,8 @@ class StraightElements:
 
     @cached_property
     def numbering(self) -> ElementNumbering:
-        """Indices of the elements' unknowns. Raises ValueError for several elements of an even order."""
+        """Indices of the unknowns of every element. Raises ValueError for several elements of an even
+        order."""
         mesh = self.form.mesh
         if mesh.elements > 1 and mesh.order % 2 == 0:
             raise ValueError(f"several elements need an odd order, not {mesh.order}")
@@ -54,8 +55,8 @@ class StraightElements:
 
     @cached_property
     def A(self) -> Array:
-        """Element contribution to A, shape (local, local)."""
-        each = np.eye(COMPONENTS)
+        """Contribution of every element to A, (local, local)."""
+        each = np.eye(PLANE_COMPONENTS)
         block = np.ix_(self.components, self.components)
         material = self.form.rod.material
         E = material.rest[:, None]
@@ -76,64 +77,64 @@ class StraightElements:
 
     @cached_property
     def M(self) -> Array:
-        """Element contribution to the diagonal of M, shape (local,)."""
+        """Contribution of every element to the diagonal of M, (local,)."""
         stresses = np.outer(self.form.rod.material.compliance[list(self.components)], self._reference[1])
         return np.concatenate([stresses, 0 * stresses]).ravel()
 
     @property
     def _reference(self) -> tuple[Array, Array]:
-        """(W D, W) of an element, shapes (nodes, nodes) and (nodes,)."""
+        """(W D, W) of an element on the rod, (nodes, nodes) and (nodes,)."""
         WD, w = _weighted_derivative(self.form.mesh.order)
         return WD, w / (2 * self.form.mesh.elements)
 
     def times_A(self, x: Values) -> Values:
-        """A x, shape (unknowns,)."""
-        return self.assembled(self.gathered(x) @ self.A.T)
+        """Product A x, (unknowns,)."""
+        return self.assemble(self.gather(x) @ self.A.T)
 
     def times_M(self, x: Values) -> Values:
-        """M x, shape (unknowns,)."""
-        return self.assembled(self.gathered(x) * self.M)
+        """Product M x, (unknowns,)."""
+        return self.assemble(self.gather(x) * self.M)
 
     def size_of_product(self, p: Values, q: Values) -> float:
-        """|p| |A| |q|, with moduli of all entries: the scale of the rounding error of p A q."""
-        return float(np.sum(np.abs(self.gathered(p)) * (np.abs(self.gathered(q)) @ np.abs(self.A).T)))
+        """|p| |A| |q|, with the moduli of all entries: p A q has a rounding error relative to this number."""
+        return float(np.sum(np.abs(self.gather(p)) * (np.abs(self.gather(q)) @ np.abs(self.A).T)))
 
-    def gathered(self, x: Values) -> Values:
-        """Entries of a vector by element, shape (elements, local)."""
-        return np.append(x, 0)[self.numbering.unknowns]
+    def gather(self, x: Values) -> Values:
+        """Entries of a vector x, (unknowns,), for each element, (elements, local)."""
+        return np.append(x, 0)[self.numbering.state_indices]
 
-    def assembled(self, parts: Values) -> Values:
-        """The sum of element contributions, (elements, local), as a vector (unknowns,)."""
+    def assemble(self, parts: Values) -> Values:
+        """Sum of the contributions of all elements, (elements, local), as a vector (unknowns,)."""
         x = np.zeros(self.form.unknowns + 1, parts.dtype)
-        np.add.at(x, self.numbering.unknowns, parts)
+        np.add.at(x, self.numbering.state_indices, parts)
         return x[:-1]
 
     def factors(self, shift: complex) -> "ElementFactors":
-        """Factorisation of A - shift M."""
+        """LU factorisation of A - shift M by static condensation."""
         numbering = self.numbering
         K = self.A - np.diag(shift * self.M).astype(complex)
-        condensed = K[np.ix_(numbering.ends, numbering.ends)]
+        condensed = K[np.ix_(numbering.interface, numbering.interface)]
         inside = None
-        if numbering.inside.size:
+        if numbering.interior.size:
             inside = _InteriorElimination.of(K, numbering)
             condensed -= inside.entering @ inside.right
-        exists = numbering.exists
+        exists = numbering.is_unknown
         whole = np.zeros((len(exists), len(exists)), complex)
-        for element in numbering.between:
+        for element in numbering.interface_indices:
             whole[np.ix_(element, element)] += condensed
-        between = factorised(whole[np.ix_(exists, exists)])
-        return ElementFactors(elements=self, K=K, inside=inside, between=between)
+        between = lu_factorisation(whole[np.ix_(exists, exists)])
+        return ElementFactors(elements=self, K=K, interior=inside, interface=between)
 
 
 LU = tuple[Complex, NDArray[np.int32]]
-"""LU factorisation of LAPACK: factors and pivots."""
+"""LU factorisation by LAPACK: (factors, pivots)."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _InteriorElimination:
-    """Elimination of the interior unknowns i of an element, with unknowns e at its ends.
+    """Elimination of the interior unknowns i of an element from its matrix K, with unknowns e at its ends.
 
-    factors: factorisation of K_ii. leaving: K_ie, (inside, ends). entering: K_ei, (ends, inside). right:
+    factors: LU factorisation of K_ii. leaving: K_ie, (inside, ends). entering: K_ei, (ends, inside). right:
     K_ii^-1 K_ie, (inside, ends). left: K_ii^-H K_ei^H, (inside, ends).
     """
 
@@ -145,77 +146,86 @@ class _InteriorElimination:
 
     @classmethod
     def of(cls, K: Complex, numbering: ElementNumbering) -> Self:
-        """Elimination of the interior unknowns from the element matrix K, (local, local)."""
-        inside = numbering.inside
-        ends = numbering.ends
-        factors = factorised(K[np.ix_(inside, inside)])
+        """The elimination of the interior unknowns from an element matrix K, (local, local)."""
+        inside = numbering.interior
+        ends = numbering.interface
+        factors = lu_factorisation(K[np.ix_(inside, inside)])
         leaving = K[np.ix_(inside, ends)]
         entering = K[np.ix_(ends, inside)]
-        right = solved_with(factors, leaving)
-        left = solved_with(factors, entering.conj().T, adjoint=True)
+        right = solve_factorised(factors, leaving)
+        left = solve_factorised(factors, entering.conj().T, adjoint=True)
         return cls(factors=factors, leaving=leaving, entering=entering, right=right, left=left)
 
     def coupling(self, adjoint: bool) -> tuple[Complex, Complex]:
-        """Coupling of interior and ends: (K_ei, K_ii^-1 K_ie), or for `adjoint` the two matrices of K^H."""
+        """(K_ei, K_ii^-1 K_ie), the coupling of interior and ends; for `adjoint`, the two matrices of K^H."""
         return (self.leaving.conj().T, self.left) if adjoint else (self.entering, self.right)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ElementFactors:
-    """Factorisation of K = A - shift M: K is the element matrix, `inside` is None for a single element."""
+    """Factorisation of A - shift M by static condensation.
+
+    K: matrix of one element. interior: elimination of its interior, None for a single element. interface: LU
+    factorisation of the matrix of the nodes between elements.
+    """
 
     elements: StraightElements
     K: Complex
-    inside: _InteriorElimination | None
-    between: LU
+    interior: _InteriorElimination | None
+    interface: LU
 
     def solve(self, b: Values, adjoint: bool = False) -> Complex:
-        """The solution x of K x = b, or of K^H x = b; both (unknowns,).
+        """The solution x of (A - shift M) x = b, or of its adjoint system if `adjoint`; both (unknowns,).
 
-        The elimination of the interior has no pivots from outside, so a step of iterative refinement follows.
+        The elimination of the interior chooses no pivots at the ends of elements, so one step of iterative
+        refinement follows.
         """
         elements = self.elements
         x = self._eliminated(b, adjoint)
-        if self.inside is None:
+        if self.interior is None:
             return x
         rows = self.K.conj() if adjoint else self.K.T
-        return x + self._eliminated(b - elements.assembled(elements.gathered(x) @ rows), adjoint)
+        return x + self._eliminated(b - elements.assemble(elements.gather(x) @ rows), adjoint)
 
     def _eliminated(self, b: Values, adjoint: bool) -> Complex:
         numbering = self.elements.numbering
-        inside = self.inside
-        within = numbering.unknowns[:, numbering.inside]
-        ends = numbering.unknowns[:, numbering.ends]
-        right = np.zeros(len(numbering.exists), complex)
-        between = np.zeros(len(numbering.exists), complex)
+        inside = self.interior
+        within = numbering.state_indices[:, numbering.interior]
+        ends = numbering.state_indices[:, numbering.interface]
+        right = np.zeros(len(numbering.is_unknown), complex)
+        between = np.zeros(len(numbering.is_unknown), complex)
         b = np.append(b, 0)
         x = np.zeros(len(b), complex)
-        right[numbering.between] = b[ends]
+        right[numbering.interface_indices] = b[ends]
         if inside is not None:
             to_ends, from_ends = inside.coupling(adjoint)
-            alone = solved_with(inside.factors, b[within].T, adjoint).T
-            np.subtract.at(right, numbering.between, alone @ to_ends.T)
-        between[numbering.exists] = solved_with(self.between, right[numbering.exists], adjoint)
-        x[ends] = between[numbering.between]
+            alone = solve_factorised(inside.factors, b[within].T, adjoint).T
+            np.subtract.at(right, numbering.interface_indices, alone @ to_ends.T)
+        between[numbering.is_unknown] = solve_factorised(self.interface, right[numbering.is_unknown], adjoint)
+        x[ends] = between[numbering.interface_indices]
         if inside is not None:
-            x[within] = alone - between[numbering.between] @ from_ends.T
+            x[within] = alone - between[numbering.interface_indices] @ from_ends.T
         return x[:-1]
 
 
-def factorised(K: Complex) -> LU:
-    """LU factorisation of K, (n, n), with partial pivoting; a singular matrix gives inf or nan solutions."""
+def lu_factorisation(K: Complex) -> LU:
+    """LU factorisation of K, (n, n), with partial pivoting; solutions with a singular K are inf or nan."""
     factors, pivots, _ = zgetrf(K)
     return factors, pivots
 
 
-def solved_with(factors: LU, right: Values, adjoint: bool = False) -> Complex:
-    """The solution x of K x = right, or of K^H x = right; right: (n,) or (n, m)."""
+def solve_factorised(factors: LU, right: Values, adjoint: bool = False) -> Complex:
+    """The solution x of K x = right, or of K^H x = right if `adjoint`, from the factors of K; right: (n,) or
+    (n, m).
+    """
     x, _ = zgetrs(*factors, right, trans=2 if adjoint else 0)
     return x
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def _weighted_derivative(order: int) -> tuple[Array, Array]:
-    """(W D, W) on [-1, 1], (order + 1, order + 1) and (order + 1,); W D does not depend on the length."""
+    """(W D, W) on the element [-1, 1], (order + 1, order + 1) and (order + 1,); W D is the same for every
+    length.
+    """
     x, w = gauss_lobatto(order)
     return w[:, None] * differentiation(x), w

@@ -1,7 +1,7 @@
-"""Taylor coefficients of the constitutive law s(S) about S = 0, at the nodes of a mesh.
+"""Derivatives of the constitutive law s(S) at S = 0, the straight rod, at the nodes of a mesh.
 
-s1 = N(S1, S3) and s3 = M(S1, S3) of `rodsweep.model.material.response`; s2 = S2. At a node where the
-material jumps they are those of `rodsweep.model.material.jump`.
+s1 = N(S1, S3) and s3 = M(S1, S3) of `rodsweep.model.material.response`; s2 = S2. At a node where the material
+jumps, N and M are those of `rodsweep.model.material.jump`.
 """
 
 from dataclasses import dataclass
@@ -16,8 +16,10 @@ from ..nodal_rod import NodalRod
 
 
 @dataclass(frozen=True)
-class ChangeWithForce:
-    """Derivatives with respect to F of nu, (nodes + 1,), and of the tangent, (3, nodes + 1)."""
+class ForceDerivatives:
+    """Derivatives by the force F of the stretch nu of the straight rod, (nodes + 1,), and of the tangent,
+    (3, nodes + 1).
+    """
 
     nu: Array
     tangent: Array
@@ -25,16 +27,16 @@ class ChangeWithForce:
 
 @dataclass(frozen=True)
 class LawAtRest:
-    """Derivatives of s(S) at S = 0.
+    """Derivatives of the law s(S) at S = 0, at all nodes of a mesh.
 
     nonlinear: False for the linear law, s(S) = S. tangent: diagonal of ds/dS, (3, nodes + 1). change:
-    derivatives with respect to F. N11, N33, M13: second derivatives; N111, N133, M113, M333: third
-    derivatives, (nodes + 1,) each.
+    derivatives by F. N11, N33, M13: second derivatives of N and M by S1 and S3; N111, N133, M113, M333: third
+    derivatives; (nodes + 1,) each.
     """
 
     nonlinear: bool
     tangent: Array
-    change: ChangeWithForce
+    change: ForceDerivatives
     N11: Array
     N33: Array
     M13: Array
@@ -44,14 +46,14 @@ class LawAtRest:
     M333: Array
 
     def second(self, S: Values, T: Values) -> Values:
-        """The second derivative of s applied to S and T; all (3, ..., nodes + 1)."""
+        """The second derivative of s, a bilinear form, applied to S and T; all (3, ..., nodes + 1)."""
         out = np.zeros(np.broadcast(S, T).shape, np.result_type(S, T))
         out[0] = self.N11 * S[0] * T[0] + self.N33 * S[2] * T[2]
         out[2] = self.M13 * (S[0] * T[2] + S[2] * T[0])
         return out
 
     def third(self, S: Values, T: Values, R: Values) -> Values:
-        """The third derivative of s applied to S, T and R; all (3, ..., nodes + 1)."""
+        """The third derivative of s, a trilinear form, applied to S, T and R; all (3, ..., nodes + 1)."""
         out = np.zeros(np.broadcast(S, T, R).shape, np.result_type(S, T, R))
         mixed = S[0] * T[2] * R[2] + S[2] * T[0] * R[2] + S[2] * T[2] * R[0]
         out[0] = self.N111 * S[0] * T[0] * R[0] + self.N133 * mixed
@@ -61,7 +63,7 @@ class LawAtRest:
 
 
 def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
-    """The law of a rod at the nodes of a mesh."""
+    """The derivatives of a rod's constitutive law at rest, at the nodes of a mesh."""
     law: Law = rod.build.constitutive_law
     nu = nodal.rest[0]
     c1, _, c3 = nodal.compliance
@@ -73,7 +75,7 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
     # The force compresses the arm at rest: d nu/dF = -c1/(dN/dS1).
     moved = -c1 / stiffness
     ones = np.ones_like(nu)
-    change = ChangeWithForce(moved, np.array([slope * moved, 0 * ones, bending_slope * moved]))
+    change = ForceDerivatives(moved, np.array([slope * moved, 0 * ones, bending_slope * moved]))
     found = LawAtRest(
         nonlinear=law is not LINEAR,
         tangent=np.array([stiffness, ones, bending]),
@@ -92,7 +94,7 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
 
 
 def _fill_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> None:
-    """Fills in the derivatives at the nodes at which the material jumps."""
+    """Fills in the derivatives of the law at the nodes at which the material jumps."""
     at = nodal.jumps
     sides = nodal.sides
     nu = sides[..., 0]
@@ -119,15 +121,16 @@ def _fill_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> None:
     found.M333[at] = third[:, 1, 1, 1, 1]
 
 
-Derivatives = tuple[Array, Array, Array]
-"""First, second and third derivatives of two functions of two variables: (..., 2, 2), (..., 2, 2, 2) and so
-on; the first index after the leading ones is the function's."""
+LawDerivatives = tuple[Array, Array, Array]
+"""First, second and third derivatives of two functions of two variables: (..., 2, 2), (..., 2, 2, 2),
+(..., 2, 2, 2, 2). The index after the leading axes is the function; the others are the variables."""
 
 
-def stress_at_rest(law: Law, sides: Array) -> Derivatives:
-    """Derivatives of N and M at rest by the mean unknowns, at jumps; sides: (k, 2, 7).
+def stress_at_rest(law: Law, sides: Array) -> LawDerivatives:
+    """Derivatives of N and M at rest by the mean unknowns q1 and q3, at k jumps; sides: (k, 2, 7).
 
-    The unknowns of each side are functions of the stresses, and their mean is one: its inverse is the law.
+    On each side the unknowns are functions of N and M, and so is their mean. N and M are the inverse
+    function.
     """
     shares = sides[..., 3:5]
     unknowns = inverse_derivatives(_on_sides(law, *np.moveaxis(sides[..., :3], -1, 0)))
@@ -135,8 +138,8 @@ def stress_at_rest(law: Law, sides: Array) -> Derivatives:
     return inverse_derivatives((mean[0], mean[1], mean[2]))
 
 
-def _on_sides(law: Law, nu: Array, c1: Array, c3: Array) -> Derivatives:
-    """Derivatives of N and M at rest where the material does not jump, from arrays of any shape."""
+def _on_sides(law: Law, nu: Array, c1: Array, c3: Array) -> LawDerivatives:
+    """Derivatives of N and M by q1 and q3 at rest, on each side of a jump; nu, c1, c3: of any equal shape."""
     first, second, third = (np.zeros((*nu.shape, *(2,) * order)) for order in (2, 3, 4))
     first[..., 0, 0] = law.stiffness(nu)
     first[..., 1, 1] = law.bending(nu)
@@ -152,8 +155,8 @@ def _on_sides(law: Law, nu: Array, c1: Array, c3: Array) -> Derivatives:
     return first, second, third
 
 
-def inverse_derivatives(of: Derivatives) -> Derivatives:
-    """Derivatives of the inverse function g, from the derivatives of f: f(g(y)) = y, differentiated three
+def inverse_derivatives(of: LawDerivatives) -> LawDerivatives:
+    """Derivatives of the inverse function g of f, from those of f: f(g(y)) = y is differentiated three
     times."""
     f1, f2, f3 = of
     g1 = np.linalg.inv(f1)

@@ -1,17 +1,17 @@
-"""Longitudinal eigenvalues of an arm that varies along its length, or of rubber.
+"""Longitudinal eigenvalues of a rod, for an arm that varies along its length or a nonlinear law.
 
-Beside the straight state longitudinal and transverse modes are decoupled (Sec. VI). With the axial drag
-gamma1(u) and the tangent stiffness K(u) = k1(u) W''(nu(u)) a displacement x obeys
+In the linearised rod longitudinal and transverse modes are decoupled (Sec. VI). With the axial drag gamma1(u)
+and the tangent stiffness K(u) = k1(u) W''(nu(u)) a displacement x obeys
 
     gamma1 w x = (K x')',   x(0) = 0,   K x'(1) = 0.
 
 This is a Sturm-Liouville problem: all w are real, negative and simple. The unknowns are the strains e = x' at
-the Gauss points of spectral elements that end where the material jumps, each times the root of K and its
-weight. If the matrix A gives the displacements x = int e from them, times the root of gamma1 and its weight,
-then w = -1/sigma^2 for the singular values sigma of A. All integrals are sums of positive numbers, and the
-largest singular values have nearly all digits, however much the material varies. By the Rayleigh quotient the
-n-th eigenvalue found is not right of the true n-th one, so none is missing among those on which two orders
-agree.
+the Gauss points of spectral elements that end where the material jumps, each times the square root of K and
+of the Gauss weight. Let the matrix A map these unknowns to the displacements x = int e, times the square root
+of gamma1 and of the weight. Then w = -1/sigma^2 for the singular values sigma of A. All integrals are sums of
+positive numbers, and the largest singular values have nearly all digits, however much the material varies. By
+the Rayleigh quotient the n-th computed eigenvalue is not right of the true n-th one. No eigenvalue is
+therefore missing among those on which two orders agree.
 """
 
 from dataclasses import dataclass
@@ -29,56 +29,58 @@ from .arm_resolution import arm_elements
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LongitudinalSettings:
-    """Settings for the mesh of longitudinal modes and for the comparison of two orders."""
+    """Settings for the mesh of longitudinal modes, and for errors from two orders of its elements."""
 
-    first_accuracy: float = 1e-12
+    mesh_accuracy: float = 1e-12
     """Relative accuracy for which the first mesh is chosen."""
-    more_orders: int = 4
-    """Difference of the two orders whose eigenvalues are compared."""
+    order_increase: int = 4
+    """Increase of the order of the elements whose eigenvalues are compared with those of the order before."""
     max_order: int = 60
-    """Largest order of an element; a larger error is stated as found."""
-    converged: float = 1e-13
-    """Relative difference of two orders at which the order is large enough."""
+    """Maximum order of an element; the error at this order is returned even if it is large."""
+    converged_difference: float = 1e-13
+    """Relative difference between the eigenvalues of two orders at which the order is no longer increased."""
     rounding: float = 5e-14
-    """Least relative error that is stated, for rounding."""
-    more_points: int = 6
-    """Number of quadrature points for displacements in an element, beyond the number for strains."""
+    """Relative rounding error of an eigenvalue, added to the difference between two orders."""
+    extra_points: int = 6
+    """Number of quadrature points of an element for displacements, minus the number for strains."""
 
 
 LONGITUDINAL_MODES = LongitudinalSettings()
 
 
 def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
-    """(w, relative error) of the leading longitudinal eigenvalues, (modes,) each, w in 1/tau2.
+    """(w in 1/tau2, relative error) of the leading longitudinal eigenvalues, (modes,) each.
 
-    Raises ValueError for an arm that is inextensible anywhere.
+    Raises ValueError for an inextensible rod.
     """
     if not rod.c1 > 0:
         raise ValueError("an inextensible rod (k1 = inf) has no longitudinal modes")
-    mesh = arm_elements(rod, np.pi * modes, LONGITUDINAL_MODES.first_accuracy)
+    mesh = arm_elements(rod, np.pi * modes, LONGITUDINAL_MODES.mesh_accuracy)
     order = max(mesh.order, -(-(modes + 1) // mesh.elements))
     found = _rates(rod, mesh, order, modes)
     while True:
-        order += LONGITUDINAL_MODES.more_orders
+        order += LONGITUDINAL_MODES.order_increase
         # No a-priori bound of the error holds for every profile, so a second order shows it.
         finer = _rates(rod, mesh, order, modes)
         error = np.abs(finer / found - 1)
-        if error.max() <= LONGITUDINAL_MODES.converged or order >= LONGITUDINAL_MODES.max_order:
+        if error.max() <= LONGITUDINAL_MODES.converged_difference or order >= LONGITUDINAL_MODES.max_order:
             return finer, error + LONGITUDINAL_MODES.rounding
         found = finer
 
 
 def _rates(rod: Rod, mesh: Elements, order: int, modes: int) -> Array:
-    """The eigenvalues on elements with `order` strains each, (modes,), leading first."""
+    """The leading eigenvalues w on elements with `order` strains each, (modes,)."""
     sizes = np.linalg.svd(_displacements(rod, np.asarray(mesh.edges), order), compute_uv=False)
     rates: Array = -1 / sizes[:modes] ** 2
     return rates
 
 
 def _displacements(rod: Rod, edges: Array, order: int) -> Array:
-    """The matrix A, (elements (order + more_points), elements order)."""
+    """The matrix A of the module, (elements (order + more_points), elements order); edges: of elements,
+    (elements + 1,).
+    """
     strains, of_strains = gauss(order)
-    points, weights = gauss(order + LONGITUDINAL_MODES.more_points)
+    points, weights = gauss(order + LONGITUDINAL_MODES.extra_points)
     halves = np.diff(edges)[:, None] / 2
     middles = (edges[1:] + edges[:-1])[:, None] / 2
     here, there = (rod.sections((middles + halves * x).ravel()) for x in (strains, points))
@@ -104,7 +106,9 @@ def _weighted_legendre(order: int) -> Array:
 
 
 def _integrals(order: int, points: Array) -> Array:
-    """Integrals from -1 to `points` of the Lagrange polynomials through the Gauss points, (points, order)."""
+    """Integrals from -1 to each of `points` of the Lagrange polynomials through the Gauss points,
+    (points, order).
+    """
     series = legendre.legint(_weighted_legendre(order), lbnd=-1)
     integrals: Array = legendre.legval(points, series).T
     return integrals

@@ -1,8 +1,9 @@
-"""The nonlinear rod in the plane in its mixed form: stresses and velocities in the body frame, on a mesh.
+"""The nonlinear rod in the plane in mixed form: stresses and velocities in the body frame are unknowns on a
+mesh.
 
-The balance of `rodsweep.model.balance` with stresses and velocities as unknowns. S is the stress of a linear
-rod minus the stress of the straight rod, (n1 + F, n2, m3), and V = (v1, v2, Omega3). W are the weights of the
-quadrature, D is the derivative, and s(S) is the constitutive law, s(S) = S for a linear rod:
+The balance is that of `rodsweep.model.balance`. S is the stress of a linear rod minus the stress of the
+straight rod, (n1 + F, n2, m3), and V = (v1, v2, Omega3). W are the weights of the quadrature, D is the
+derivative, and s(S) is the constitutive law, s(S) = S for a linear rod:
 
     W C dS/dt = -D^T W V + W ad_E V          at all nodes but the tip; the clamp V(0) = 0 is natural
     0         = W (D*_E Sigma - Gamma V)     at all nodes; Sigma = (-F, 0, 0) + s(S); S(1) = 0 is essential
@@ -29,20 +30,20 @@ from ...model.rod import Rod
 from ..arm_on_mesh import jumps_on, material_on
 from ..elements.mesh import Mesh, reconstruction
 from ..nodal_rod import NodalRod, nodal_rod
-from ..state_layout import COMPONENTS, StateLayout, plane_layout
+from ..state_layout import PLANE_COMPONENTS, StateLayout, plane_layout
 from .law_at_rest import LawAtRest, law_at_rest
 
 MIRROR_SIGNS = np.array([1.0, -1.0, -1.0])
-"""Signs of the components of a stress or a velocity under reflection in the straight rod's axis."""
+"""Signs of the components of a stress or a velocity under reflection in the axis of the straight rod."""
 
 
 @dataclass(frozen=True, eq=False)
 class MixedForm:
-    """One rod on one mesh; k1, k2 may be inf and gamma3 may be 0.
+    """One rod on one mesh in mixed form; k1, k2 may be inf and gamma3 may be 0.
 
-    X has the shape (..., unknowns), with N = mesh.nodes: N values of S1, of S2 (k3/L^2) and of S3 (k3/L) at
-    all nodes except the tip, then N + 1 values of v1, of v2 (L/tau2) and of Omega3 (1/tau2) at all nodes. X
-    may be complex.
+    A state X has the shape (..., unknowns), with N = mesh.nodes: N values of S1, of S2 (k3/L^2) and of S3
+    (k3/L) at all nodes except the tip, then N + 1 values of v1, of v2 (L/tau2) and of Omega3 (1/tau2) at all
+    nodes. X may be complex.
     """
 
     rod: Rod
@@ -50,8 +51,8 @@ class MixedForm:
 
     @cached_property
     def layout(self) -> StateLayout:
-        """Positions of the fields in X; all components of V are unknowns."""
-        return plane_layout(self.mesh.nodes, tuple(range(COMPONENTS)))
+        """Indices of the fields in X; all components of V are unknowns."""
+        return plane_layout(self.mesh.nodes, tuple(range(PLANE_COMPONENTS)))
 
     @property
     def stresses(self) -> int:
@@ -64,36 +65,38 @@ class MixedForm:
 
     @cached_property
     def nodal(self) -> NodalRod:
-        """Compliance, drag and strain at rest at all nodes, and the tip stress."""
-        kept = tuple(range(COMPONENTS))
+        """The rod at all nodes: compliance, drag, strain at rest, and stress of the tip."""
+        unknown_velocities = tuple(range(PLANE_COMPONENTS))
         jumps = jumps_on(self.rod, self.mesh)
-        return nodal_rod(material_on(self.rod, self.mesh), self.mesh, kept, jumps=jumps)
+        return nodal_rod(material_on(self.rod, self.mesh), self.mesh, unknown_velocities, jumps=jumps)
 
     @cached_property
     def law(self) -> LawAtRest:
-        """Derivatives of the constitutive law at rest."""
+        """Derivatives of the constitutive law at rest, at all nodes."""
         return law_at_rest(self.rod, self.nodal)
 
     @cached_property
     def parity(self) -> Array:
-        """Diagonal of R, which maps X to its mirror image; +-1, (unknowns,). R X solves the equations too."""
+        """Diagonal of the reflection R, +-1, (unknowns,). If X solves the equations, so does its mirror image
+        R X.
+        """
         signs = np.repeat(MIRROR_SIGNS[:, None], self.mesh.nodes + 1, axis=1)
         return self.layout.state(signs, signs)
 
     @cached_property
     def M(self) -> Array:
-        """The diagonal of M, (W C, 0), shape (unknowns,)."""
+        """Diagonal (W C, 0) of the matrix M, (unknowns,)."""
         weighted = self.nodal.compliance * self.mesh.quadrature
         return self.layout.state(weighted, np.zeros(weighted.shape))
 
     @cached_property
     def A(self) -> Array:
-        """The matrix A, shape (unknowns, unknowns)."""
+        """The matrix A of the linear terms, (unknowns, unknowns)."""
         N = self.mesh.nodes
         stresses = slice(self.stresses)
         velocities = slice(self.stresses, None)
         WD = -self.mesh.matrices.weak.T
-        each = np.eye(COMPONENTS)
+        each = np.eye(PLANE_COMPONENTS)
         A = self._coupling()
         A[stresses, velocities] -= np.kron(each, WD.T[:N])
         A[velocities, stresses] += np.kron(each, WD[:, :N]) * self.law.tangent[:, :N].ravel()
@@ -101,7 +104,7 @@ class MixedForm:
         return A
 
     def times_A_F(self, X: Values) -> Values:
-        """(dA/dF) X, shape (..., unknowns)."""
+        """Product (dA/dF) X of the derivative of A by the force F with states X; both (..., unknowns)."""
         S, V = self.fields(X)
         W = self.mesh.quadrature
         change = self.law.change
@@ -112,30 +115,32 @@ class MixedForm:
         # F enters by the strain and the tangent at rest and by Sigma1 = -F.
         forces = coad(self._along(E, S), self._stressed(S)) + coad(at_rest, moved)
         forces = forces + coad(self._strain(S), self._along(Sigma, S))
-        return self.unknown(W * ad(self._along(E, V), V), W * forces + self._slope(moved))
+        return self.state(W * ad(self._along(E, V), V), W * forces + self._slope(moved))
 
     @cached_property
     def tip_y(self) -> Array:
-        """The row, (unknowns,), whose product with X is y of the tip in L to first order.
+        """Row, (unknowns,), whose product with X is the deflection y of the tip in L, to first order.
 
         y = int c2 S2 + c3 S3(u) (int_u^1 nu) du.
         """
         W = self.mesh.quadrature[:-1]
         c = self.nodal.compliance[:, :-1]
-        return self.layout.row(
+        return self.layout.vector(
             {"n2": c[1] * W, "m3": c[2] * integral_to_tip(self.mesh, self.nodal.rest[0])[:-1] * W}
         )
 
     def fields(self, X: Values) -> tuple[Values, Values]:
-        """(S, V) at all nodes, tip included, each of shape (3, ..., nodes + 1)."""
+        """Stresses S and velocities V of states X at all nodes, tip included, (3, ..., nodes + 1) each."""
         return self.layout.stresses(X), self.layout.velocities(X)
 
-    def unknown(self, S: Values, V: Values) -> Values:
-        """X from (S, V) at all nodes, each (3, ..., nodes + 1); S at the tip is ignored."""
+    def state(self, S: Values, V: Values) -> Values:
+        """States X from stresses S and velocities V at all nodes, (3, ..., nodes + 1) each; S at the tip is
+        ignored.
+        """
         return self.layout.state(S, V)
 
     def bilinear(self, X: Values, Y: Values) -> Values:
-        """B(X, Y) = B(Y, X), shape (..., unknowns)."""
+        """The symmetric bilinear form B(X, Y) of the quadratic terms, (..., unknowns)."""
         S, U = self.fields(X)
         T, V = self.fields(Y)
         CS = self._strain(S)
@@ -145,10 +150,10 @@ class MixedForm:
         if self.law.nonlinear:
             second = self.law.second(S, T)
             forces = forces + W * coad(self._along(self.nodal.rest, S), second) + self._slope(second)
-        return self.unknown(W * (ad(CS, V) + ad(CT, U)), forces)
+        return self.state(W * (ad(CS, V) + ad(CT, U)), forces)
 
     def trilinear(self, X: Values, Y: Values, Z: Values) -> Values:
-        """C(X, Y, Z), symmetric, shape (..., unknowns); 0 for a linear law."""
+        """The symmetric trilinear form C(X, Y, Z) of the cubic terms, (..., unknowns); 0 for a linear law."""
         S, T, R = (self.fields(each)[0] for each in (X, Y, Z))
         W = self.mesh.quadrature
         law = self.law
@@ -156,18 +161,18 @@ class MixedForm:
         forces = W * coad(self._along(self.nodal.rest, S), third) + self._slope(third)
         for one, two, three in ((S, T, R), (T, R, S), (R, S, T)):
             forces = forces + W * coad(self._strain(one), law.second(two, three))
-        return self.unknown(np.zeros_like(forces), forces)
+        return self.state(np.zeros_like(forces), forces)
 
     def _strain(self, S: Values) -> Values:
-        """C S, the strain minus the strain of the straight rod."""
+        """Strains C S minus the strain of the straight rod, at all nodes, (3, ..., nodes + 1)."""
         return self._along(self.nodal.compliance, S) * S
 
     def _stressed(self, S: Values) -> Values:
-        """s(S) to first order."""
+        """The law s(S) to first order in S, at all nodes, (3, ..., nodes + 1)."""
         return self._along(self.law.tangent, S) * S
 
     def _slope(self, field: Values) -> Values:
-        """W D of a field at all nodes, (3, ..., nodes + 1)."""
+        """W D times a field at all nodes, both (3, ..., nodes + 1)."""
         return field @ -self.mesh.matrices.weak
 
     @staticmethod
@@ -176,16 +181,20 @@ class MixedForm:
         return constant.reshape(len(constant), *(1,) * (field.ndim - 2), -1)
 
     def _coupling(self) -> Array:
-        """The matrix of W (ad_E v; ad*_E T s + ad*_{C s} Sigma) in (s; v) about the straight rod."""
+        """Matrix of the terms of A without D and without drag, (unknowns, unknowns).
+
+        These are W ad_E V in the equations of S, and W (ad*_E T S + ad*_{C S} Sigma) in those of V; T:
+        tangent.
+        """
         N = self.mesh.nodes
         W = self.mesh.quadrature[:-1]
-        each = np.eye(COMPONENTS)[:, :, None]
+        each = np.eye(PLANE_COMPONENTS)[:, :, None]
         E = self.nodal.rest[:, None, :N]
         C = self.nodal.compliance[:, None, :N]
         T = self.law.tangent[:, None, :N]
         Sigma = self.nodal.tip_stress[:, None, None]
-        s = np.arange(self.stresses).reshape(COMPONENTS, N)
-        v = np.arange(self.stresses, self.unknowns).reshape(COMPONENTS, N + 1)[:, :N]
+        s = np.arange(self.stresses).reshape(PLANE_COMPONENTS, N)
+        v = np.arange(self.stresses, self.unknowns).reshape(PLANE_COMPONENTS, N + 1)[:, :N]
         matrix = np.zeros((self.unknowns, self.unknowns))
         # The tip contributes nothing: s = 0, and E enters only the equation of S(1), which is not solved.
         matrix[s[:, None], v[None]] = W * ad(E, each)
@@ -196,14 +205,16 @@ class MixedForm:
 
 
 def axial_field(values: Array) -> Array:
-    """The field (values, 0, 0), (3, nodes + 1); values: (nodes + 1,)."""
-    field = np.zeros((COMPONENTS, len(values)))
+    """The field with components (values, 0, 0), (3, nodes + 1); values: (nodes + 1,)."""
+    field = np.zeros((PLANE_COMPONENTS, len(values)))
     field[0] = values
     return field
 
 
 def integral_to_tip(grid: Mesh, values: Array) -> Array:
-    """Integrals from each node to the tip of a field given at all nodes, both (nodes + 1,)."""
+    """Integral of a field from each node to the tip, (nodes + 1,); values: the field at all nodes,
+    (nodes + 1,).
+    """
     ends = reconstruction(grid.order).ends
     total = np.zeros(grid.nodes + 1)
     for e, length in enumerate(grid.lengths):

@@ -34,21 +34,25 @@ from ..elements.quadrature import gauss, gauss_lobatto
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PencilNormSettings(CompiledSettings):
-    """Settings of the norm of a pencil: weights of the unknowns, and normalisation at the tip."""
+    """Settings of the norm of a pencil: weights of the unknowns; and the limit for normalising a mode at the
+    tip.
+    """
 
     shear_weight: float = 1e-9
-    """Weight of s in the norm. Nearly crushed rods lose seven digits at a weight of 1e-3, none below 1e-8."""
-    least_angle_weight: float = 1e-4
-    """Smallest weight of theta in the norm, for gamma3 -> 0, where theta has no time derivative."""
-    no_tip: float = 1e-10
-    """Smallest y(1), in units of the mode's largest value, for which a mode can be normalised to y(1) = 1."""
+    """Weight of s in the norm. Eigenvalues of nearly crushed rods lose seven digits at a weight of 1e-3, none
+    below 1e-8."""
+    min_angle_weight: float = 1e-4
+    """Least weight of theta in the norm, for gamma3 -> 0, where theta has no time derivative."""
+    min_tip_displacement: float = 1e-10
+    """Smallest |y(1)|, in units of the largest |y| or |theta| of a mode, at which the mode is normalised to
+    y(1) = 1."""
 
 
 PENCIL_NORM = PencilNormSettings()
 
 
-class Matrices(NamedTuple):
-    """The pencil of one rod or arm.
+class PencilMatrices(NamedTuple):
+    """The matrices of the pencil A x = w B x of one rod or arm.
 
     A: entries in the order of the pattern, (nnz,). B: diagonal of B, (unknowns,). scale: factors from
     unknowns to y and theta at the nodes, (2, nodes).
@@ -61,17 +65,17 @@ class Matrices(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Pencil(Elements):
-    """The pencil A x = w B x of uniform rods on equal elements, as constant pieces.
+    """The pencil A x = w B x of uniform rods on equal elements, as six constant matrices.
 
-    The matrix of one rod is A = sum_i coefficients(rod)[i] pieces[i], in coordinate form. pieces: (6, nnz).
-    rows, columns: (nnz,), sorted by row, then column, with the diagonal. B is diagonal: 1 for y, gamma3 over
-    the squared angle weight for theta, 0 for s. mass: lumped mass of the nodes, (nodes,). The unknowns are
-    (y, theta, s), `nodes` of each, without the clamp.
+    The matrix of one rod is A = sum_i coefficients(rod)[i] term_entries[i]. term_entries: entries of the
+    constant matrices, (6, nnz). rows, columns: of the entries, (nnz,), sorted by row, then column, with the
+    diagonal. B is diagonal: 1 for y, gamma3 over the squared angle weight for theta, 0 for s. mass: lumped
+    mass of the nodes, (nodes,). The unknowns are (y, theta, s), `nodes` of each, without the clamp.
     """
 
     rows: NDArray[np.int32]
     columns: NDArray[np.int32]
-    pieces: Array
+    term_entries: Array
     mass: Array
 
     @property
@@ -79,44 +83,49 @@ class Pencil(Elements):
         return 3 * self.nodes
 
     def coefficients(self, rod: Rod) -> Array:
-        """Factors of the pieces for a rod, shape (6,)."""
+        """Factors of the six constant matrices for a rod, (6,)."""
         t = angle_weight(rod.rotational_drag)
         return np.array([1.0, 1 / t**2, rod.F / t, rod.g / t, rod.nu / t, rod.c2])
 
     def stiffness(self, rod: Rod) -> Array:
-        """The entries of A, shape (nnz,)."""
-        return self.coefficients(rod) @ self.pieces
+        """Entries of the matrix A of a rod, (nnz,)."""
+        return self.coefficients(rod) @ self.term_entries
 
-    def dense_pieces(self) -> Array:
-        """The pieces as dense matrices in column-major order, as LAPACK expects, shape (6, unknowns^2)."""
+    def dense_terms(self) -> Array:
+        """The six constant matrices as dense matrices in column-major order, as LAPACK expects,
+        (6, unknowns^2).
+        """
         whole = np.zeros((6, self.unknowns**2))
-        whole[:, self.columns.astype(int) * self.unknowns + self.rows] = self.pieces
+        whole[:, self.columns.astype(int) * self.unknowns + self.rows] = self.term_entries
         return whole
 
-    def matrices(self, rod: Rod) -> Matrices:
-        """The pencil of one rod."""
-        return Matrices(self.stiffness(rod), self.inertia(rod), self.scale(rod))
+    def matrices(self, rod: Rod) -> PencilMatrices:
+        """The matrices of the pencil of one rod."""
+        return PencilMatrices(self.stiffness(rod), self.inertia(rod), self.scale(rod))
 
     def inertia(self, rod: Rod) -> Array:
-        """The diagonal of B, shape (unknowns,)."""
+        """Diagonal of the matrix B of a rod, (unknowns,)."""
         B = np.zeros(self.unknowns)
         B[: self.nodes] = 1.0
         B[self.nodes : 2 * self.nodes] = rod.rotational_drag / angle_weight(rod.rotational_drag) ** 2
         return B
 
     def scale(self, rod: Rod) -> Array:
-        """Factors from unknowns to y and theta at the nodes, (2, nodes)."""
+        """Factors from the unknowns of a rod to y and theta at the nodes, (2, nodes)."""
         push = 1 / np.sqrt(self.mass)
         return np.stack([push, push / angle_weight(rod.rotational_drag)])
 
 
 def finite_eigenvalues(rod: Rod, nodes: int) -> int:
-    """Number of finite eigenvalues on a mesh; theta adds none without shear or without rotational drag."""
+    """Number of finite eigenvalues on a mesh with `nodes` nodes, without the clamp.
+
+    theta contributes none in a rod without shear or without rotational drag.
+    """
     return nodes if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * nodes
 
 
-def fields_of(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
-    """(y, theta) at all nodes, clamp included, (nodes + 1, k), of k eigenvectors, (unknowns, k).
+def fields_of_vectors(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
+    """(y, theta) at all nodes, clamp included, (nodes + 1, k) each, of k eigenvectors, (unknowns, k).
 
     scale: factors from unknowns to y and theta at the nodes, (2, nodes).
     """
@@ -127,18 +136,20 @@ def fields_of(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
 
 
 def angle_weight(gamma3: float) -> float:
-    """Weight of theta in the norm: sqrt(gamma3), at least `PENCIL_NORM.least_angle_weight`."""
-    return max(sqrt(gamma3), PENCIL_NORM.least_angle_weight)
+    """Weight of theta in the norm: sqrt(gamma3), at least `PENCIL_NORM.min_angle_weight`."""
+    return max(sqrt(gamma3), PENCIL_NORM.min_angle_weight)
 
 
 def tip_scale(y: Complex, theta: Complex) -> Complex:
-    """Factors, (k,), that normalise k modes, (nodes + 1, k), to y(1) = 1; NaN for a mode with y(1) = 0."""
+    """Factors, (k,), that normalise k modes, (nodes + 1, k), to y(1) = 1; NaN for a mode whose y(1) is 0."""
     size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
-    return np.where(np.abs(y[-1]) > PENCIL_NORM.no_tip * size, 1 / y[-1], np.nan + 0j)
+    return np.where(np.abs(y[-1]) > PENCIL_NORM.min_tip_displacement * size, 1 / y[-1], np.nan + 0j)
 
 
 def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
-    """s of k eigenvectors, (unknowns, k), interpolated from the Gauss nodes to points; shape (points, k)."""
+    """Shear force s of k eigenvectors, (unknowns, k), interpolated from the Gauss nodes to points:
+    (points, k).
+    """
     nodes, weights = gauss(mesh.order)
     mass = (weights * mesh.lengths[:, None] / 2).ravel() * PENCIL_NORM.shear_weight**2
     values = vectors[2 * mesh.nodes :] / np.sqrt(mass)[:, None]
@@ -149,7 +160,7 @@ def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
 
 
 def derivatives_at(mesh: Elements, values: Complex, points: Array) -> Complex:
-    """Derivatives at points of k fields given at all nodes, (nodes + 1, k); shape (points, k)."""
+    """Derivatives d/du, at points, of k fields given at all nodes, (nodes + 1, k): shape (points, k)."""
     nodes, _ = gauss_lobatto(mesh.order)
     derivative = 2 * differentiation(nodes)
     result = np.empty((len(points), values.shape[1]), complex)
@@ -159,8 +170,8 @@ def derivatives_at(mesh: Elements, values: Complex, points: Array) -> Complex:
     return result
 
 
-@lru_cache(maxsize=ELEMENTS.pencils_kept)
-def assemble(elements: int, order: int) -> Pencil:
+@lru_cache(maxsize=ELEMENTS.max_pencils)
+def assemble_pencil(elements: int, order: int) -> Pencil:
     """The pencil on `elements` equal elements of order `order`."""
     n = elements * order
     h = 1 / elements
@@ -196,7 +207,8 @@ def assemble(elements: int, order: int) -> Pencil:
 
 
 def _gather(elements: int, order: int, entries: list, mass: Array, scale: Array) -> Pencil:
-    """The `Pencil` from element entries (piece, rows, columns, block), summed into one sorted pattern.
+    """The `Pencil` from element blocks (index of constant matrix, rows, columns, block), summed into one
+    pattern.
 
     mass: (nodes,). scale: scale of the unknowns, (unknowns,).
     """

@@ -1,4 +1,5 @@
-"""The tip layer of an arm without rotational drag, whose theta follows y: T of `rodsweep.model.adjoint`.
+"""The tip layer of an arm without rotational drag, whose angle theta follows y: T of
+`rodsweep.model.adjoint`.
 
 d = theta - theta+ solves d' = c3 m, m' = q d with q = g nu/c2 and d(0) = 0, and T = d(1)/m(1). The weak form
 is int b' d'/c3 + b q d = b(1) m(1). T is the energy of d for m(1) = 1, so the error of T is the square of the
@@ -18,32 +19,36 @@ from ..elements.quadrature import gauss, gauss_lobatto
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SlavingSettings:
-    """Settings for the elements of the tip layer."""
+class TipLayerSettings:
+    """Settings for the elements that resolve the tip layer."""
 
-    longest: float = 4.0
-    """Longest element in units of the layer's thickness; elements away from the tip may be longer."""
-    max_equal: int = 64
-    """Largest number of equal elements; thinner layers have elements that get shorter towards the tip."""
-    samples: int = 33
-    """Number of samples of each smooth piece of an arm from which the thickness of the layer is estimated."""
-
-
-SLAVING = SlavingSettings()
-ORDER = 16
-"""Order of the elements, derived: it resolves exp(kappa u) over `SLAVING.longest`/kappa to rounding, since no
-error of T is stated. Half of it would leave 4e-11 of a numerical abscissa."""
+    max_length: float = 4.0
+    """Longest element next to the tip, in units of the layer's thickness; elements away from the tip may be
+    longer."""
+    max_equal_elements: int = 64
+    """Maximum number of equal elements; a thinner layer also has elements that get shorter towards the
+    tip."""
+    samples_per_piece: int = 33
+    """Number of samples of each interval between breaks of an arm, from which the thickness of the layer is
+    estimated."""
 
 
-def slaving_of(rod: Rod) -> float:
+TIP_LAYER = TipLayerSettings()
+TIP_LAYER_ORDER = 16
+"""Order of the elements of the tip layer. It resolves exp(kappa u) over `TIP_LAYER.max_length`/kappa to
+rounding, because T is returned without an error. Order 8 would cause an error of 4e-11 of a numerical
+abscissa."""
+
+
+def tip_layer_ratio(rod: Rod) -> float:
     """T = d(1)/m(1) of a rod without rotational drag; 0 for a rod with rotational drag or without shear."""
     if rod.rotational_drag > 0 or rod.c2 == 0:
         return 0.0
     if rod.standard:
         return slaving_layer(rod)
     edges = _edges(rod)
-    x, _ = gauss_lobatto(ORDER)
-    points, weights = gauss(ORDER + 2)
+    x, _ = gauss_lobatto(TIP_LAYER_ORDER)
+    points, weights = gauss(TIP_LAYER_ORDER + 2)
     value = interpolation(x, points)
     slope = value @ differentiation(x)
     lengths = np.diff(edges)
@@ -58,8 +63,9 @@ def slaving_of(rod: Rod) -> float:
 
 
 def _at_right_end(K: Array, before: float) -> float:
-    """The ratio d/m of `slaving_of` at the right end of an element, from the ratio at the left end. K:
-    stiffness, (nodes, nodes).
+    """The ratio d/m at the right end of an element, from the ratio `before` at its left end.
+
+    K: stiffness matrix of the element, (nodes, nodes).
     """
     # 0 is the clamp, whose node is no unknown; else all elements before act as a stiffness 1/before.
     if before == 0:
@@ -73,14 +79,16 @@ def _at_right_end(K: Array, before: float) -> float:
 
 
 def _edges(rod: Rod) -> Array:
-    """Edges of elements: breaks, equal elements, and shorter elements towards the tip for a thin layer."""
+    """Edges of elements: breaks, equal elements and, for a thin layer, shorter elements towards the tip;
+    increasing.
+    """
     breaks = rod.build.breaks
     pieces = zip(breaks, breaks[1:], strict=False)
-    middles = np.concatenate([np.linspace(a, b, SLAVING.samples + 2)[1:-1] for a, b in pieces])
+    middles = np.concatenate([np.linspace(a, b, TIP_LAYER.samples_per_piece + 2)[1:-1] for a, b in pieces])
     local = rod.local(middles)
     waves = sqrt(float(np.abs(local.g * local.nu / local.c2 * local.c3).max()))
-    count = min(max(1, ceil(waves / SLAVING.longest)), SLAVING.max_equal)
+    count = min(max(1, ceil(waves / TIP_LAYER.max_length)), TIP_LAYER.max_equal_elements)
     equal = np.linspace(0.0, 1.0, count + 1)
-    halvings = max(0, ceil(np.log2(max(waves / SLAVING.longest / count, 1.0))))
+    halvings = max(0, ceil(np.log2(max(waves / TIP_LAYER.max_length / count, 1.0))))
     towards_tip = 1 - 0.5 ** np.arange(1, halvings + 1) / count
     return np.unique(np.concatenate([breaks, equal, towards_tip]))

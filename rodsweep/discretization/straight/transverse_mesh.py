@@ -1,23 +1,25 @@
-"""Meshes of the transverse problem: equal elements of a uniform rod, or elements of an arm that end at jumps.
+"""Meshes of the transverse eigenproblem: equal elements of a uniform rod, or elements of an arm.
 
-A uniform rod of linear material has a `Resolution`, every other arm an `ArmMesh`.
+A uniform rod of linear material has a `Resolution`. Every other arm has an `ArmMesh`, whose elements end at
+the jumps of its material.
 """
 
 from functools import lru_cache
 
 from ...model.rod import Rod
 from ..elements.elements import ELEMENTS
-from ..elements.resolution import Resolution, finer, resolution_for
+from ..elements.resolution import Resolution, finer_resolution, resolution_for
 from .arm_pencil import ArmPencil
 from .arm_resolution import ArmMesh, arm_elements, finer_arm_mesh
 from .dense_form import AnyPencil
-from .pencil import assemble
+from .pencil import assemble_pencil
 
 AnyMesh = Resolution | ArmMesh
+"""Mesh of the transverse eigenproblem of a uniform rod or of an arm."""
 
 
 def mesh_for(rod: Rod, wave_number: float, accuracy: float) -> AnyMesh:
-    """Mesh that resolves fields of a wave number, in 1/L, to a relative accuracy."""
+    """The mesh that resolves fields of a wave number, in 1/L, to a relative accuracy."""
     if rod.standard:
         return resolution_for(wave_number, accuracy)
     elements = arm_elements(rod, wave_number, accuracy)
@@ -25,15 +27,15 @@ def mesh_for(rod: Rod, wave_number: float, accuracy: float) -> AnyMesh:
 
 
 def finer_mesh(rod: Rod, mesh: AnyMesh) -> AnyMesh:
-    """The next mesh after a mesh that is too coarse."""
-    return finer(mesh) if isinstance(mesh, Resolution) else finer_arm_mesh(rod, mesh)
+    """The mesh with about a third more unknowns that follows `mesh` in a refinement."""
+    return finer_resolution(mesh) if isinstance(mesh, Resolution) else finer_arm_mesh(rod, mesh)
 
 
 def pencil_on(mesh: AnyMesh) -> AnyPencil:
-    """The pencil on a mesh, kept for later rods on equal meshes."""
-    return assemble(mesh.elements, mesh.order) if isinstance(mesh, Resolution) else _arm_pencil(mesh)
+    """The pencil of the transverse eigenproblem on a mesh, cached for later rods on equal meshes."""
+    return assemble_pencil(mesh.elements, mesh.order) if isinstance(mesh, Resolution) else _arm_pencil(mesh)
 
 
-@lru_cache(maxsize=ELEMENTS.pencils_kept)
+@lru_cache(maxsize=ELEMENTS.max_pencils)
 def _arm_pencil(mesh: ArmMesh) -> ArmPencil:
     return ArmPencil(mesh)

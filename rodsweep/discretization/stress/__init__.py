@@ -1,1 +1,2 @@
-"""The rod in motion on a mesh, with the stresses as unknowns: balance, rates and Jacobian."""
+"""The nonlinear rod on a mesh with its stresses as unknowns: balance, rates, Jacobian, and motion of the
+tip."""

@@ -37,15 +37,17 @@ from ...model.material.jump import stress_at_jump, stress_change_at_jump
 from ...model.material.response import LINEAR_LAW, LocalSection, stress, stress_change
 from ..elements.mesh import NodeMatrices
 from ..nodal_rod import NodalChange, NodalRod
-from ..state_layout import stress_place, velocity_place
+from ..state_layout import stress_index, velocity_index
 
 
 @UnrolledOverAlgebra
-def fields(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
-    """Writes E and s(S) of a state x, (unknowns,), at all nodes into E and S, both (d, nodes + 1)."""
+def write_fields(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
+    """Writes the strains E and stresses s(S) of a state x, (unknowns,), at all nodes into E and S,
+    (d, nodes + 1) each.
+    """
     size = E.shape[1]
     for i in range(size):
-        s = [x[stress_place(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
+        s = [x[stress_index(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
         for a in g.components:
             E[a, i] = c.rest[a, i] + c.compliance[a, i] * s[a]
             S[a, i] = s[a]
@@ -55,7 +57,7 @@ def fields(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
 
 @compiled
 def apply_law(S: Array, c: NodalRod) -> None:
-    """Replaces S by s(S) at all nodes, (3, nodes + 1), of a rod in the plane."""
+    """Replaces the unknown stresses S by s(S) at all nodes, (3, nodes + 1), for a rod in the plane."""
     k = 0
     for i in range(S.shape[1]):
         if k < len(c.jumps) and c.jumps[k] == i:
@@ -67,8 +69,10 @@ def apply_law(S: Array, c: NodalRod) -> None:
 
 
 @UnrolledOverAlgebra
-def forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes D*_E Sigma at all nodes into out, (d, nodes + 1), from E and s(S) of `fields`."""
+def write_forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
+    """Writes the forces per length D*_E Sigma at all nodes into out, (d, nodes + 1), from E and s(S) of
+    `write_fields`.
+    """
     size = len(m.weights)
     out[:, :] = 0.0
     for j in range(size - 1):
@@ -90,8 +94,8 @@ def forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatri
 
 
 @UnrolledOverAlgebra
-def strain_rates(g: Algebra, E: Array, V: Array, G: Array, m: NodeMatrices) -> None:
-    """Writes the weighted strain rates W D_E V in weak form at all nodes into G.
+def write_strain_rates(g: Algebra, E: Array, V: Array, G: Array, m: NodeMatrices) -> None:
+    """Writes the strain rates W D_E V at all nodes, in weak form, into G, from strains E and velocities V.
 
     E, V, G: (d, nodes + 1).
     """
@@ -127,45 +131,48 @@ def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatric
     size = len(m.weights)
     E = np.empty((g.dimension, size))
     S = np.empty((g.dimension, size))
-    fields(g, x, E, S, c)
-    forces(g, E, S, V, c, m)
+    write_fields(g, x, E, S, c)
+    write_forces(g, E, S, V, c, m)
     for i in range(size):
         for a in g.components:
             V[a, i] *= c.mobility[a, i]
-    for k in range(len(c.kept)):
+    for k in range(len(c.unknown_velocities)):
         for i in range(size):
             # Components that are unknowns have mobility 0, so the line above has set them to 0.
-            V[c.kept[k], i] = x[velocity_place(k, i, g.dimension, size - 1)]
-    strain_rates(g, E, V, G, m)
+            V[c.unknown_velocities[k], i] = x[velocity_index(k, i, g.dimension, size - 1)]
+    write_strain_rates(g, E, V, G, m)
 
 
 @UnrolledOverAlgebra
 def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes the equations W (D*_E Sigma - Gamma V) of the unknown components of V into out, (unknowns,)."""
+    """Writes the residuals W (D*_E Sigma - Gamma V) of the unknown components of V into out, (unknowns,).
+
+    x: state, (unknowns,). Entries of out for stresses are not written.
+    """
     size = len(m.weights)
     E = np.empty((g.dimension, size))
     S = np.empty((g.dimension, size))
     force = np.empty((g.dimension, size))
-    fields(g, x, E, S, c)
-    forces(g, E, S, force, c, m)
-    for k in range(len(c.kept)):
-        a = c.kept[k]
+    write_fields(g, x, E, S, c)
+    write_forces(g, E, S, force, c, m)
+    for k in range(len(c.unknown_velocities)):
+        a = c.unknown_velocities[k]
         for i in range(size):
-            place = velocity_place(k, i, g.dimension, size - 1)
+            place = velocity_index(k, i, g.dimension, size - 1)
             out[place] = m.weights[i] * (force[a, i] - c.drag[a, i] * x[place])
 
 
 @compiled
 def law_change(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
-    """Writes the derivative of s(S) along a change of the rod into dS, (3, nodes + 1).
+    """Writes the derivative of s(S) by a parameter, at fixed S, into dS, (3, nodes + 1).
 
-    x: a state in the plane, (unknowns,). change: derivative of the rod `c` with respect to a parameter.
+    x: a state in the plane, (unknowns,). change: derivative of the rod `c` by this parameter.
     """
     n = dS.shape[1] - 1
     k = 0
     for i in range(n + 1):
         # The tip's stress is no unknown; its deviation is 0.
-        q1, q3 = (x[stress_place(0, i, n)], x[stress_place(2, i, n)]) if i < n else (0.0, 0.0)
+        q1, q3 = (x[stress_index(0, i, n)], x[stress_index(2, i, n)]) if i < n else (0.0, 0.0)
         if k < len(c.jumps) and c.jumps[k] == i:
             dS[0, i], dS[2, i] = stress_change_at_jump(c.law, c.sides[k], change.sides[k], q1, q3)
             k += 1
@@ -179,21 +186,21 @@ def law_change(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
 def balance_change(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
     g: Algebra, x: Array, V: Array, out: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
 ) -> None:
-    """Writes the derivatives along a change of the rod into out, (3, d, nodes + 1).
+    """Writes the derivatives of the equations by a parameter, at a fixed state x, (unknowns,), into out.
 
-    x: state, (unknowns,). V: velocity at x, (d, nodes + 1). change: derivative of the rod `c` with respect to
-    a parameter. out[0]: derivative of D*_E Sigma - Gamma V at fixed V; out[1]: of V; out[2]: of G. Unknown
-    components of V are fixed.
+    out: (3, d, nodes + 1). out[0]: derivative of D*_E Sigma - Gamma V at fixed V; out[1]: of V; out[2]: of G.
+    V: velocity at x, (d, nodes + 1). change: derivative of the rod `c` by the parameter. Unknown components
+    of V are fixed.
     """
     size = len(m.weights)
     E = np.empty((g.dimension, size))
     S = np.empty((g.dimension, size))
     dS = np.zeros((g.dimension, size))
-    fields(g, x, E, S, c)
+    write_fields(g, x, E, S, c)
     if c.law != LINEAR_LAW:
         law_change(x, dS, change, c)
     for i in range(size):
-        s = [x[stress_place(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
+        s = [x[stress_index(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
         dE = [change.rest[a, i] + change.compliance[a, i] * s[a] for a in g.components]
         # Gamma V = D* Sigma at fixed state, so d(force) - dGamma V = Gamma dV.
         force = [-change.drag[a, i] * V[a, i] for a in g.components]

@@ -13,28 +13,28 @@ from ..arm_on_mesh import jump_change_on, material_change_on
 from ..elements.mesh import Mesh, transfer
 from ..nodal_rod import NodalChange, NodalRod, nodal_change
 from ..rod_on_mesh import RodOnMesh
-from ..state_layout import COMPONENTS, plane_layout
+from ..state_layout import PLANE_COMPONENTS, plane_layout
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StressFormSettings:
-    """Settings for the choice of the unknowns."""
+    """Settings for the choice of the unknowns of a `StressForm`."""
 
-    least_eliminated_drag: float = 1e-5
-    """Rotational drag from which Omega is eliminated. Division by a smaller drag costs Floquet multipliers
-    their digits (errors of 2e-9 at 1e-6, of 2e-7 at 1e-8), and cycles of soft rods are not found. Omega as an
-    unknown takes 2.4 times as long."""
+    min_eliminated_drag: float = 1e-5
+    """Rotational drag from which on the angular velocity Omega is eliminated; with a smaller drag Omega is an
+    unknown. Division by a smaller drag costs Floquet multipliers their digits (errors of 2e-9 at 1e-6, of
+    2e-7 at 1e-8), and cycles of soft rods are not found. Omega as an unknown takes 2.4 times as long."""
 
 
 STRESS_FORM = StressFormSettings()
 
 OMEGA_COMPONENT = (2,)
-"""Index of Omega among the components of V, as a tuple."""
+"""Index of the angular velocity Omega among the components of V, as a tuple."""
 
 
 @dataclass(frozen=True, eq=False)
 class StressForm(RodOnMesh):
-    """One rod on one mesh.
+    """One nonlinear rod on one mesh with stresses as unknowns.
 
     A state x has the shape (..., unknowns): n1 + F and n2 in k3/L^2, and m3 in k3/L, of a linear rod with the
     same strain, at every node except the tip, where all three are 0; then, for small gamma3, Omega in 1/tau2
@@ -43,44 +43,46 @@ class StressForm(RodOnMesh):
 
     @property
     def omega_unknown(self) -> bool:
-        """Whether Omega is among the unknowns."""
-        return self.rod.least_rotational_drag < STRESS_FORM.least_eliminated_drag
+        """Whether the angular velocity Omega is among the unknowns."""
+        return self.rod.least_rotational_drag < STRESS_FORM.min_eliminated_drag
 
     @property
-    def kept(self) -> tuple[int, ...]:
+    def unknown_velocities(self) -> tuple[int, ...]:
         return OMEGA_COMPONENT if self.omega_unknown else ()
 
     def stresses(self, x: Array) -> Array:
         return self.layout.stresses(x)
 
     def states_on(self, grid: Mesh, x: Array) -> Array:
-        """States x on another mesh, (..., unknowns there)."""
+        """States x interpolated to the mesh `grid`, (..., unknowns on grid)."""
         E = transfer(self.mesh, grid)
         if self.smooth_stresses:
-            return self.layout.carried(x, E)
-        layout = plane_layout(grid.nodes, self.kept)
+            return self.layout.interpolate(x, E)
+        layout = plane_layout(grid.nodes, self.unknown_velocities)
         # Velocities are continuous also where stresses jump, so they are interpolated as they are.
-        V = np.zeros((COMPONENTS, *x.shape[:-1], grid.nodes + 1))
-        V[list(self.kept)] = self.layout.velocities(x) @ E.T
+        V = np.zeros((PLANE_COMPONENTS, *x.shape[:-1], grid.nodes + 1))
+        V[list(self.unknown_velocities)] = self.layout.velocities(x) @ E.T
         return layout.state(self.stresses_on(grid, x), V)
 
-    def change(self, name: str) -> NodalChange:
-        """Derivative of `nodal` with respect to the coordinate of a parameter, 1/k for a stiffness k."""
+    def parameter_derivative(self, name: str) -> NodalChange:
+        """Derivative of `nodal` by the path variable of a parameter: 1/k for a stiffness k, else the
+        parameter.
+        """
         change = material_change_on(self.rod, name, self.mesh)
         return nodal_change(change, self.mesh, jump_change_on(self.rod, name, self.mesh))
 
     @cached_property
     def mass(self) -> Array:
-        """Diagonal of the mass matrix W C, 0 for Omega, shape (unknowns,)."""
+        """Diagonal W C of the mass matrix, 0 for Omega, (unknowns,)."""
         return self.mass_of(self.nodal)
 
     def mass_of(self, rod: NodalRod | NodalChange) -> Array:
-        """`mass` with the compliances of another rod, or of a change of the rod, (unknowns,)."""
+        """`mass` with the compliances of another rod, or of a derivative of the rod, (unknowns,)."""
         weighted = rod.compliance * self.mesh.quadrature
         return self.layout.state(weighted, np.zeros(weighted.shape))
 
-    def size(self, x: Array) -> Array:
-        """Amplitude of states x: square root of x M x, with x = 0 for the straight rod; shape (...)."""
+    def amplitude(self, x: Array) -> Array:
+        """Amplitude sqrt(x M x) of states x, with the mass matrix M; 0 for the straight rod; (...)."""
         # x M x is twice the elastic energy of a linear rod; Omega has mass 0 and does not count.
-        size: Array = np.sqrt(x**2 @ self.mass)
-        return size
+        amplitude: Array = np.sqrt(x**2 @ self.mass)
+        return amplitude

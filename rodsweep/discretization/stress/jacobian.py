@@ -23,8 +23,8 @@ from ...model.material.jump import tangent_at_jump
 from ...model.material.response import LINEAR_LAW, LocalSection, tangent
 from ..elements.mesh import NodeMatrices
 from ..nodal_rod import NodalRod
-from ..state_layout import stress_place, velocity_place
-from .balance import fields
+from ..state_layout import stress_index, velocity_index
+from .balance import write_fields
 
 
 @UnrolledOverAlgebra
@@ -34,12 +34,13 @@ def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count referenc
     """Writes the Jacobian of the equations at x, (unknowns,), into J, (unknowns, unknowns).
 
     V: velocity at x, (d, nodes + 1). Rows are equations, in the order of the unknowns: G at all nodes except
-    the tip, then the balance of each unknown component of V. tip, (d, unknowns): derivative of the reaction.
+    the tip, then the balance of each unknown component of V. tip, (d, unknowns): derivative of the reaction
+    at the tip.
     """
     size = len(m.weights)
     E = np.empty((g.dimension, size))
     S = np.empty((g.dimension, size))
-    fields(g, x, E, S, c)
+    write_fields(g, x, E, S, c)
     _derivative(g, (E, S, V), J, tip, c.compliance, c, m)
     if c.law != LINEAR_LAW:
         P = np.empty(J.shape)
@@ -53,12 +54,12 @@ def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count referenc
 
 @compiled
 def _by_law(x: Array, J: Array, P: Array, c: NodalRod) -> None:
-    """Adds P (T - 1) to J; both (rows, unknowns). T: tangent of the law of a rod in the plane, at x."""
+    """Adds P (T - 1) to J; both (rows, unknowns). T: tangent of the law of a rod in the plane, at state x."""
     n = c.compliance.shape[1] - 1
     k = 0
     for i in range(n):
-        p1 = stress_place(0, i, n)
-        p3 = stress_place(2, i, n)
+        p1 = stress_index(0, i, n)
+        p3 = stress_index(2, i, n)
         if k < len(c.jumps) and c.jumps[k] == i:
             T = tangent_at_jump(c.law, c.sides[k], x[p1], x[p3])
             k += 1
@@ -90,7 +91,7 @@ def _derivative(  # noqa: PLR0913, PLR0917 - as above
     slopes = np.empty((g.dimension, g.dimension, len(m.weights)))
     _velocity_slopes(g, at, slopes, compliance, c)
     _rows(g, at, slopes, J, tip, compliance, c, m)
-    for k in range(len(c.kept)):
+    for k in range(len(c.unknown_velocities)):
         _kept_columns(g, k, at[0], J, tip, c, m)
         _kept_rows(g, k, at, J, compliance, c, m)
 
@@ -138,18 +139,18 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
         for a, b, o, sign in g.terms:
             A[a][o] += sign * m.weights[i] * E[b, i]
         ahead = [[A[a][o] * c.mobility[o, i] for o in g.components] for a in g.components]
-        rows = [J[stress_place(a, i, n)] if i < n else tip[a] for a in g.components]
+        rows = [J[stress_index(a, i, n)] if i < n else tip[a] for a in g.components]
         for a in g.components:
             for j in range(n):
                 # The second derivative -D^T W Gamma^-1 D depends on the rod alone, so it is made once per
                 # rod.
-                rows[a][stress_place(a, j, n)] = c.second[a, i, j]
+                rows[a][stress_index(a, j, n)] = c.second[a, i, j]
         for j in range(n):
             weak = m.weak[i, j]
             slope = m.D[i, j]
             for a, b in g.pairs:
                 back = weak * slopes[a, b, j] if g.backward[a][b] else 0.0
-                rows[a][stress_place(b, j, n)] = back + (ahead[a][b] * slope if g.forward[a][b] else 0.0)
+                rows[a][stress_index(b, j, n)] = back + (ahead[a][b] * slope if g.forward[a][b] else 0.0)
         # The tip's own stress is prescribed: no column belongs to it.
         if i < n:
             same = [[0.0 for _ in g.components] for _ in g.components]
@@ -162,23 +163,23 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
                         same[a][b] += A[a][o] * slopes[o, b, i]
             for a in g.components:
                 for b in g.components:
-                    rows[a][stress_place(b, i, n)] += same[a][b]
+                    rows[a][stress_index(b, i, n)] += same[a][b]
 
 
 @UnrolledOverAlgebra
 def _kept_columns(  # noqa: PLR0913, PLR0917 - as above
     g: Algebra, k: int, E: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
-    """Writes the derivative of G with respect to the k-th unknown velocity into J and tip.
+    """Writes the derivative of the strain rates G by the k-th unknown velocity into J and tip.
 
-    E: (d, nodes + 1). J: (unknowns, unknowns). tip: (d, unknowns).
+    E: strains, (d, nodes + 1). J: (unknowns, unknowns). tip: (d, unknowns).
     """
     size = len(m.weights)
     n = len(m.weights) - 1
-    of = c.kept[k]
-    first = velocity_place(k, 0, g.dimension, n)
+    of = c.unknown_velocities[k]
+    first = velocity_index(k, 0, g.dimension, n)
     for i in range(size):
-        rows = [J[stress_place(a, i, n)] if i < n else tip[a] for a in g.components]
+        rows = [J[stress_index(a, i, n)] if i < n else tip[a] for a in g.components]
         for a in g.components:
             for j in range(size):
                 rows[a][first + j] = m.weak[i, j] if of == a else 0.0
@@ -200,18 +201,18 @@ def _kept_rows(  # noqa: PLR0913, PLR0917 - as above
     """Writes the rows of the balance of the k-th unknown velocity into J, (unknowns, unknowns)."""
     size = len(m.weights)
     n = len(m.weights) - 1
-    of = c.kept[k]
+    of = c.unknown_velocities[k]
     E, S, _ = at
-    first = velocity_place(k, 0, g.dimension, n)
+    first = velocity_index(k, 0, g.dimension, n)
     for i in range(size):
         row = J[first + i]
         w = m.weights[i]
         row[:] = 0.0
         for j in range(n):
-            row[stress_place(of, j, n)] = w * m.D[i, j]
+            row[stress_index(of, j, n)] = w * m.D[i, j]
         row[first + i] = -w * c.drag[of, i]
         if i < n:
             for a, b, o, sign in g.terms:
                 if o == of:
-                    row[stress_place(a, i, n)] -= w * sign * E[b, i]
-                    row[stress_place(b, i, n)] -= w * sign * compliance[b, i] * (c.tip_stress[a] + S[a, i])
+                    row[stress_index(a, i, n)] -= w * sign * E[b, i]
+                    row[stress_index(b, i, n)] -= w * sign * compliance[b, i] * (c.tip_stress[a] + S[a, i])

@@ -1,4 +1,4 @@
-"""The rod on a mesh as an explicit differential equation, for finite stiffnesses, compiled.
+"""The rod on a mesh as an explicit differential equation dz/dt = f(z), for finite stiffnesses, compiled.
 
 The unknown is z = C^(1/2) S, with the stresses S of `balance`; z^2 is an energy density.
 """
@@ -10,12 +10,12 @@ from ...model.compiled.compilation import compiled_for_vectors
 from ..elements.mesh import NodeMatrices
 from ..nodal_rod import NodalRod
 from ..plane import balance, jacobian
-from ..state_layout import stress_place
+from ..state_layout import stress_index
 
 
 @compiled_for_vectors
-def rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes dz/dt, in units of z per tau2, into out; z, out: (unknowns,).
+def write_rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
+    """Writes dz/dt, with time in tau2, into out; z, out: (unknowns,).
 
     roots: square roots of C, positive, (d, nodes + 1).
     """
@@ -28,7 +28,7 @@ def rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> No
     for a in range(d):
         for i in range(size - 1):
             # W C dS/dt = G with z = C^(1/2) S, so dz/dt = G/(W C^(1/2)).
-            out[stress_place(a, i, size - 1)] = G[a, i] / (m.weights[i] * roots[a, i])
+            out[stress_index(a, i, size - 1)] = G[a, i] / (m.weights[i] * roots[a, i])
 
 
 @compiled_for_vectors
@@ -38,13 +38,14 @@ def _unscale(z: Array, x: Array, roots: Array) -> None:
     n = roots.shape[1] - 1
     for a in range(d):
         for i in range(n):
-            at = stress_place(a, i, n)
+            at = stress_index(a, i, n)
             x[at] = z[at] / roots[a, i]
 
 
 @compiled_for_vectors
-def rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes d(dz/dt)/dz into out, (unknowns, unknowns), column-major as in LAPACK: out[column, row].
+def write_rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
+    """Writes the Jacobian d(dz/dt)/dz into out, (unknowns, unknowns), column-major as in LAPACK: out[column,
+    row].
 
     z: (unknowns,). roots: square roots of C, positive, (d, nodes + 1).
     """
@@ -62,7 +63,7 @@ def rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatric
     inverse = np.empty(unknowns)
     for a in range(d):
         for i in range(size - 1):
-            at = stress_place(a, i, size - 1)
+            at = stress_index(a, i, size - 1)
             inverse[at] = 1 / roots[a, i]
             scale[at] = inverse[at] / m.weights[i]
     for p in range(unknowns):
@@ -71,14 +72,14 @@ def rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatric
 
 
 @compiled_for_vectors
-def rates(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes `rate` of n states into out; states, out: (n, unknowns)."""
+def write_rates(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
+    """Writes dz/dt of n states z into out; states, out: (n, unknowns)."""
     for i in range(len(states)):
-        rate(states[i], out[i], roots, c, m)
+        write_rate(states[i], out[i], roots, c, m)
 
 
 @compiled_for_vectors
-def rate_jacobians(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes `rate_jacobian` of n states, (n, unknowns), into out, (n, unknowns, unknowns)."""
+def write_rate_jacobians(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
+    """Writes the Jacobians of n states z, (n, unknowns), into out, (n, unknowns, unknowns)."""
     for i in range(len(states)):
-        rate_jacobian(states[i], out[i], roots, c, m)
+        write_rate_jacobian(states[i], out[i], roots, c, m)

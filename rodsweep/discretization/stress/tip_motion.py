@@ -1,7 +1,7 @@
 """Position and velocity of the tip from strains and strain rates, compiled.
 
-theta(1) = int Pi, r(1) = int R(theta) (h1, h2), and time derivatives. `mesh.configuration` computes positions
-of all nodes.
+theta(1) = int Pi, r(1) = int R(theta) (h1, h2), and time derivatives. `mesh.shape_from_strains` computes
+positions of all nodes.
 """
 
 from functools import lru_cache
@@ -16,12 +16,11 @@ from ..elements.mesh import reconstruction
 
 
 class TipMatrices(NamedTuple):
-    """Interpolation and quadrature on an element of unit length, with p + 1 nodes and g Gauss points.
+    """Matrices that integrate strains to the position of the tip, on an element [0, 1] with p + 1 nodes.
 
-    values: interpolation from nodes to Gauss points, (p + 1, g). angles: integrals of nodal polynomials from
-    the element's start to the Gauss points, (p + 1, g). weights: Gauss weights of the integral over the
-    element, (g,). ends: weights of the same integral at the nodes, (p + 1,). lengths: lengths of the
-    elements, (elements,).
+    values: interpolation from nodes to g Gauss points, (p + 1, g). angles: integrals of nodal polynomials
+    from 0 to the Gauss points, (p + 1, g). weights: Gauss weights, (g,). ends: integrals of nodal polynomials
+    over the element, (p + 1,). lengths: of all elements, (elements,).
     """
 
     values: Array
@@ -31,9 +30,9 @@ class TipMatrices(NamedTuple):
     lengths: Array
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def tip_matrices(grid: Elements) -> TipMatrices:
-    """`TipMatrices` of a mesh."""
+    """The `TipMatrices` of a mesh, cached."""
     m = reconstruction(grid.order)
     parts = m.values, m.angles, m.integrals[:, -1], m.ends[:, -1], grid.lengths
     return TipMatrices(*map(np.ascontiguousarray, parts))
@@ -41,7 +40,7 @@ def tip_matrices(grid: Elements) -> TipMatrices:
 
 @compiled_for_vectors
 def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocity: Array) -> None:
-    """Writes (x, y, theta) of the tip, in L and rad, into tip, and the time derivative into velocity.
+    """Writes (x, y, theta) of the tip, in L and rad, into tip, and its time derivative into velocity.
 
     strains: (h1, h2, Pi) at the nodes of every element, (3, states, elements (p + 1)). rates: time
     derivatives of strains, same shape. tip, velocity: (states, 3). The rod is clamped at the origin along
@@ -88,9 +87,9 @@ def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocit
 
 @compiled_for_vectors
 def _to_points(nodal: Array, m: TipMatrices, length: float, start: float, fields: Array) -> None:
-    """Writes h1, h2 and theta at the Gauss points of an element into fields, (3, g).
+    """Writes h1, h2 and theta at the Gauss points of one element into fields, (3, g).
 
-    nodal: (h1, h2, Pi) at the nodes, (3, p + 1). theta is `start` plus the integral of Pi.
+    nodal: (h1, h2, Pi) at the nodes of the element, (3, p + 1). start: theta at its start.
     """
     fields[:2] = 0.0
     fields[2] = start

@@ -9,7 +9,7 @@ order of the parameter. The winding number confirms the number of unstable modes
 import math
 from dataclasses import dataclass, replace
 
-from ...determinant.certificate.covering import Box, cover
+from ...determinant.certificate.covering import Box, cover_with_boxes
 from ...determinant.certificate.first_boxes import first_boxes
 from ...determinant.parameter_path import Path, coefficients_at, determinant_along
 from ...determinant.roots.newton import LocatedZero
@@ -201,7 +201,7 @@ def _covered(path: Path, low: float, high: float) -> AxisCrossings:
     boxes = first_boxes(path, low, high)
     if boxes is None:
         raise Unsolvable("no a-priori bound on the eigenvalues applies to this rod")
-    zeros, left, examined = cover(boxes, path.origin, path.direction)
+    zeros, left, examined = cover_with_boxes(boxes, path.origin, path.direction)
     hopfs = [_hopf(path, zero) for zero in zeros if low <= zero.p <= high]
     return AxisCrossings(path, hopfs, _gaps(path, left), SearchEnd(high), examined)
 

@@ -2,8 +2,8 @@
 
 from abc import ABC, abstractmethod
 
-from ...determinant.certificate.first_boxes import slabs
-from ...determinant.certificate.winding_number import Count, count_right_of
+from ...determinant.certificate.first_boxes import path_intervals
+from ...determinant.certificate.winding_number import EigenvalueCount, count_right_of
 from ...determinant.parameter_path import Path, coefficients_at
 from ...determinant.roots.newton import LocatedZero, double_newton, eigenvalue_newton
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
@@ -39,7 +39,7 @@ class PathProblem(ABC):
         """The double real eigenvalue near (x, p) with p at most `reach` away; nan if not found."""
 
     @abstractmethod
-    def count(self, line: float, p: float) -> Count:
+    def count(self, line: float, p: float) -> EigenvalueCount:
         """Number of eigenvalues with Re w > line at p."""
 
     def counted_amid(self, low: float, high: float) -> int | None:
@@ -57,7 +57,7 @@ class UniformPath(PathProblem):
     """Path of uniform rods of linear material, with D in closed form."""
 
     def edges(self, low: float, high: float) -> list[float]:
-        return [a for a, _ in slabs(self.path, low, high)] + [high]
+        return [a for a, _ in path_intervals(self.path, low, high)] + [high]
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         coefficients = coefficients_at(p, self.path.origin, self.path.direction)
@@ -66,7 +66,7 @@ class UniformPath(PathProblem):
     def double(self, x: float, p: float, reach: float) -> LocatedZero:
         return double_newton(x, p, self.path.origin, self.path.direction, reach)
 
-    def count(self, line: float, p: float) -> Count:
+    def count(self, line: float, p: float) -> EigenvalueCount:
         return count_right_of(line, self.path.at(p))
 
     def relaxation(self, p: float) -> tuple[float, float]:

@@ -12,7 +12,7 @@ from math import isfinite, isnan
 import numpy as np
 
 from ...determinant.parameter_path import Path
-from ...discretization.at_jumps import carried_stress
+from ...discretization.at_jumps import interpolate_stress
 from ...discretization.elements.mesh import transfer
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
@@ -25,7 +25,7 @@ from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import REFLECTION
 from ..point import Unsolvable
 from ..spectrum.candidates import CANDIDATES
-from ..spectrum.problem import problem_of
+from ..spectrum.problem import transverse_problem
 from .along_parameter import orbit_in_steps, predictor_from
 from .straight_rod import straight_rod
 from .transient.motion_mesh import coarse_mesh
@@ -193,7 +193,7 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
         raise Unsolvable("the nearby Hopf point is subcritical")
     if not amplitude**2 <= HOPF_START.direct_distance * rate / -normal.c.real:
         raise Unsolvable(f"the amplitude {amplitude:g} of the start is too large for the normal form")
-    if problem_of(form.rod).count(-CANDIDATES.behind * abs(w)).number != 2:
+    if transverse_problem(form.rod).count(-CANDIDATES.last_line_distance * abs(w)).number != 2:
         raise Unsolvable("a second pair of modes may be unstable, for which the normal form does not hold")
     return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
 
@@ -233,5 +233,7 @@ def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, f
     S, V = normal.form.fields(X)
     source = normal.form.mesh
     target = form.mesh
-    states = form.layout.state(carried_stress(form.rod, S, source, target), V @ transfer(source, target).T)
+    states = form.layout.state(
+        interpolate_stress(form.rod, S, source, target), V @ transfer(source, target).T
+    )
     return Orbit.of(form, REFLECTION, 2 * np.pi / frequency, states, HOPF_START.stages)

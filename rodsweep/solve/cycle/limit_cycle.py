@@ -209,7 +209,7 @@ def _from_motion(
         start = request.amplitude * transient.mode.z.real
     else:
         orbit = neighbour.branch.orbit
-        start = beam.scaled(orbit.form.stresses_on(beam.mesh, orbit.start))
+        start = beam.state_of_stresses(orbit.form.stresses_on(beam.mesh, orbit.start))
     return classify_quasiperiodic(transient.follow(start), transient)
 
 

@@ -122,7 +122,7 @@ class _MarchedMotion:
         self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MARCHING.more_orders)
         self.scheme = replace(self.scheme, tolerance=MARCHING.tolerance_ratio * self.scheme.tolerance)
         self.beam = self._beam()
-        z = self.beam.scaled(before.stresses_on(self.beam.mesh, settled.z))
+        z = self.beam.state_of_stresses(before.stresses_on(self.beam.mesh, settled.z))
         return self._settled(relaxed(self.beam, z, self.mode.period))
 
     def _settled(self, z: Array) -> _SettledMotion:

@@ -12,7 +12,7 @@ import numpy as np
 from ...arrays import Complex
 from ...determinant.roots.settings import ROOTS
 from ...model.rod import Rod
-from ..spectrum.path.followed_leader import followed_leader
+from ..spectrum.path.followed_leader import follow_leading_eigenvalue
 from ..spectrum.search import SpectrumRequest, solve_spectrum
 
 
@@ -52,7 +52,7 @@ class StraightRod:
     @property
     def stable(self) -> bool | None:
         """Whether all small motions decay; None if the error leaves this open."""
-        margin = max(STRAIGHT_ROD.errors_from_axis * self.error, ROOTS.on_the_axis * abs(self.w))
+        margin = max(STRAIGHT_ROD.errors_from_axis * self.error, ROOTS.axis_tolerance * abs(self.w))
         # A NaN satisfies no comparison, so an unknown eigenvalue gives None.
         return self.w.real < 0 if abs(self.w.real) > margin else None
 
@@ -83,9 +83,9 @@ def straight_rod(rod: Rod, near: Complex | None = None, certify: bool = True) ->
     certify: whether the eigenvalue is proved to be the leading one.
     """
     request = SpectrumRequest(1, STRAIGHT_ROD.accuracy, certify)
-    leader = None if near is None else followed_leader(rod, near, request.accuracy)
+    leader = None if near is None else follow_leading_eigenvalue(rod, near, request.accuracy)
     if leader is not None:
-        return StraightRod(leader.w, leader.error, followed=leader.known)
+        return StraightRod(leader.w, leader.error, followed=leader.eigenvalues)
     found = solve_spectrum(rod, request)
     if isnan(found.error_estimate[0]):
         return StraightRod(complex(nan, nan), nan, found.message)

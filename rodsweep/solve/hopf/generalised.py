@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ...determinant.boundary import Boundary, OnBoundary
+from ...determinant.boundary import Boundary, BoundarySolution
 from ...determinant.parameter_path import Path
 from ...determinant.parameter_plane import Plane
 from ...watch import SolvePosition, report
@@ -76,7 +76,7 @@ class CurveCriticality:
 class _HopfNormalForm:
     """Hopf point of the plane with its normal form."""
 
-    there: OnBoundary
+    there: BoundarySolution
     coefficients: HopfCoefficients
 
     @property
@@ -130,7 +130,7 @@ class HopfCurve:
 
     def at(self, guess: Array, normal: Array, accuracy: float) -> _HopfNormalForm:
         """The Hopf point in the plane through a guess, (3,), with a normal, (3,); raises Unsolvable."""
-        there = self.boundary.corrected(guess, normal)
+        there = self.boundary.point_near(guess, normal)
         if there is None:
             raise Unsolvable("no Hopf point is found between two points of the curve")
         x, y, h = map(float, there.v)
@@ -180,7 +180,7 @@ class HopfCurve:
         way = tangent * float(np.linalg.norm(moved) ** 2 / (tangent @ moved))
         values = [axis.value(float(x)) for axis, x in zip(axes, there.v[:2], strict=True)]
         errors = [
-            abs(axis.stretch(value)) * (abs(float(off)) + there.error)
+            abs(axis.parameter_slope(value)) * (abs(float(off)) + there.error)
             for axis, value, off in zip(axes, values, way[:2], strict=True)
         ]
         return GeneralisedHopfPoint(

@@ -22,7 +22,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...determinant.wave_number import wave_number
-from ...discretization.elements.elements import Elements, equal_edges, halved
+from ...discretization.elements.elements import Elements, equal_edges, halve_elements
 from ...discretization.elements.mesh import mesh_on
 from ...discretization.elements.resolution import RESOLUTION, resolution_for
 from ...discretization.straight.arm_resolution import arm_elements
@@ -164,10 +164,12 @@ def of_odd_order(elements: Elements) -> Elements:
 
 def a_third_finer(elements: Elements) -> Elements:
     """Elements with a third more unknowns, of odd order."""
-    order = ceil(elements.order * RESOLUTION.refinement)
-    if order <= RESOLUTION.largest_order:
+    order = ceil(elements.order * RESOLUTION.refinement_ratio)
+    if order <= RESOLUTION.max_order:
         return of_odd_order(Elements(elements.edges, order))
-    return of_odd_order(Elements(halved(elements.edges), ceil(RESOLUTION.refinement / 2 * elements.order)))
+    return of_odd_order(
+        Elements(halve_elements(elements.edges), ceil(RESOLUTION.refinement_ratio / 2 * elements.order))
+    )
 
 
 def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) -> NormalForm:

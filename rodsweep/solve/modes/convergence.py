@@ -14,7 +14,7 @@ from ...arrays import Array, Complex
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.newton import second_derivative
 from ...determinant.exponents import EXPONENTS
-from ...determinant.value import distance_to_next
+from ...determinant.value import distance_to_next_root
 from ...discretization.elements.resolution import mesh_accuracy
 from ...discretization.straight.transverse_mesh import finer_mesh, mesh_for, pencil_on
 from ...model.rod import Rod
@@ -100,7 +100,7 @@ def _compared(coarse: ModeVectors, fine: ModeVectors, gaps: Array) -> ModeVector
 def gap(rod: Rod, w: complex) -> float:
     """Estimated distance of eigenvalue w from the nearest other one, 2 |D'/D''|; accurate if small."""
     if rod.standard:
-        return distance_to_next(w, rod.coefficients)
+        return distance_to_next_root(w, rod.coefficients)
     determinant = arm_determinant(rod)
     value = determinant.value(w)
     second = abs(second_derivative(w, value.S, determinant))

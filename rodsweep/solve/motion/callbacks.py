@@ -16,7 +16,7 @@ from numba import types
 from ...discretization.beam import Beam
 from ...discretization.elements.mesh import Mesh
 from ...discretization.state_layout import plane_layout
-from ...discretization.stress.rates import rate, rate_jacobian
+from ...discretization.stress.rates import write_rate, write_rate_jacobian
 from ..backend.c_functions import POINTER, c_function, call, floats, integers, petsc_function, record_at
 from ..backend.petsc import PETSc
 from .context import (
@@ -59,7 +59,7 @@ def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
     if c.without_rate:
         out[:] = dot
     else:
-        rate(floats(outputs[0], n), out, roots_of(c), rod_of(c), matrices_of(c))
+        write_rate(floats(outputs[0], n), out, roots_of(c), rod_of(c), matrices_of(c))
         for i in range(n):
             out[i] = dot[i] - out[i]
     release_read(U, at)
@@ -101,10 +101,10 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     # The Jacobian is the expensive part; a new shift alone reuses it.
     if c.matrix_due == AT_ITERATE:
         read_array(U, at)
-        rate_jacobian(floats(outputs[0], n), J, roots_of(c), rod_of(c), matrices_of(c))
+        write_rate_jacobian(floats(outputs[0], n), J, roots_of(c), rod_of(c), matrices_of(c))
         release_read(U, at)
     elif c.matrix_due == AT_BASE:
-        rate_jacobian(floats(c.base, n), J, roots_of(c), rod_of(c), matrices_of(c))
+        write_rate_jacobian(floats(c.base, n), J, roots_of(c), rod_of(c), matrices_of(c))
     _get_dense(B, at)
     M = floats(outputs[0], n * n).reshape(n, n)
     M[:, :] = -J

@@ -24,7 +24,7 @@ MAX_STAGE_POINTS = max(
 """Maximum number of points through which a stage is extrapolated."""
 FLOAT = "<f8"
 WHOLE = "<i8"
-ROD = (*(name for name in NodalRod._fields if name not in ("kept", "law")), "roots", "crushed")
+ROD = (*(name for name in NodalRod._fields if name not in ("unknown_velocities", "law")), "roots", "crushed")
 """Fields with addresses of the integrated rod's arrays, of the square roots of its compliances, and of z1 at
 each node but the tip at which h1 = 0, (nodes,)."""
 ARRAYS = ("jacobian", "base", "times", "states", "points", "constant", "rates")
@@ -80,7 +80,7 @@ UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
 
 def arrays_of(beam: Beam) -> dict[str, Array]:
     """Arrays of a rod for the fields `ROD`, of any shapes."""
-    own = beam.nodal._asdict() | {"roots": beam.roots, "crushed": beam.crushed}
+    own = beam.nodal._asdict() | {"roots": beam.sqrt_compliance, "crushed": beam.crushing_z1}
     return {name: own[name] for name in ROD}
 
 

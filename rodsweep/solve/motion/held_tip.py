@@ -17,7 +17,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.beam import Beam
-from ...discretization.elements.mesh import configuration
+from ...discretization.elements.mesh import shape_from_strains
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,7 +86,7 @@ class _Bending:
         self.length = float(self.h1 @ beam.mesh.quadrature)
         unit = np.zeros((3, size, self.mesh.element_nodes.size))
         unit[2] = np.eye(size)[:, self.mesh.element_nodes.ravel()]
-        self.angles = configuration(beam.mesh, unit, np.zeros(3))[2].T
+        self.angles = shape_from_strains(beam.mesh, unit, np.zeros(3))[2].T
         """Matrix from Pi to theta, both at all nodes; at a jump of the material from the mean Pi."""
 
     def tip(self, Pi: Array) -> Array:
@@ -96,7 +96,7 @@ class _Bending:
 
     def state(self, Pi: Array) -> Array:
         """The state z, (unknowns,), for curvatures at all nodes, (nodes + 1,)."""
-        return self._beam.unknown(np.stack([self.h1, self.h2, Pi]))
+        return self._beam.state_of_strains(np.stack([self.h1, self.h2, Pi]))
 
     def placed(self, Pi: Array, force: Array, place: Array) -> tuple[Array, Array] | None:
         """(curvatures, (nodes + 1,); force, (2,)) with the tip at a place, (2,); None where Newton fails."""

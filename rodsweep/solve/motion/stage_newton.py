@@ -13,7 +13,7 @@ import numpy as np
 from numba import types
 
 from ...arrays import Array
-from ...discretization.stress.rates import rate
+from ...discretization.stress.rates import write_rate
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ..backend.c_functions import INT, POINTER, c_function, floats, integers, pointer, record_at
@@ -182,7 +182,7 @@ def newton_step(c: Any, at: int, X: int) -> float:
     write_array(c.residual, at + 8)
     x = floats(outputs[0], n)
     residual = floats(outputs[1], n)
-    rate(x, f, roots_of(c), rod_of(c), matrices_of(c))
+    write_rate(x, f, roots_of(c), rod_of(c), matrices_of(c))
     for i in range(n):
         residual[i] = c.shift * x[i] + constant[i] - f[i]
     release_write(c.residual, at + 8)

@@ -6,11 +6,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...discretization.element_strains import write_element_rates, write_element_strains
-from ...discretization.elements.periodic import hermite_columns, maxima, minima, sampled_columns
+from ...discretization.element_strains import write_element_strain_changes, write_element_strains
+from ...discretization.elements.periodic import hermite_columns, maxima, minima, series_samples_of_columns
 from ...discretization.nodal_rod import NodalRod
 from ...discretization.plane import balance
-from ...discretization.state_layout import stress_place
+from ...discretization.state_layout import stress_index
 from ...discretization.stress.tip_motion import TipMatrices, tip_motion
 from ...model.compiled.compilation import compiled_for_vectors
 from ...model.compiled.settings import CompiledSettings
@@ -72,11 +72,11 @@ def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> T
     strain_rates(states, rates, p)
     rates *= period
     write_element_strains(S, p.rod, order, strains[0])
-    write_element_rates(S, rates, p.rod, order, strains[1])
+    write_element_strain_changes(S, rates, p.rod, order, strains[1])
     tip_motion(strains[0], strains[1], m, tip, velocity)
     # Signs 0 for an orbit without symmetry: its values cover the whole period.
     c = hermite_columns(tip, velocity, REFLECTION_SIGNS * (p.parts - 1))
-    samples = sampled_columns(c, EXTREMA.oversampling * (len(c) - 1))
+    samples = series_samples_of_columns(c, EXTREMA.oversampling * (len(c) - 1))
     return TipPath(strains, c, samples, minima(c, samples), maxima(c, samples))
 
 
@@ -87,7 +87,7 @@ def node_stresses(states: Array, out: Array) -> None:
     for a in range(len(out)):
         for k in range(len(states)):
             for i in range(n):
-                out[a, k, i] = states[k, stress_place(a, i, n)]
+                out[a, k, i] = states[k, stress_index(a, i, n)]
             # The tip's stress is prescribed, so its deviation from the straight rod vanishes.
             out[a, k, n] = 0.0
 
@@ -125,7 +125,7 @@ def means(stages: Array, weights: Array, p: Semidiscrete) -> OrbitMeans:
     stretch = p.rod.rest[0, nodes]  # at the tip
     for i in range(K * s):
         for j in range(nodes):
-            pull = flat[i, stress_place(0, j, nodes)]
+            pull = flat[i, stress_index(0, j, nodes)]
             stretch = min(stretch, p.rod.rest[0, j] + p.rod.compliance[0, j] * pull)
         # At a jump the node has a mean strain; the smaller stretch of both sides counts.
         for j in range(len(p.rod.jumps)):
@@ -137,7 +137,7 @@ def means(stages: Array, weights: Array, p: Semidiscrete) -> OrbitMeans:
 def _stretch_at_jump(state: Array, node: int, sides: Array, rod: NodalRod) -> float:
     """The smaller h1 beside a jump; state: (n,), sides: (2, 7)."""
     n = rod.rest.shape[1] - 1
-    q = Unknowns(state[stress_place(0, node, n)], state[stress_place(2, node, n)])
+    q = Unknowns(state[stress_index(0, node, n)], state[stress_index(2, node, n)])
     a = unknowns_before_jump(rod.law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
     return min(sides[0, 0] + sides[0, 1] * a.q1, sides[1, 0] + sides[1, 1] * b.q1)

@@ -13,12 +13,12 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...discretization.elements.elements import ELEMENTS
-from ...discretization.elements.mesh import Mesh, configuration
+from ...discretization.elements.mesh import Mesh, shape_from_strains
 from ...discretization.elements.periodic import (
     hermite_coefficients,
     hermite_columns,
-    rise_through_mean,
-    samples_of,
+    series_samples,
+    time_of_rise_through_mean,
 )
 from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.stress.tip_motion import tip_matrices
@@ -84,7 +84,7 @@ class CyclePath:
 
     def resampled_tip(self, count: int) -> Array:
         """`tip_samples` at a different number of times, shape (count, 3)."""
-        return samples_of(self.tip_coefficients, count)
+        return series_samples(self.tip_coefficients, count)
 
     @cached_property
     def extrema(self) -> dict[str, float]:
@@ -111,7 +111,7 @@ class CyclePath:
     @cached_property
     def beginning(self) -> float:
         """Time in periods at which the tip's y rises through its mean."""
-        return rise_through_mean(self.tip_samples[:, 1])
+        return time_of_rise_through_mean(self.tip_samples[:, 1])
 
     def tip(self, samples: int) -> Array:
         """(x, y, theta) of the tip at equidistant times from `beginning`, (3, samples)."""
@@ -143,15 +143,15 @@ class CyclePath:
         """(x, y, theta) at `count` equidistant times on `nodes` Lobatto nodes, shape (3, count, nodes)."""
         strains = self._sampled(self.strain_coefficients, count).swapaxes(0, 1)
         grid = self.orbit.form.mesh
-        return configuration(grid, np.ascontiguousarray(strains), np.zeros(3)) @ _at_lobatto(grid, nodes)
+        return shape_from_strains(grid, np.ascontiguousarray(strains), np.zeros(3)) @ _at_lobatto(grid, nodes)
 
     def _sampled(self, c: Complex, count: int) -> Array:
         """Re sum_k c_k exp(2 pi i k t) at equidistant times from `beginning`, shape (count, ...)."""
         turns = np.exp(2j * np.pi * self.beginning * np.arange(len(c)))
-        return samples_of(c * turns.reshape(-1, *(1,) * (c.ndim - 1)), count)
+        return series_samples(c * turns.reshape(-1, *(1,) * (c.ndim - 1)), count)
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def _at_lobatto(grid: Mesh, nodes: int) -> Array:
     """Matrix, applied from the right, from values at all nodes of a mesh to Lobatto nodes of the rod."""
     return grid.evaluation(lobatto_points(nodes)).T

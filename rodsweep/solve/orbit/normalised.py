@@ -35,9 +35,9 @@ def reflected(orbit: Orbit) -> Reflected:
     return _reflected(orbit.form.layout, orbit.form.mesh)
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def _reflected(layout: StateLayout, mesh: Mesh) -> Reflected:
-    return Reflected(REFLECTION.reversed(layout), layout.row({"m3": mesh.quadrature[:-1]}))
+    return Reflected(REFLECTION.reversed(layout), layout.vector({"m3": mesh.quadrature[:-1]}))
 
 
 def normalised(orbit: Orbit) -> Array:

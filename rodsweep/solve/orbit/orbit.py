@@ -13,7 +13,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ...arrays import Array
-from ...discretization.elements.collocation import Collocation, radau
+from ...discretization.elements.collocation import Collocation, radau_method
 from ...discretization.elements.elements import ELEMENTS
 from ...discretization.elements.mesh import Mesh
 from ...discretization.stress.form import StressForm
@@ -72,7 +72,7 @@ class Orbit:
 
     @property
     def method(self) -> Collocation:
-        return radau(self.stages)
+        return radau_method(self.stages)
 
     @property
     def duration(self) -> float:
@@ -92,7 +92,7 @@ class Orbit:
     def size(self) -> float:
         """Largest amplitude of the motion, in units of sqrt(energy)."""
         # The reflected part of the period has the same amplitude.
-        return float(self.form.size(self.regular_states).max())
+        return float(self.form.amplitude(self.regular_states).max())
 
     def moved(self, change: Array, share: float = 1.0) -> "Orbit":
         """The orbit plus a share of a change, (N,)."""
@@ -121,17 +121,17 @@ class Orbit:
         )
 
 
-@lru_cache(maxsize=ELEMENTS.pencils_kept)
+@lru_cache(maxsize=ELEMENTS.max_pencils)
 def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: int) -> Semidiscrete:
     """Equations that are common to all orbits of a form, with a symmetry and a method in time."""
-    d = radau(stages).differentiation
+    d = radau_method(stages).differentiation
     lengths = interval_lengths(intervals)
     S = symmetry.matrix(form.layout)
     parts = float(symmetry.parts)
     return Semidiscrete(form.nodal, form.mesh.matrices, form.mass, d, lengths, S, parts)
 
 
-@lru_cache(maxsize=ELEMENTS.pairs_kept)
+@lru_cache(maxsize=ELEMENTS.max_mesh_pairs)
 def interval_lengths(intervals: int) -> Array:
     """Lengths of the intervals in units of the duration, (intervals,): equal, but the last two are halves.
 
@@ -150,10 +150,10 @@ def node_times(intervals: int, stages: int) -> Array:
     """Times of the start and the stages in units of the duration, (1 + K s,)."""
     starts = interval_starts(intervals)[:, None]
     lengths = interval_lengths(intervals)[:, None]
-    return np.append(0.0, starts + lengths * radau(stages).nodes)
+    return np.append(0.0, starts + lengths * radau_method(stages).nodes)
 
 
-@lru_cache(maxsize=ELEMENTS.pairs_kept)
+@lru_cache(maxsize=ELEMENTS.max_mesh_pairs)
 def between_intervals(source: tuple[int, int], target: tuple[int, int]) -> csr_array:
     """Matrix from the points of source (intervals, stages) to those of the target, (target, source)."""
     intervals, stages = target
@@ -174,7 +174,7 @@ def piecewise(source: tuple[int, int], times: Array) -> csr_array:
     for interval in np.unique(k):
         inside = k == interval
         within = (times[inside] - starts[interval]) / lengths[interval]
-        weights[inside] = radau(s).evaluation(within)
+        weights[inside] = radau_method(s).evaluation(within)
     first = k * s  # the end of the interval before is the start of this interval
     columns = first[:, None] + np.arange(s + 1)
     rows = np.arange(0, weights.size + 1, s + 1)

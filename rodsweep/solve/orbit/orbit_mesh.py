@@ -9,7 +9,7 @@ from math import ceil, log
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.elements.elements import halved
+from ...discretization.elements.elements import halve_elements
 from ...discretization.elements.mesh import Mesh, mesh_on
 from ...discretization.elements.resolution import RESOLUTION
 from ...discretization.state_layout import plane_layout
@@ -119,9 +119,11 @@ class OrbitMesh:
     @property
     def finer_in_space(self) -> "OrbitMesh":
         """Mesh of a higher order, or of twice as many elements where the order is the largest."""
-        if self.order + 2 <= RESOLUTION.largest_order:
+        if self.order + 2 <= RESOLUTION.max_order:
             return replace(self, order=self.order + 2)
-        return replace(self, edges=halved(self.edges), order=ceil(ORBIT_MESH.halved_order * self.order))
+        return replace(
+            self, edges=halve_elements(self.edges), order=ceil(ORBIT_MESH.halved_order * self.order)
+        )
 
     @property
     def allowed(self) -> bool:
@@ -160,9 +162,9 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
         log(max(tails.space, ORBIT_MESH.smallest_tail) / aim_space) / tails.decay / present.elements
     )
     edges = present.edges
-    while order > RESOLUTION.largest_order:
+    while order > RESOLUTION.max_order:
         order = ceil(ORBIT_MESH.halved_order * order)
-        edges = halved(edges)
+        edges = halve_elements(edges)
     # A tail falls as intervals**-stages. With other stages it starts from about a power of the known tail.
     tail = max(tails.time, ORBIT_MESH.smallest_tail) ** (stages / present.stages)
     intervals = ceil(present.intervals * (tail / aim_time) ** (1 / stages))

@@ -29,7 +29,7 @@ class Symmetry:
         """S x of states (..., unknowns)."""
         S = layout.stresses(x)
         V = np.zeros((layout.components, *x.shape[:-1], layout.nodes + 1), x.dtype)
-        V[list(layout.kept)] = layout.velocities(x)
+        V[list(layout.unknown_velocities)] = layout.velocities(x)
         return layout.state(np.tensordot(self.turn, S, 1), np.tensordot(self.turn, V, 1))
 
     def matrix(self, layout: StateLayout) -> Array:
@@ -47,7 +47,7 @@ class Symmetry:
         return (1 - self.of(np.ones(layout.unknowns), layout)) / 2
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def _matrix(symmetry: Symmetry, layout: StateLayout) -> Array:
     """`Symmetry.matrix`, (unknowns, unknowns)."""
     return np.ascontiguousarray(symmetry.of(np.eye(layout.unknowns), layout).T)

@@ -12,11 +12,11 @@ from numpy.polynomial import legendre
 
 from ...arrays import Array
 from ...determinant.exponents import EXPONENTS
-from ...discretization.at_jumps import by_elements
-from ...discretization.elements.collocation import radau
+from ...discretization.at_jumps import stresses_by_element
+from ...discretization.elements.collocation import radau_method
 from ...discretization.elements.elements import ELEMENTS
 from ...discretization.elements.mesh import mesh
-from ...discretization.state_layout import COMPONENTS, stress_place
+from ...discretization.state_layout import PLANE_COMPONENTS, stress_index
 from ...model.compiled.compilation import compiled_for_vectors
 from ...model.compiled.settings import CompiledSettings
 from .orbit import Orbit
@@ -88,7 +88,7 @@ def _space_coefficients(orbit: Orbit) -> Array:
     return largest_coefficients(ends, grid.elements, _analysis_on_element(grid.order))
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def _analysis_on_element(order: int) -> Array:
     """Matrix, applied from the right, from an element's nodes to Legendre coefficients, (p + 1, p + 1)."""
     return np.ascontiguousarray(legendre_analysis(2 * mesh(1, order).positions - 1).T)
@@ -99,12 +99,12 @@ def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array
     """Largest moduli of the coefficients of n1, n2, m3, (3, p + 1), over all elements of states (m, n)."""
     size = len(analysis)
     nodes = elements * (size - 1)
-    largest = np.zeros((COMPONENTS, size))
+    largest = np.zeros((PLANE_COMPONENTS, size))
     c = np.empty(size)
     for k in range(len(states)):
-        for a in range(COMPONENTS):
+        for a in range(PLANE_COMPONENTS):
             for e in range(elements):
-                first = stress_place(a, e * (size - 1), nodes)
+                first = stress_index(a, e * (size - 1), nodes)
                 known = size if e < elements - 1 else size - 1  # at the tip stresses vanish
                 c[:] = 0.0
                 for j in range(known):
@@ -135,10 +135,10 @@ def lasting_tails(orbit: Orbit) -> Array:
 def _by_elements(orbit: Orbit, states: Array) -> Array:
     """n1, n2 and m3 of states (m, n) at the nodes of each element, (3, m, elements, p + 1)."""
     form = orbit.form
-    return by_elements(form.nodal, form.mesh, form.stresses(states))
+    return stresses_by_element(form.nodal, form.mesh, form.stresses(states))
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def _lasting_on_element(order: int) -> Array:
     """Last columns of `_analysis_on_element`, (p + 1, `TAILS.last_coefficients`)."""
     return np.ascontiguousarray(_analysis_on_element(order)[:, -TAILS.last_coefficients :])
@@ -154,12 +154,12 @@ def relative_tail(points: Array, elements: int, analysis: Array) -> float:
     nodes = elements * (size - 1)
     c = np.empty(count)
     worst = 0.0
-    for a in range(COMPONENTS):
+    for a in range(PLANE_COMPONENTS):
         largest = 0.0
         end = 0.0
         for k in range(len(points)):
             for e in range(elements):
-                first = stress_place(a, e * (size - 1), nodes)
+                first = stress_index(a, e * (size - 1), nodes)
                 known = size if e < elements - 1 else size - 1  # at the tip stresses vanish
                 c[:] = 0.0
                 for j in range(known):
@@ -177,10 +177,10 @@ def _tail_in_time(orbit: Orbit) -> float:
     return largest_tail(orbit.points, _last_in_interval(orbit.stages), orbit.form.mesh.nodes)
 
 
-@lru_cache(maxsize=ELEMENTS.pencils_kept)
+@lru_cache(maxsize=ELEMENTS.max_pencils)
 def _last_in_interval(stages: int) -> Array:
     """Row from the values at an interval's start and stages to the last Legendre coefficient, (s + 1,)."""
-    nodes: Array = np.append(0.0, radau(stages).nodes)
+    nodes: Array = np.append(0.0, radau_method(stages).nodes)
     row: Array = legendre_analysis(2 * nodes - 1)[-1]
     return row
 
@@ -194,20 +194,20 @@ def largest_tail(points: Array, row: Array, nodes: int) -> float:
     """
     s = len(row) - 1
     worst = 0.0
-    for a in range(COMPONENTS):
+    for a in range(PLANE_COMPONENTS):
         largest = 0.0
         tail = 0.0
         for m in range(len(points)):
             size = 0.0
             for i in range(nodes):
-                size += points[m, stress_place(a, i, nodes)] ** 2
+                size += points[m, stress_index(a, i, nodes)] ** 2
             largest = max(largest, size)
         for k in range(0, len(points) - 1, s):
             size = 0.0
             for i in range(nodes):
                 top = 0.0
                 for j in range(s + 1):
-                    top += row[j] * points[k + j, stress_place(a, i, nodes)]
+                    top += row[j] * points[k + j, stress_index(a, i, nodes)]
                 size += top**2
             tail = max(tail, size)
         worst = max(worst, np.sqrt(tail / max(largest, EXPONENTS.least_divisor)))

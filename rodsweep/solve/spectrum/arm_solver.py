@@ -1,4 +1,4 @@
-"""Krylov-Schur for nonuniform arms, on elements that end at jumps of a coefficient."""
+"""Krylov-Schur for nonuniform arms, on elements with boundaries at the jumps of every coefficient."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,17 +6,17 @@ from numpy.typing import NDArray
 from ...arrays import Complex
 from ...discretization.straight.arm_pencil import ArmPencil
 from ...discretization.straight.arm_resolution import ArmMesh
-from ...discretization.straight.pencil import Matrices, fields_of, finite_eigenvalues
+from ...discretization.straight.pencil import PencilMatrices, fields_of_vectors, finite_eigenvalues
 from ...model.rod import Rod
 from ..backend.kept import LruPool
-from .shift_invert import KRYLOV, ShiftInvertSolver, SolverContents
+from .shift_invert import KRYLOV, LoadedPencil, ShiftInvertSolver
 
 
 class ArmSolver(ShiftInvertSolver):
-    """Krylov-Schur for the arms on one mesh."""
+    """Krylov-Schur for all nonuniform arms on one mesh."""
 
-    matrices: Matrices
-    """Matrices of the last solved arm."""
+    matrices: PencilMatrices
+    """Matrices of the arm that was solved last."""
 
     def __init__(self, mesh: ArmMesh):
         self.pencil = ArmPencil(mesh)
@@ -24,7 +24,7 @@ class ArmSolver(ShiftInvertSolver):
         super().__init__(self.pencil, np.full(self.pencil.nodes, 1 / self.pencil.nodes))
         self._places: NDArray[np.int64] = self.pencil.columns.astype(np.int64) * n + self.pencil.rows
 
-    def load(self, rod: Rod, shift: float) -> SolverContents:
+    def load(self, rod: Rod, shift: float) -> LoadedPencil:
         self.matrices = found = self.pencil.matrices(rod)
         if not np.isfinite(found.A.sum() + found.B.sum() + shift):
             raise FloatingPointError(
@@ -40,16 +40,18 @@ class ArmSolver(ShiftInvertSolver):
             flat[self._places] = values
         else:
             self.A.setValuesCSR(self.indptr, self.indices, values)
-        return SolverContents(finite_eigenvalues(rod, self.nodes), shift)
+        return LoadedPencil(finite_eigenvalues(rod, self.nodes), shift)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k) each, from vectors of the last solve, (unknowns, k)."""
-        return fields_of(vectors, self.matrices.scale)
+        """(y, theta) at all nodes, (nodes + 1, k) each, from eigenvectors of the last solved arm,
+        (unknowns, k).
+        """
+        return fields_of_vectors(vectors, self.matrices.scale)
 
 
-_kept = LruPool(ArmSolver, KRYLOV.arm_solvers_kept)
+_kept = LruPool(ArmSolver, KRYLOV.max_arm_solvers)
 
 
 def arm_solver(mesh: ArmMesh) -> ArmSolver:
-    """The solver for a mesh; kept for later points."""
+    """The Krylov-Schur solver for a mesh; it is kept and reused for later arms on this mesh."""
     return _kept.get(mesh)

@@ -1,7 +1,7 @@
-"""One attempt at the leading eigenvalues of a rod, and its verdict.
+"""One attempt at the leading eigenvalues of a rod on one mesh, and its comparison with a count.
 
-A mesh gives eigenvalues, Newton's method on D refines them, and the winding number of D shows whether an
-eigenvalue is missing. `rodsweep.solve.spectrum.search` decides on the next attempt.
+The mesh gives approximate eigenvalues, Newton's method on D refines them, and the winding number of D shows
+whether an eigenvalue is missing. `rodsweep.solve.spectrum.search` decides on the next attempt.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Complex
-from ...determinant.certificate.winding_number import Count
+from ...determinant.certificate.winding_number import EigenvalueCount
 from ...determinant.roots.roots import Roots
 from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.compiled.settings import CompiledSettings
@@ -23,30 +23,34 @@ from .problem import TransverseProblem
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CandidateSettings(CompiledSettings):
-    """Settings for the eigenvalues of a mesh, and for the lines used to count them."""
+    """Settings for the eigenvalues of a mesh, and for the vertical lines right of which eigenvalues are
+    counted.
+    """
 
     max_waves_per_node: float = 2.0
-    """Largest |q| of an eigenvalue that a mesh can represent, in units of the number of nodes."""
+    """Largest wave number |q| of an eigenvalue that a mesh can represent, in units of its number of nodes."""
     wide_gap: float = 0.2
-    """Relative gap between two real parts of a stable rod that is wide enough for the line of a count; a
-    count in a wider gap is cheaper."""
+    """Gap between the real parts of two successive eigenvalues of a stable rod, relative to |Re w| of the
+    left one, beyond which a wider gap is not preferred for the line of a count."""
     wide_gap_of_flutter: float = 0.05
-    """`wide_gap` of an unstable rod: smaller, because eigenvalues far to the left converge last and need a
-    finer mesh."""
-    behind: float = 0.05
-    """Distance of the last line behind the last eigenvalue found, in units of its modulus."""
-    far_behind: float = 0.5
-    """Distance behind a followed leading eigenvalue of the first line for its count, in units of the modulus.
-    A distant line takes fewer nodes; `behind` follows, in case another eigenvalue lies between."""
-    no_gap: float = 1e-6
-    """Relative gap below which two real parts count as equal."""
-    lines_tried: int = 3
-    """Number of lines tried before the count is given up."""
-    below: float = 3.0
-    """Distance of the last wanted eigenvalue from the line of a proof without a count, in units of its
-    error."""
-    close_below: float = 1e-9
-    """Further distance, in units of the eigenvalue's modulus."""
+    """`wide_gap` of an unstable rod. It is smaller, because eigenvalues far to the left converge last and
+    need a finer mesh."""
+    last_line_distance: float = 0.05
+    """Distance by which the last line tried lies left of the last eigenvalue found, in units of its |w|."""
+    leader_line_distance: float = 0.5
+    """Distance of the first line for counting a followed leading eigenvalue, left of it, in units of its |w|.
+    A distant line needs fewer nodes; a line at `last_line_distance` follows in case another eigenvalue lies
+    between."""
+    min_gap: float = 1e-6
+    """Relative gap below which two real parts are treated as equal: no line is drawn between them."""
+    max_lines: int = 3
+    """Maximum number of lines of one rod right of which eigenvalues are counted until a count succeeds."""
+    proof_line_errors: float = 3.0
+    """Distance of the line of a proof without a count left of the last wanted eigenvalue, in units of the
+    error of this eigenvalue."""
+    proof_line_distance: float = 1e-9
+    """Further distance of the line of a proof left of the last wanted eigenvalue, besides
+    `proof_line_errors`, in units of |w|."""
 
 
 CANDIDATES = CandidateSettings()
@@ -54,7 +58,7 @@ CANDIDATES = CandidateSettings()
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """Result of one attempt: k roots of D, sorted as defined in `rodsweep.model`.
+    """Outcome of one attempt on `mesh`: k roots of D, sorted as defined in `rodsweep.model`.
 
     vectors: eigenvectors on the mesh, (unknowns, k), or None. failure: error message of SLEPc or LAPACK, or
     empty.
@@ -65,8 +69,8 @@ class Candidates:
     vectors: Complex | None
     failure: str = ""
 
-    def worst(self, modes: int) -> float:
-        """Largest relative error estimate of the leading modes."""
+    def worst_error(self, modes: int) -> float:
+        """Largest relative error estimate among the first `modes` roots."""
         errors: Any = self.roots.error[:modes].tolist()
         w: Any = self.roots.w[:modes].tolist()
         return max(0.0, *map(truediv, errors, map(abs, w)))
@@ -74,27 +78,30 @@ class Candidates:
 
 @dataclass(frozen=True, slots=True)
 class CountComparison:
-    """Number of eigenvalues right of a line by the count, and number of found eigenvalues there."""
+    """Number of eigenvalues right of a line: `count` from D, `found_count` of the eigenvalues found."""
 
-    count: Count
-    here: int
-    clear: bool
-    """Whether every found eigenvalue is further from the line than twice its error."""
+    count: EigenvalueCount
+    found_count: int
+    is_clear: bool
+    """Whether every found eigenvalue is farther from the line of the count than twice its error."""
 
     @property
     def agrees(self) -> bool:
-        return self.clear and self.count.number == self.here
+        """Whether the count and the found eigenvalues give the same number, and every found eigenvalue is
+        clear of the line.
+        """
+        return self.is_clear and self.count.number == self.found_count
 
 
 def candidates_on(
     problem: TransverseProblem, mesh: AnyMesh, wanted: int, vectors: bool, tight: bool
 ) -> Candidates:
-    """Eigenvalues of a mesh nearest the problem's shift, without spurious ones; at least `wanted` if enough
-    converge.
+    """The eigenvalues of a mesh nearest the shift of `problem`, refined to roots of D; spurious eigenvalues
+    are dropped.
 
-    tight: whether the mesh is solved to its last digit before the refinement on D. After an error inside
-    PETSc, SLEPc or LAPACK no eigenvalue is returned: on another mesh, with a different matrix, the solver may
-    succeed.
+    wanted: number of eigenvalues requested. vectors: whether eigenvectors are returned. tight: whether the
+    eigenvalues of the mesh converge to rounding error before the refinement on D. After an error inside
+    PETSc, SLEPc or LAPACK no eigenvalue is returned; the solver may succeed on another mesh.
     """
     raw: Complex = np.empty(0, complex)
     kept = None
@@ -107,42 +114,53 @@ def candidates_on(
         forget_all()
         failure = cause_of(error)
     kept_roots = problem.roots(raw, CANDIDATES.max_waves_per_node * mesh.elements * mesh.order)
-    kept = kept[:, kept_roots.chosen] if kept is not None else None
+    kept = kept[:, kept_roots.indices] if kept is not None else None
     return Candidates(mesh, kept_roots, kept, failure)
 
 
 def compare_with_count(problem: TransverseProblem, found: Roots, modes: int) -> CountComparison:
-    """Counts the eigenvalues right of a line, and compares with those found. The line lies left of all wanted
-    and all unstable eigenvalues."""
+    """Number of eigenvalues right of a vertical line, by a proof or a count, compared with the eigenvalues
+    found.
+
+    The line lies left of the leading `modes` and of all unstable eigenvalues.
+    """
     w: Any = found.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = found.error.tolist()
-    line = line_of_proof(w[modes - 1], errors[modes - 1])
+    line = line_for_proof(w[modes - 1], errors[modes - 1])
     complete, evaluations = problem.none_is_missing(line, found)
     if complete:
         here, clear = _right_of(line, w, errors)
-        return CountComparison(Count(here, evaluations), here, clear)
-    for line in lines_of_count(w, modes):
+        return CountComparison(EigenvalueCount(here, evaluations), here, clear)
+    for line in lines_for_count(w, modes):
         count = problem.count(line, found)
         if count.number is not None:
             break
     return CountComparison(count, *_right_of(line, w, errors))
 
 
-def line_of_proof(last: complex, error: float) -> float:
-    """The line <= 0 of a proof without a count, left of the last wanted eigenvalue and all unstable ones."""
-    return min(last.real - CANDIDATES.below * error - CANDIDATES.close_below * abs(last), 0.0)
+def line_for_proof(last: complex, error: float) -> float:
+    """Real part <= 0 of the line of a proof without a count, left of the last wanted eigenvalue and all
+    unstable ones.
+
+    last, error: the last wanted eigenvalue and its absolute error.
+    """
+    return min(
+        last.real - CANDIDATES.proof_line_errors * error - CANDIDATES.proof_line_distance * abs(last), 0.0
+    )
 
 
 def _right_of(line: float, w: list[complex], errors: list[float]) -> tuple[int, bool]:
-    """(how many lie right of a line, whether each is farther from the line than twice its error)."""
+    """(number of eigenvalues w right of a line, whether each is farther from the line than twice its
+    error)."""
     clear = all(abs(value.real - line) > 2 * error for value, error in zip(w, errors, strict=True))
     return sum(value.real > line for value in w), clear
 
 
-def lines_of_count(w: list[complex], modes: int) -> list[float]:
-    """Lines for the count, best first: in the gaps between real parts, the first wide gap foremost.
+def lines_for_count(w: list[complex], modes: int) -> list[float]:
+    """Real parts of the lines for a count, best first: middles of gaps left of the first `modes` eigenvalues.
 
-    The last line lies behind all eigenvalues found, where the count may include further eigenvalues.
+    w: eigenvalues in descending order. Gaps wider than `wide_gap` are equally good, and the first of them
+    comes first. The last line lies left of all eigenvalues found.
     """
     wide = CANDIDATES.wide_gap_of_flutter if w[0].real > 0 else CANDIDATES.wide_gap
     target = min(w[modes - 1].real, 0.0)
@@ -150,9 +168,9 @@ def lines_of_count(w: list[complex], modes: int) -> list[float]:
     gaps = []
     for right, left in zip(below[:-1], below[1:], strict=True):
         width = (right - left) / abs(left)
-        if width > CANDIDATES.no_gap:
+        if width > CANDIDATES.min_gap:
             gaps.append((min(width, wide), (left + right) / 2))
     gaps.sort(key=lambda gap: -gap[0])  # stable sort: the first wide gap stays first
     last = below[-1]
-    behind = last - CANDIDATES.behind * (abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0)
-    return [*(middle for _, middle in gaps[: CANDIDATES.lines_tried - 1]), behind]
+    behind = last - CANDIDATES.last_line_distance * (abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0)
+    return [*(middle for _, middle in gaps[: CANDIDATES.max_lines - 1]), behind]

@@ -1,4 +1,4 @@
-"""Krylov-Schur for a uniform rod on equal elements, with matrices affine in the coefficients."""
+"""Krylov-Schur for uniform rods on equal elements, with matrices affine in the coefficients of the rod."""
 
 import math
 
@@ -7,39 +7,39 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...discretization.elements.resolution import Resolution
-from ...discretization.straight.pencil import Pencil, assemble, fields_of, finite_eigenvalues
+from ...discretization.straight.pencil import Pencil, assemble_pencil, fields_of_vectors, finite_eigenvalues
 from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
 from ..backend.kept import LruPool
-from .shift_invert import KRYLOV, ShiftInvertSolver, SolverContents
+from .shift_invert import KRYLOV, LoadedPencil, ShiftInvertSolver
 
 
 @compiled
-def _fill(A: NDArray, coefficients: NDArray, pieces: NDArray, shift: NDArray) -> None:
-    """A = sum_i coefficients[i] pieces[i] - diag(shift), written into the transpose of PETSc's array of A."""
+def _fill(A: NDArray, coefficients: NDArray, terms: NDArray, shift: NDArray) -> None:
+    """A = sum_i coefficients[i] terms[i] - diag(shift), written into the transpose of PETSc's array of A."""
     flat = A.reshape(-1)
     flat[:] = 0.0
     for i in range(len(coefficients)):
         for j in range(len(flat)):
-            flat[j] += coefficients[i] * pieces[i, j]
+            flat[j] += coefficients[i] * terms[i, j]
     for j in range(len(shift)):
         A[j, j] -= shift[j]
 
 
-class EigenSolver(ShiftInvertSolver):
-    """Krylov-Schur for one resolution."""
+class UniformSolver(ShiftInvertSolver):
+    """Krylov-Schur for all uniform rods on one mesh of equal elements."""
 
     def __init__(self, resolution: Resolution):
-        self.pencil: Pencil = assemble(resolution.elements, resolution.order)
+        self.pencil: Pencil = assemble_pencil(resolution.elements, resolution.order)
         super().__init__(self.pencil, self.pencil.mass)
         if self.dense:
-            self.pieces = self.pencil.dense_pieces()
+            self.dense_terms = self.pencil.dense_terms()
         self.gamma3 = -1.0
         self.inertia: Array = np.ones(self.pencil.unknowns)
 
-    def load(self, rod: Rod, shift: float) -> SolverContents:
-        rod, pace = _as_filament(rod)
-        shift *= pace**2
+    def load(self, rod: Rod, shift: float) -> LoadedPencil:
+        rod, deflection_ratio = _as_filament(rod)
+        shift *= deflection_ratio**2
         coefficients = self.pencil.coefficients(rod)
         if not math.isfinite(coefficients.sum() + shift):
             raise FloatingPointError(
@@ -51,21 +51,22 @@ class EigenSolver(ShiftInvertSolver):
             self.B.setValuesCSR(self.line, self.line[:-1], self.inertia)
             self.B.assemble()
         if self.dense:
-            _fill(self.A.getDenseArray().T, coefficients, self.pieces, shift * self.inertia)
+            _fill(self.A.getDenseArray().T, coefficients, self.dense_terms, shift * self.inertia)
         else:
-            values = coefficients @ self.pencil.pieces
+            values = coefficients @ self.pencil.term_entries
             values[self.diagonal] -= shift * self.inertia
             self.A.setValuesCSR(self.indptr, self.indices, values)
-        return SolverContents(finite_eigenvalues(rod, self.nodes), shift, pace)
+        return LoadedPencil(finite_eigenvalues(rod, self.nodes), shift, deflection_ratio)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k) each, from vectors of the last solve, (unknowns, k)."""
-        return fields_of(vectors, self.pencil.scale(rod))
+        """(y, theta) at all nodes, (nodes + 1, k) each, from eigenvectors of the last solve, (unknowns,
+        k)."""
+        return fields_of_vectors(vectors, self.pencil.scale(rod))
 
 
 def _as_filament(rod: Rod) -> tuple[Rod, float]:
-    """(equivalent rod, pace): the equivalent rod has the eigenvalues of `rod` times pace^2, and y of `rod`
-    over pace.
+    """(equivalent rod, deflection_ratio). `rod` has the eigenvalues of the equivalent rod over
+    deflection_ratio^2, and its y times `deflection_ratio`.
 
     A partial beam (k2 = inf, gamma3 = 0) moves like the filament under the force F nu, with times scaled by
     nu^2. Near crushing the matrices of the beam itself are too badly scaled.
@@ -75,9 +76,9 @@ def _as_filament(rod: Rod) -> tuple[Rod, float]:
     return rod, 1.0
 
 
-_kept = LruPool(EigenSolver, KRYLOV.uniform_solvers_kept)
+_kept = LruPool(UniformSolver, KRYLOV.max_uniform_solvers)
 
 
-def eigen_solver(resolution: Resolution) -> EigenSolver:
-    """The solver for a resolution; kept for later points."""
+def uniform_solver(resolution: Resolution) -> UniformSolver:
+    """The Krylov-Schur solver for a resolution; it is kept and reused for later rods of this resolution."""
     return _kept.get(resolution)

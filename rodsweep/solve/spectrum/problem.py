@@ -1,7 +1,7 @@
-"""The transverse eigenvalue problem of one rod for the search of leading eigenvalues.
+"""The transverse eigenvalue problem of one rod, as the search for leading eigenvalues uses it.
 
 For a uniform rod of linear material, D has a closed form and the pencil is affine in the coefficients. For
-every other arm, D comes from propagators and the pencil is assembled anew.
+every other arm, D is computed from propagators and the pencil is assembled anew.
 """
 
 from abc import ABC, abstractmethod
@@ -20,72 +20,84 @@ from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.hull.hull import hull_of
 from ...determinant.arm.roots import roots as roots_of_arm
 from ...determinant.certificate.box import squared_amplification
-from ...determinant.certificate.winding_number import Count, count_right_of
+from ...determinant.certificate.winding_number import EigenvalueCount, count_right_of
 from ...determinant.roots.roots import Roots, roots
-from ...discretization.elements.resolution import Resolution, expected_wave_number, finer, resolution_for
+from ...discretization.elements.resolution import (
+    Resolution,
+    expected_wave_number,
+    finer_resolution,
+    resolution_for,
+)
 from ...discretization.straight.arm_resolution import ArmMesh, arm_mesh, finer_arm_mesh
 from ...discretization.straight.transverse_mesh import AnyMesh, finer_mesh
 from ...model.dispersion import local_growth, most_amplified_wave
 from ...model.rod import Rod
 from .arm_solver import ArmSolver, arm_solver
-from .krylov_schur import EigenSolver, eigen_solver
+from .krylov_schur import UniformSolver, uniform_solver
 from .path.prediction import KnownRoots
 from .shift_invert import KRYLOV
 
 
 class TransverseProblem(ABC):
-    """Discretization and determinant of one rod.
+    """Meshes, solver and determinant D of one rod.
 
-    shift: right of most spectra, in 1/tau2. bounded: whether an a-priori bound of the eigenvalues is known.
-    is_count_slow: whether a count costs more than some eigenproblems.
+    shift: target of Krylov-Schur, right of most spectra, in 1/tau2. has_bound: whether an a-priori bound of
+    the eigenvalues exists. is_count_slow: whether one count costs more than several eigenproblems.
     """
 
     rod: Rod
     shift: float
-    bounded: bool
+    has_bound: bool
     is_count_slow: ClassVar[bool]
-    spare: int = 0
-    """Number of eigenvalues first requested beyond the modes, for a proof without a count."""
+    spare_eigenvalues: int = 0
+    """Number of eigenvalues requested from the first mesh beyond the modes, to make a proof without a count
+    possible."""
 
     @abstractmethod
     def mesh_for(self, modes: int, accuracy: float) -> Any:
-        """The mesh expected to give a number of leading modes to a relative accuracy."""
+        """The mesh expected to give `modes` leading eigenvalues to the relative `accuracy`."""
 
-    def finer(self, mesh: AnyMesh) -> AnyMesh:
-        """The next mesh after a mesh that is too coarse."""
+    def finer_mesh(self, mesh: AnyMesh) -> AnyMesh:
+        """The mesh with about a third more unknowns that follows `mesh` in a refinement."""
         return finer_mesh(self.rod, mesh)
 
     @abstractmethod
     def next_mesh_for(self, mesh: Any, waves: Array, accuracy: float) -> Any:
-        """The next mesh, chosen for the wave numbers of the leading modes found, (modes,)."""
+        """The mesh to try after `mesh`, chosen for the wave numbers of the leading modes found, (modes,)."""
 
-    def solver(self, mesh: AnyMesh) -> EigenSolver | ArmSolver:
+    def solver(self, mesh: AnyMesh) -> UniformSolver | ArmSolver:
         """The Krylov-Schur solver for a mesh."""
-        return eigen_solver(mesh) if isinstance(mesh, Resolution) else arm_solver(mesh)
+        return uniform_solver(mesh) if isinstance(mesh, Resolution) else arm_solver(mesh)
 
     @abstractmethod
     def roots(self, raw: Complex, most_waves: float) -> Roots:
-        """Eigenvalues of a mesh, (n,), refined to roots of D; most_waves: largest |q| that the mesh
-        represents."""
+        """Roots of D refined from the eigenvalues `raw` of a mesh, (n,).
+
+        most_waves: largest wave number |q| that the mesh represents.
+        """
 
     @abstractmethod
-    def count(self, line: float, found: Roots | KnownRoots | None = None) -> Count:
-        """Number of eigenvalues with Re w > line; found: roots that may make the count faster."""
+    def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
+        """Proved number of eigenvalues with Re w > line. found: roots of D, which make the count of an arm
+        faster.
+        """
 
     def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
-        """(whether all eigenvalues right of a line are proved to be found, without a count; evaluations of
+        """(whether it is proved that `found` has all eigenvalues right of a line, number of evaluations of
         D).
+
+        The proof needs no count. It never succeeds for a uniform rod, whose count is fast.
         """
         return False, 0
 
     @cached_property
-    def countable(self) -> bool:
-        """Whether a count is possible; False if it fails for every line at most 0."""
+    def is_countable(self) -> bool:
+        """Whether a count can succeed; False if the count fails for every line at real part <= 0."""
         return True
 
 
 class UniformProblem(TransverseProblem):
-    """The problem of a uniform rod of linear material."""
+    """The transverse eigenvalue problem of a uniform rod of linear material."""
 
     is_count_slow = False
 
@@ -94,28 +106,30 @@ class UniformProblem(TransverseProblem):
         growth, self._wave = most_amplified_wave(rod)
         self.shift = KRYLOV.shift_above_growth * growth
         self._amplification = sqrt(squared_amplification(rod))
-        self.bounded = isfinite(self._amplification)
+        self.has_bound = isfinite(self._amplification)
 
     def mesh_for(self, modes: int, accuracy: float) -> Resolution:
         return resolution_for(expected_wave_number(modes, self._wave), accuracy)
 
     def next_mesh_for(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
-        """The mesh for the wave numbers, (modes,), but at least the next finer mesh."""
+        """The mesh that resolves the largest of the wave numbers `waves`, (modes,), but at least the next
+        finer mesh.
+        """
         asked = resolution_for(float(waves.max()), accuracy)
-        return max(asked, finer(mesh), key=lambda each: each.unknowns)
+        return max(asked, finer_resolution(mesh), key=lambda each: each.unknowns)
 
     def roots(self, raw: Complex, most_waves: float) -> Roots:
-        """Eigenvalues of a mesh, (n,), refined to roots of D."""
+        """Roots of D refined from the eigenvalues `raw` of a mesh, (n,)."""
         return roots(raw, self.rod.coefficients, self._amplification, most_waves)
 
-    def count(self, line: float, found: Roots | KnownRoots | None = None) -> Count:
+    def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
         return count_right_of(line, self.rod)
 
 
 class ArmProblem(TransverseProblem):
-    """The problem of an arm that varies along its length.
+    """The transverse eigenvalue problem of an arm that varies along its length.
 
-    to_prove: number of leading modes whose list will be proved complete, 0 without a proof.
+    to_prove: number of leading modes to be proved complete; 0 without a proof.
     """
 
     is_count_slow = True
@@ -125,8 +139,8 @@ class ArmProblem(TransverseProblem):
         self._to_prove = to_prove
         self._hull = hull_of(rod)
         self._determinant = arm_determinant(rod)
-        self.bounded = isfinite(self._hull.a)
-        self.spare = COMPLETENESS.spare if to_prove and self.bounded else 0
+        self.has_bound = isfinite(self._hull.a)
+        self.spare_eigenvalues = COMPLETENESS.spare_eigenvalues if to_prove and self.has_bound else 0
         growth, _ = local_growth(rod)
         self.shift = KRYLOV.shift_above_growth * float(growth.max())
 
@@ -134,21 +148,22 @@ class ArmProblem(TransverseProblem):
         return arm_mesh(self.rod, modes, accuracy)
 
     def next_mesh_for(self, mesh: ArmMesh, waves: Array, accuracy: float) -> ArmMesh:
-        """The next finer mesh; the wave numbers, (modes,), are ignored."""
+        """The next finer mesh; the wave numbers `waves`, (modes,), are ignored."""
         return finer_arm_mesh(self.rod, mesh)
 
     def roots(self, raw: Complex, most_waves: float) -> Roots:
-        """Eigenvalues of a mesh, (n,), refined to roots of D."""
+        """Roots of D refined from the eigenvalues `raw` of a mesh, (n,)."""
         wanted, largest = self._of_proof(raw)
         return roots_of_arm(np.where(wanted, raw, np.inf), self._determinant, self._hull, most_waves, largest)
 
     def _of_proof(self, raw: Complex) -> tuple[NDArray[np.bool_], float]:
-        """(mask of the eigenvalues of a mesh, (n,), that the proof will need; the largest |w| of D for it).
+        """(mask of the eigenvalues `raw` that the proof will need, (n,); largest |w| at which the proof needs
+        D).
 
-        The size is 0 if unknown.
+        The largest |w| is 0 if it is unknown.
         """
         wanted = np.isfinite(raw)
-        if not self._to_prove or not self.bounded or wanted.sum() < self._to_prove:
+        if not self._to_prove or not self.has_bound or wanted.sum() < self._to_prove:
             return wanted, 0.0
         finite = np.flatnonzero(wanted)
         order = finite[np.lexsort((-raw.imag[finite], -raw.real[finite]))]
@@ -159,18 +174,18 @@ class ArmProblem(TransverseProblem):
         wanted[order[number:]] = False
         return wanted, size
 
-    def count(self, line: float, found: Roots | KnownRoots | None = None) -> Count:
+    def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
         known = () if found is None else (found.w, found.error)
         return count_of_arm(line, self._determinant, self._hull, *known)
 
     @cached_property
-    def countable(self) -> bool:
+    def is_countable(self) -> bool:
         return is_countable(self._determinant, self._hull)
 
     def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
         return none_is_missing(line, found.w, found.error, self._determinant, self._hull)
 
 
-def problem_of(rod: Rod, to_prove: int = 0) -> TransverseProblem:
-    """The problem of a rod: uniform, or an arm; to_prove: see `ArmProblem`."""
+def transverse_problem(rod: Rod, to_prove: int = 0) -> TransverseProblem:
+    """The transverse eigenvalue problem of a uniform rod or of an arm; to_prove: see `ArmProblem`."""
     return UniformProblem(rod) if rod.standard else ArmProblem(rod, to_prove)

@@ -1,39 +1,43 @@
-"""Settings of the search for one spectrum: meshes, attempts and accepted errors."""
+"""Settings of the search for the leading eigenvalues of one rod: meshes, attempts and accepted errors."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SearchSettings:
-    """Settings of the search for one spectrum: meshes, attempts and accepted errors."""
+    """Settings of the search for the leading eigenvalues of one rod: meshes, attempts and accepted errors."""
 
     spare_modes: int = 1
-    """Number of eigenvalues requested beyond the count of the winding number."""
-    unknowns_a_mode: int = 6
-    """Fewest unknowns of a mesh for each requested eigenvalue."""
-    enough_unproved: int = 50
-    """Number of growing modes after which no more are solved for if no count is possible: each doubling costs
-    several times as much, and nothing is proved in the end."""
-    resolved_share: float = 0.5
-    """Fewest roots found on a mesh, in units of the requested modes, after which more eigenvalues are
-    requested."""
+    """Number of eigenvalues requested from the mesh beyond the number that the winding number counts."""
+    min_unknowns_per_mode: int = 6
+    """Minimum number of unknowns of a mesh per requested eigenvalue."""
+    max_unproved_modes: int = 50
+    """Number of growing modes found beyond which no more modes are requested if no count is possible: each
+    doubling costs several times as much, and nothing is proved in the end."""
+    min_resolved_fraction: float = 0.5
+    """Fraction of the requested modes. If at least this many roots of D, but too few, come from a mesh, the
+    next attempt requests more eigenvalues; with fewer roots it only refines the mesh."""
     max_meshes: int = 16
-    """Maximum number of attempts. Pulled rods with little rotational drag take most of them."""
+    """Maximum number of attempts, each on one mesh. Only pulled rods with little rotational drag need most of
+    these."""
     max_failures: int = 3
     """Maximum number of attempts that end with an error inside PETSc, SLEPc or LAPACK."""
-    no_progress: int = 2
-    """Number of refinements without a smaller error after which rounding is taken as the limit."""
-    progress: float = 0.5
-    """Largest ratio of the errors of two attempts that counts as progress."""
-    error_share: float = 0.5
-    """Largest error estimate in units of the accuracy: it is an estimate only."""
-    stalled_error_share: float = 0.8
-    """`error_share` if rounding limits the error."""
+    max_stalled_refinements: int = 2
+    """Number of successive mesh refinements without `progress_ratio` after which the error is taken to be
+    rounding error."""
+    progress_ratio: float = 0.5
+    """Largest ratio of the error of an attempt to the best error before that counts as progress."""
+    max_error_over_limit: float = 0.5
+    """Largest error estimate of an accepted spectrum, in units of the requested accuracy. It is below 1
+    because an estimate may be too small."""
+    max_stalled_error_over_limit: float = 0.8
+    """`max_error_over_limit` of a spectrum whose error further meshes do not reduce."""
     largest_displacement: float = 1e-3
-    """Relative distance of the mesh's eigenvalues from the roots of D, above which the mesh may have missed
-    an eigenvalue."""
+    """Largest relative distance between eigenvalues of the mesh and the roots of D to which they converge.
+    Beyond it the mesh may have missed an eigenvalue."""
     unbounded_displacement: float = 1e-6
-    """`largest_displacement` without an a-priori bound, if convergence is the only evidence."""
+    """`largest_displacement` for a rod without an a-priori bound of its eigenvalues, where convergence is the
+    only evidence."""
 
 
 SEARCH = SearchSettings()

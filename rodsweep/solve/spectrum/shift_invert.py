@@ -22,65 +22,71 @@ from ..backend.petsc import PETSc, SLEPc, sparse_package
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KrylovSettings:
-    """Settings of Krylov-Schur by shift-and-invert, and of the solvers kept from point to point."""
+    """Settings of Krylov-Schur by shift-and-invert, and of the solver objects that are kept for later
+    rods."""
 
     shift_above_growth: float = 1.05
-    """Shift in units of the growth rate of the most amplified wave, which bounds most spectra."""
-    dense_up_to: int = 300
-    """Number of unknowns up to which the dense factorisation is as fast as the sparse, with smaller rounding
-    errors."""
-    start_tolerance: float = 1e-4
+    """Shift in units of the growth rate of the most amplified wave. This growth rate is above most
+    spectra."""
+    max_dense_unknowns: int = 300
+    """Number of unknowns up to which the matrix is factorised as dense: as fast as a sparse factorisation
+    there, with smaller rounding errors."""
+    loose_tolerance: float = 1e-4
     """Krylov tolerance for eigenvalues that are refined on D."""
-    start_spare: int = 5
+    loose_spare_vectors: int = 5
     """Number of Krylov vectors beyond the wanted eigenvalues, for eigenvalues that are refined on D."""
     tight_tolerance: float = 1e-14
-    """Krylov tolerance for eigenvalues and vectors that are not refined: the mesh is then the only error."""
-    tight_spare: int = 13
-    """Number of Krylov vectors beyond the wanted eigenvalues, for eigenvalues and vectors that are not
-    refined."""
+    """Krylov tolerance for eigenvalues and eigenvectors that are not refined on D: the mesh is then the only
+    error."""
+    tight_spare_vectors: int = 13
+    """Number of Krylov vectors beyond the wanted eigenvalues, for eigenvalues and eigenvectors that are not
+    refined on D."""
     max_restarts: int = 200
     """Maximum number of restarts of the Krylov space."""
-    steps_of_infinity: int = 2
-    """Number of steps of shift-and-invert that remove the components of infinite eigenvalues: one, or two for
-    k2 = inf. A larger Krylov space contains only rounding errors in addition, on which LAPACK may fail
-    (trexc)."""
-    start_width: float = 3.3
-    """Width of the first Krylov vector in units of the distance of nodes: a displacement next to the tip,
-    which every mode moves, as smooth as the wanted modes. It saves two steps of eleven."""
-    start_rotation: float = 0.1
+    vectors_for_infinity: int = 2
+    """Number of Krylov vectors beyond the finite eigenvalues. Applying shift-and-invert once, or twice for k2
+    = inf, removes all components of infinite eigenvalues. A larger Krylov space would add only rounding
+    errors, on which LAPACK may fail (trexc)."""
+    first_vector_width: float = 3.3
+    """Width of the first Krylov vector, a bump of displacement at the tip, in units of the distance between
+    nodes. Every mode moves the tip, and the bump is as smooth as the wanted modes. It saves two Krylov steps
+    of eleven."""
+    first_vector_rotation: float = 0.1
     """Rotation of the first Krylov vector in units of its displacement. Without rotation only rounding errors
-    reach the modes of rotation alone, of rods in which neither of the two excites the other."""
-    uniform_solvers_kept: int = 24
-    """Number of solvers kept for later points of equal resolution, if their memory allows; a sweep uses
-    few."""
-    arm_solvers_kept: int = 8
-    """Number of solvers kept for later points on equal meshes of arms."""
-    dense_copies: int = 9
-    """Dense matrices of a small pencil: A, its factors, and its constant pieces."""
-    sparse_copies: int = 11
-    """Numbers per entry of a large pencil: A with its pattern, its factors, and its constant pieces."""
+    would excite modes of pure rotation, in rods whose displacement and rotation are uncoupled."""
+    max_uniform_solvers: int = 24
+    """Maximum number of solvers of uniform rods that are kept for later rods, one a resolution, if their
+    memory allows; a sweep needs few."""
+    max_arm_solvers: int = 8
+    """Maximum number of solvers of arms that are kept for later arms, one a mesh."""
+    stored_dense_matrices: int = 9
+    """Number of dense matrices that a solver of a small pencil stores: A, its factors, and its constant
+    matrices."""
+    stored_numbers_per_entry: int = 11
+    """Number of stored numbers per nonzero entry of a large pencil: A with its pattern, its factors, and its
+    constant matrices."""
 
 
 KRYLOV = KrylovSettings()
 
 SPECTRUM_PREFIX = "spectrum_"
-"""Prefix of the PETSc options that override this solver, as in -spectrum_eps_ncv 32."""
+"""Prefix of the PETSc options that override the settings of this eigensolver, as in -spectrum_eps_ncv 32."""
 
 
 class PencilPattern(Protocol):
-    """Sparsity pattern and nodes of a pencil, as a solver needs them."""
+    """Sparsity pattern and nodes of a pencil, as `ShiftInvertSolver` needs them."""
 
     @property
     def rows(self) -> NDArray[np.int32]:
-        """Row of each entry, (nnz,)."""
+        """Row of each nonzero entry, (nnz,)."""
 
     @property
     def columns(self) -> NDArray[np.int32]:
-        """Column of each entry, (nnz,)."""
+        """Column of each nonzero entry, (nnz,)."""
 
     @property
     def positions(self) -> Array:
-        """u of all nodes, the clamp included, (nodes + 1,)."""
+        """Material coordinate u of all nodes, the clamp included, (nodes + 1,)."""
 
     @property
     def nodes(self) -> int:
@@ -88,32 +94,33 @@ class PencilPattern(Protocol):
 
     @property
     def unknowns(self) -> int:
-        """Number of unknowns."""
+        """Number of rows of the pencil."""
 
 
-class SolverContents(NamedTuple):
-    """Contents of a filled solver.
+class LoadedPencil(NamedTuple):
+    """Numbers of the rod whose matrices a solver holds.
 
-    finite: number of finite eigenvalues. shift: in units of the pencil. pace: eigenvalues of the pencil are
-    those of the rod times pace^2, its y are those of the rod over pace.
+    finite_eigenvalues: number of finite eigenvalues. shift: in units of the eigenvalues of the pencil.
+    deflection_ratio: the rod has the eigenvalues of the pencil over deflection_ratio^2, and the y of the
+    pencil times deflection_ratio.
     """
 
-    finite: int
+    finite_eigenvalues: int
     shift: float
-    pace: float = 1.0
+    deflection_ratio: float = 1.0
 
 
 class ShiftInvertSolver(ABC):
-    """Krylov-Schur for pencils of one pattern; `solve` may be called any number of times.
+    """Krylov-Schur for pencils of one sparsity pattern; `solve` may be called any number of times.
 
-    mass: mass of the nodes without the clamp, (nodes,), for the first Krylov vector.
+    mass: mass at the nodes without the clamp, (nodes,), for the first Krylov vector.
     """
 
     def __init__(self, pattern: PencilPattern, mass: Array):
         self.nodes = pattern.nodes
         n = pattern.unknowns
         package = sparse_package()
-        self.dense = n <= KRYLOV.dense_up_to or package is None
+        self.dense = n <= KRYLOV.max_dense_unknowns or package is None
         self.diagonal = pattern.rows == pattern.columns
         self.indptr = np.searchsorted(pattern.rows, np.arange(n + 1)).astype(PETSc.IntType)
         self.indices = pattern.columns.astype(PETSc.IntType)
@@ -127,14 +134,14 @@ class ShiftInvertSolver(ABC):
         self.line = np.arange(n + 1, dtype=PETSc.IntType)
         self.B.createAIJ([n, n], csr=(self.line, self.line[:-1], np.ones(n)), comm=PETSc.COMM_SELF)
         first = np.zeros(n)
-        distance = (1 - pattern.positions[1:]) * pattern.nodes / KRYLOV.start_width
+        distance = (1 - pattern.positions[1:]) * pattern.nodes / KRYLOV.first_vector_width
         first[: pattern.nodes] = np.exp(-(distance**2)) * np.sqrt(mass)
-        first[pattern.nodes : 2 * pattern.nodes] = KRYLOV.start_rotation * first[: pattern.nodes]
+        first[pattern.nodes : 2 * pattern.nodes] = KRYLOV.first_vector_rotation * first[: pattern.nodes]
         self.start = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
         self.users_krylov = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)
         self.users_tolerance = PETSc.Options(SPECTRUM_PREFIX).getReal("eps_tol", 0.0)
         self.eps = self._solver("petsc" if self.dense else package)
-        self.loaded = SolverContents(0, 0.0)
+        self.loaded = LoadedPencil(0, 0.0)
 
     def _solver(self, package: str | None) -> "SLEPc.EPS":
         eps = SLEPc.EPS().create(PETSc.COMM_SELF)
@@ -155,62 +162,69 @@ class ShiftInvertSolver(ABC):
         return eps
 
     @abstractmethod
-    def load(self, rod: Rod, shift: float) -> SolverContents:
-        """Fills A - shift B and B for a rod."""
+    def load(self, rod: Rod, shift: float) -> LoadedPencil:
+        """Fills PETSc's matrices A - shift B and B with the values for a rod."""
 
     @abstractmethod
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k) each, from vectors of the last solve, (unknowns, k)."""
+        """(y, theta) at all nodes, (nodes + 1, k) each, from eigenvectors of the last solve, (unknowns,
+        k)."""
 
     def solve(self, rod: Rod, shift: float, wanted: int, tight: bool = False) -> Complex:
-        """Eigenvalues nearest the shift, at least `wanted` if they converge, unsorted, complex, (k,), in
-        1/tau2.
+        """Eigenvalues of a rod nearest the shift, complex, unsorted, (k,), in 1/tau2; k >= `wanted` if enough
+        converge.
 
-        tight: whether the eigenvalues converge to the last digit of the mesh, instead of the digits needed to
-        start Newton's method. Raises PETSc.Error.
+        tight: whether the eigenvalues converge to rounding error on the mesh, instead of the few digits that
+        Newton's method on D needs. Raises PETSc.Error.
         """
         report()
         self.loaded = self.load(rod, shift)
         self.A.assemble()
         self.eps.setOperators(self.A, self.B)
-        most = self.loaded.finite
+        most = self.loaded.finite_eigenvalues
         wanted = min(wanted, most - 1)  # a conjugate pair may add one
-        spare = KRYLOV.tight_spare if tight else KRYLOV.start_spare
-        tolerance = KRYLOV.tight_tolerance if tight else KRYLOV.start_tolerance
+        spare = KRYLOV.tight_spare_vectors if tight else KRYLOV.loose_spare_vectors
+        tolerance = KRYLOV.tight_tolerance if tight else KRYLOV.loose_tolerance
         krylov = self.users_krylov or max(2 * wanted, wanted + spare)
         self.eps.setTolerances(self.users_tolerance or tolerance, KRYLOV.max_restarts)
-        krylov = min(krylov, most + KRYLOV.steps_of_infinity)
+        krylov = min(krylov, most + KRYLOV.vectors_for_infinity)
         self.eps.setDimensions(wanted, krylov, krylov)
         self.eps.setInitialSpace(self.start)
         self.eps.solve()
         found = self.eps.getConverged()
         w: Complex = np.array([self.eps.getEigenvalue(i) for i in range(found)], complex)
-        return (w + self.loaded.shift) / self.loaded.pace**2
+        return (w + self.loaded.shift) / self.loaded.deflection_ratio**2
 
     def vectors(self, found: int) -> Complex:
-        """Vectors of the eigenvalues of the last `solve`, (unknowns, found)."""
+        """Eigenvectors of the first `found` eigenvalues of the last `solve`, (unknowns, found)."""
         real, imag = self.A.createVecs()
         X = np.empty((len(self.line) - 1, found), dtype=complex)
         for i in range(found):
             self.eps.getEigenvector(i, real, imag)
             X[:, i] = real.array + 1j * imag.array
-        X[: self.nodes] *= self.loaded.pace
+        X[: self.nodes] *= self.loaded.deflection_ratio
         real.destroy()
         imag.destroy()
         return X
 
     @property
     def kept_bytes(self) -> int:
-        """Memory of the matrices with their factors, the Krylov space and its projected matrices, in bytes.
+        """Estimated memory of a solver, in bytes: matrices with their factors, Krylov space and projected
+        matrices.
 
-        Dropping a solver frees 0.5 to 0.9 of it, measured with up to 640 Krylov vectors; pencils are kept.
+        Dropping a solver frees 0.5 to 0.9 of this estimate, measured with up to 640 Krylov vectors; pencils
+        are kept.
         """
         n = len(self.line) - 1
         krylov = self.eps.getDimensions()[1] + 1
-        matrices = KRYLOV.dense_copies * n * n if self.dense else KRYLOV.sparse_copies * len(self.indices)
+        matrices = (
+            KRYLOV.stored_dense_matrices * n * n
+            if self.dense
+            else KRYLOV.stored_numbers_per_entry * len(self.indices)
+        )
         return 8 * (matrices + 2 * n * krylov + 4 * krylov**2)
 
     def destroy(self) -> None:
-        """Frees the objects of PETSc and SLEPc."""
+        """Frees the PETSc and SLEPc objects of the solver."""
         for held in (self.eps, self.A, self.B, self.start):
             held.destroy()

@@ -1,4 +1,4 @@
-"""Leading eigenvalues of one rod or of several: the request and the outcome."""
+"""Leading eigenvalues of one rod or of several rods: the request and the outcome."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -18,88 +18,97 @@ from .status import SpectrumStatus
 
 @dataclass(frozen=True, slots=True)
 class SpectrumRequest:
-    """Request for every point: number of modes, relative accuracy, certification, vectors."""
+    """Request for the leading eigenvalues of every rod of a sweep."""
 
     modes: int
+    """Number of leading eigenvalues."""
     accuracy: float
+    """Relative accuracy of every eigenvalue, and of every eigenmode if requested."""
     certify: bool
+    """Whether it must be proved that no eigenvalue is missing."""
     vector_nodes: int = 0
-    """Number of Lobatto nodes for (Y, Theta); 0 for no vectors."""
+    """Number of Lobatto nodes at which eigenmodes (Y, Theta) are stored; 0 for no eigenmodes."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpectrumErrorSettings:
-    """Settings for rounding errors of eigenvalues, which are added to that of D."""
+    """Settings for the rounding errors of eigenvalues, which are added to the error from D."""
 
     rounding: float = 6.0
-    """Rounding error of an eigenvalue, in units of the spacing of doubles at its modulus, from rounding of
-    the number itself and of the coefficients of D."""
+    """Rounding error of an eigenvalue of a uniform rod, in units of the spacing of doubles at |w|: the
+    rounding of w itself and of the coefficients of D."""
     rounding_of_arms: float = 24.0
-    """The same for an arm with propagators: each rounds the coefficients of its element, and D may magnify
-    this error. Of 3960 eigenvalues of random arms, compared with 34 digits, one is off by 1.6 times its
-    stated error."""
+    """`rounding` for an arm, whose D is computed with propagators. Every propagator rounds the coefficients
+    of its element, and D may magnify this error. Of 3960 eigenvalues of random arms, compared with 34 digits,
+    one is off by 1.6 times its stated error."""
 
 
 SPECTRUM_ERRORS = SpectrumErrorSettings()
 
-EachRod = Any
-"""A number of a rod, or the numbers of n rods solved together, (n,)."""
+NumberPerRod = Any
+"""A number of one rod, or an array of such numbers for n rods solved together, (n,)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spectrum:
-    """Leading transverse eigenvalues of one rod, or of n rods: then every array has a leading axis (n,)."""
+    """Leading transverse eigenvalues of one rod, or of n rods; for n rods every array has a first axis
+    (n,)."""
 
-    status: EachRod
-    """A `SpectrumStatus`."""
+    status: NumberPerRod
+    """A `SpectrumStatus`, or the integer values of n of them, (n,)."""
     eigenvalues: Complex
     """Eigenvalues w, complex, (modes,), in 1/tau2, in the order defined in `rodsweep.model`."""
     error_estimate: Array
-    """Error estimates |D/D'|, (modes,): at least a tenth of the error, and at most ten times the error or the
-    effect of rounding of the force or of w."""
-    unstable_count: EachRod = -1
-    """Number of eigenvalues with Re w > 0, -1 if unknown; proved if requested."""
-    certified: EachRod = False
-    """Whether the winding number proves that no eigenvalue right of the last mode is missing."""
-    elements: EachRod = 0
+    """Absolute error estimates |D/D'| of the eigenvalues, (modes,), in 1/tau2: at least a tenth of the error,
+    and at most ten times the larger of the error and the effect of rounding of the force or of w."""
+    unstable_count: NumberPerRod = -1
+    """Number of eigenvalues with Re w > 0; -1 if unknown. The number is proved if a certificate was
+    requested."""
+    certified: NumberPerRod = False
+    """Whether it is proved that no eigenvalue is missing right of the last mode."""
+    elements: NumberPerRod = 0
     """Number of elements of the mesh, 0 without a mesh."""
-    order: EachRod = 0
+    order: NumberPerRod = 0
     """Order of the elements, 0 without a mesh."""
-    seconds: EachRod = 0.0
-    """Time of the solve, for several rods the mean."""
+    seconds: NumberPerRod = 0.0
+    """Wall-clock time of the solve in seconds; for several rods their mean."""
     vectors: Complex | None = None
     """Eigenmodes (Y, Theta), complex, (2, modes, vector_nodes), scaled to Y(1) = 1; None if not requested."""
-    message: EachRod = ""
+    message: NumberPerRod = ""
+    """Cause of a failure, or the reason why a proof failed; empty otherwise."""
 
     @property
     def growth_rate(self) -> Array:
-        """Re w, (modes,)."""
+        """Growth rates Re w, (modes,), in 1/tau2."""
         return self.eigenvalues.real
 
     @property
     def frequency(self) -> Array:
-        """Im w, (modes,)."""
+        """Angular frequencies Im w, (modes,), in 1/tau2."""
         return self.eigenvalues.imag
 
 
 @dataclass(frozen=True, slots=True)
 class FollowedPoints:
-    """Eigenvalues and errors, shape (n, modes), at the next n points of a stretch. unstable: number of
-    unstable modes, (n,). good: whether a point is certified and accurate, (n,).
+    """Leading eigenvalues w and their absolute errors, (n, modes), at the next n points of a stretch.
+
+    unstable_count: number of unstable modes, (n,). accepted: whether the point is certified and accurate,
+    (n,).
     """
 
     w: Complex
     error: Array
-    unstable: NDArray[np.int64]
-    good: NDArray[np.bool_]
+    unstable_count: NDArray[np.int64]
+    accepted: NDArray[np.bool_]
 
 
 def vectors_on_nodes(
     problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, found: Complex | None
 ) -> Complex | None:
-    """(Y, Theta) on the Lobatto nodes, complex, (2, modes, nodes), from vectors of a mesh, (unknowns, k).
+    """Eigenmodes (Y, Theta) on the Lobatto nodes, complex, (2, modes, vector_nodes); None if `found` is None.
 
-    NaN if Y(1) vanishes and cannot be scaled to 1.
+    found: eigenvectors on `mesh`, (unknowns, k). A mode is NaN if its Y(1) vanishes and cannot be scaled to
+    1.
     """
     if found is None:
         return None
@@ -110,17 +119,18 @@ def vectors_on_nodes(
     return np.stack([(matrix @ y * scale).T, (matrix @ theta * scale).T])
 
 
-def stated_errors(w: Complex, error: Array, rod: Rod) -> Array:
-    """Errors of eigenvalues w with the rounding of w itself; w and errors of roots of D: any equal shape.
+def errors_with_rounding(w: Complex, error: Array, rod: Rod) -> Array:
+    """Absolute errors of eigenvalues: `error`, the error of the root of D, plus the rounding error of w
+    itself.
 
-    rod: the rod, or one of its path.
+    w, error: any equal shape. rod: the rod, or any rod of the path of these eigenvalues.
     """
     rounding = SPECTRUM_ERRORS.rounding if rod.standard else SPECTRUM_ERRORS.rounding_of_arms
     return error + rounding * ROUND_OFF * np.abs(w)
 
 
-def no_spectrum(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:
-    """The outcome of a failure: all numbers are NaN."""
+def failed_spectrum(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:
+    """The outcome of a failed solve: all eigenvalues, errors and eigenmodes are NaN."""
     empty = np.full(request.modes, np.nan)
     shape = (2, request.modes, request.vector_nodes)
     vectors = np.full(shape, np.nan + 0j) if request.vector_nodes else None

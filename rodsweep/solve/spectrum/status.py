@@ -1,10 +1,10 @@
-"""Status of a spectrum, with its sentence for the user."""
+"""Status of a spectrum, with a sentence of cause and remedy for the user."""
 
 from ..status import PointStatus
 
 
 class SpectrumStatus(PointStatus):
-    """Outcome of a point of the tasks spectrum and modes."""
+    """Outcome of one rod in the tasks spectrum and modes."""
 
     ok = 0, "every number has the requested accuracy, and is certified if requested", True
     not_certified = (

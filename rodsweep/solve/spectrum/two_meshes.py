@@ -1,8 +1,8 @@
-"""Leading eigenvalues of one rod by SLEPc alone: Krylov-Schur on two meshes, without D.
+"""Leading eigenvalues of one rod by SLEPc alone: Krylov-Schur on two meshes, without the determinant D.
 
-The finer mesh gives the eigenvalues, the coarser mesh the errors. Krylov-Schur finds the eigenvalues nearest
-a shift above the growth rate of the most amplified wave; the number of eigenvalues is doubled until the
-leading ones stay the same. No result is certified.
+The finer mesh gives the eigenvalues, their differences from the coarser mesh give the errors. Krylov-Schur
+finds the eigenvalues nearest a shift above the growth rate of the most amplified wave. The number of
+requested eigenvalues is doubled until the leading eigenvalues stay the same. No result is certified.
 """
 
 from dataclasses import dataclass, replace
@@ -17,60 +17,61 @@ from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.rod import Rod
 from ..backend.kept import forget_all
 from ..point import Unsolvable, solved
-from .problem import TransverseProblem, problem_of
-from .spectrum import Spectrum, SpectrumRequest, no_spectrum, vectors_on_nodes
+from .problem import TransverseProblem, transverse_problem
+from .spectrum import Spectrum, SpectrumRequest, failed_spectrum, vectors_on_nodes
 from .status import SpectrumStatus
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TwoMeshSettings:
-    """Settings for the comparison of two meshes."""
+    """Settings for eigenvalues whose errors are differences between two meshes."""
 
     max_finer_meshes: int = 8
-    """Maximum number of meshes after the first, each with a third more unknowns."""
-    first_spare: int = 2
-    """Number of eigenvalues first requested beyond the wanted modes."""
-    unchanged: float = 1e-9
-    """Relative change below which the leading eigenvalues count as unchanged."""
-    unchanged_by_rounding: float = 3e-11
-    """The same in units of the shift and F^2: a hundred times `rounding`, which differs between releases of
-    SLEPc and between processors."""
+    """Maximum number of meshes after the first; each has a third more unknowns than its predecessor."""
+    spare_eigenvalues: int = 2
+    """Number of eigenvalues beyond the wanted modes in the first request on a mesh."""
+    unchanged_tolerance: float = 1e-9
+    """Relative change of the leading eigenvalues, after a doubled request, below which the doubling ends."""
+    unchanged_rounding_tolerance: float = 3e-11
+    """Absolute change below which the doubling ends too, in units of the shift plus F^2. It is a hundred
+    times `rounding`, because rounding differs between releases of SLEPc and between processors."""
     mesh_error_factor: float = 3.0
-    """Safety factor on the difference of two meshes."""
+    """Safety factor on the difference between two meshes, which estimates the error of the finer mesh."""
     rounding: float = 3e-13
-    """Rounding error of an eigenvalue in units of its modulus, the shift and F^2. Under a pull the first
-    eigenvalue is exponentially small against F^2."""
-    unknowns_a_mode: int = 3
-    """Fewest unknowns of a mesh for each requested eigenvalue: a third of the unknowns have no time
-    derivative, and coarse modes are not resolved."""
+    """Rounding error of an eigenvalue, in units of |w| plus the shift plus F^2. F^2 is included because the
+    first eigenvalue of a pulled rod is exponentially small against F^2."""
+    min_unknowns_per_mode: int = 3
+    """Minimum number of unknowns of a mesh per requested eigenvalue: a third of the unknowns have no time
+    derivative, and the highest modes of a mesh are not resolved."""
 
 
 TWO_MESHES = TwoMeshSettings()
 
 
 def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    """The leading `request.modes` eigenvalues of a rod; a failure is a status, never an exception.
+    """The leading `request.modes` eigenvalues of a rod. A failed solve gives a status; no exception is
+    raised.
 
     No result is proved; `request.certify` is ignored.
     """
 
     def failed(cause: str) -> Spectrum:
         forget_all()
-        return no_spectrum(SpectrumStatus.failed, request, cause)
+        return failed_spectrum(SpectrumStatus.failed, request, cause)
 
     return solved(lambda: _solve(rod, request), failed)
 
 
 def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    problem = problem_of(rod)
+    problem = transverse_problem(rod)
     modes = request.modes
     aim = mesh_accuracy(request.accuracy, vectors=True) if request.vector_nodes else request.accuracy
     mesh: AnyMesh = problem.mesh_for(modes, aim)
     before = _leading(problem, mesh, modes)
     best: Spectrum | None = None
     for _ in range(TWO_MESHES.max_finer_meshes):
-        mesh = problem.finer(mesh)
-        if mesh.unknowns > RESOLUTION.most_unknowns:
+        mesh = problem.finer_mesh(mesh)
+        if mesh.unknowns > RESOLUTION.max_unknowns:
             break
         found = _leading(problem, mesh, modes)
         if len(found.w) >= modes and len(before.w):
@@ -81,32 +82,34 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
             best = here if best is None else min(best, here, key=_worst)
         before = found
     if best is None:
-        raise Unsolvable("no mesh within the limit gives the requested number of eigenvalues")
+        most = RESOLUTION.max_unknowns
+        raise Unsolvable(f"no mesh of at most {most} unknowns gives the requested number of eigenvalues")
     # If rounding dominates, the error of either mesh may exceed the difference of both.
     return replace(best, error_estimate=TWO_MESHES.mesh_error_factor * best.error_estimate)
 
 
 def _scale(problem: TransverseProblem) -> float:
-    """Size of the matrix as a rate, in 1/tau2: the eigenvalues have rounding errors relative to this rate."""
+    """Sum of the shift and F^2, in 1/tau2: eigenvalues have rounding errors relative to this rate."""
     return abs(problem.shift) + problem.rod.F**2
 
 
 class _MeshEigenvalues(NamedTuple):
-    """Eigenvalues of a mesh, sorted as defined in `rodsweep.model`, (k,), and the index of each in SLEPc,
-    (k,)."""
+    """Eigenvalues w of a mesh, (k,), sorted as defined in `rodsweep.model`, and the index of each in SLEPc's
+    list, (k,).
+    """
 
     w: Complex
     indices: NDArray[np.intp]
 
 
 def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEigenvalues:
-    """Leading eigenvalues of a mesh, sorted; their number is raised until the leading `modes` ones no longer
+    """Sorted eigenvalues of a mesh. The requested number is doubled until the leading `modes` no longer
     change.
 
-    Empty if the mesh is too coarse for twice as many eigenvalues.
+    Empty if the mesh is too coarse for a doubled request.
     """
     solver = problem.solver(mesh)
-    wanted = modes + TWO_MESHES.first_spare
+    wanted = modes + TWO_MESHES.spare_eigenvalues
     # The solver finds the eigenvalues nearest the shift, which need not lead: ask for more until the leading
     # ones stay.
     before = np.empty(0, complex)
@@ -115,27 +118,27 @@ def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEige
         order = np.lexsort((-raw.imag, -raw.real))
         leading = raw[order[:modes]]
         complete = len(leading) == len(before) == modes
-        by_rounding = TWO_MESHES.unchanged_by_rounding * _scale(problem)
-        if complete and np.allclose(leading, before, rtol=TWO_MESHES.unchanged, atol=by_rounding):
+        by_rounding = TWO_MESHES.unchanged_rounding_tolerance * _scale(problem)
+        if complete and np.allclose(leading, before, rtol=TWO_MESHES.unchanged_tolerance, atol=by_rounding):
             return _MeshEigenvalues(raw[order], order)
-        if 2 * wanted > mesh.unknowns // TWO_MESHES.unknowns_a_mode:
+        if 2 * wanted > mesh.unknowns // TWO_MESHES.min_unknowns_per_mode:
             return _MeshEigenvalues(raw[:0], order[:0])
         before = leading
         wanted = 2 * wanted
 
 
 def _worst(found: Spectrum) -> float:
-    """Largest relative error estimate of a spectrum."""
+    """Largest relative error estimate among the eigenvalues of a spectrum."""
     return float((found.error_estimate / np.abs(found.eigenvalues)).max())
 
 
 def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
-    """Absolute errors of sorted eigenvalues, (k,), from the eigenvalues of a coarser mesh, (l,), in any
-    order.
+    """Absolute errors of the sorted eigenvalues w, (k,), from the eigenvalues `coarser` of a coarser mesh,
+    (l,), unsorted.
 
-    scale: `_scale`. Two meshes may agree on one eigenvalue by chance,
-    so each eigenvalue gets the largest relative error of itself and its neighbours. Near a double eigenvalue
-    rounding errors and the difference of the meshes grow.
+    scale: `_scale`. Two meshes may agree on one eigenvalue by chance. Each eigenvalue therefore gets the
+    largest relative difference among itself and its two neighbours. Near a double eigenvalue rounding errors
+    grow.
     """
     apart = np.abs(w[:, None] - coarser).min(axis=1) / np.abs(w)
     padded = np.pad(apart, 1)
@@ -151,7 +154,9 @@ def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
 def _spectrum(
     problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, found: _MeshEigenvalues, error: Array
 ) -> Spectrum:
-    """The outcome of a mesh. error: absolute error of each eigenvalue found, (k,)."""
+    """The spectrum of one mesh, with the status from the errors. error: absolute error of each eigenvalue
+    found, (k,).
+    """
     w = found.w
     modes = request.modes
     enough = bool((error[:modes] <= request.accuracy * np.abs(w[:modes])).all())

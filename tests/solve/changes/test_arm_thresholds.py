@@ -103,7 +103,7 @@ STEPPED = Rod(F=0.0, k1=inf, k2=1e4, gamma3=0.0, build=Build(profile=STEP))
 @pytest.fixture
 def no_bound_beyond_some_force(monkeypatch):
     """The a-priori bound of the stepped arm grows with F; a smaller limit leaves none from F = 36 on."""
-    monkeypatch.setattr(hull, "HULL", replace(hull.HULL, least_remainder=0.995))
+    monkeypatch.setattr(hull, "HULL", replace(hull.HULL, min_remainder=0.995))
 
 
 def test_a_place_that_cannot_be_proved_ends_the_search_there(no_bound_beyond_some_force, monkeypatch):
@@ -127,7 +127,7 @@ def test_a_place_that_cannot_be_proved_ends_the_search_there(no_bound_beyond_som
 
 
 def test_a_search_that_cannot_begin_has_failed(monkeypatch):
-    monkeypatch.setattr(hull, "HULL", replace(hull.HULL, least_remainder=1.0))
+    monkeypatch.setattr(hull, "HULL", replace(hull.HULL, min_remainder=1.0))
     found = solve_thresholds(STEPPED, ThresholdsRequest(60.0, 1e-10, True, 16))
     assert (found.status, found.crossings) == (ThresholdStatus.failed, ())
     assert "no a-priori bound" in found.message
@@ -177,13 +177,13 @@ def test_a_full_list_ends_the_search_and_holds_the_same_changes():
 
 def test_each_load_of_a_search_is_counted_once(monkeypatch):
     """The places of a search, the anchors of the leading eigenvalue and the confirmation share counts."""
-    counted, whole = [], followed_arms.counted
+    counted, whole = [], followed_arms.count_at
 
     def count(path, hulls, p, modes, here):
         counted.append(p)
         return whole(path, hulls, p, modes, here)
 
-    monkeypatch.setattr(followed_arms, "counted", count)
+    monkeypatch.setattr(followed_arms, "count_at", count)
     rod = STEPPED.changed(k2=100.0)
     found = solve_thresholds(rod, ThresholdsRequest(80.0, 1e-8, True, 16))
     assert found.status == ThresholdStatus.ok

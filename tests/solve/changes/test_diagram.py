@@ -159,7 +159,7 @@ def test_the_tangent_of_a_boundary_touches_it(axes, rod):
     for seed in seeds:
         boundary = Boundary(plane, seed.sign)
         scaled = [axis.scaled(value) for axis, value in zip(axes, seed.values, strict=True)]
-        start = boundary.corrected(np.array([*scaled, log(abs(seed.eigenvalue))]), np.array([0.0, 1.0, 0.0]))
+        start = boundary.point_near(np.array([*scaled, log(abs(seed.eigenvalue))]), np.array([0.0, 1.0, 0.0]))
         assert boundary.eigenvalue(start.v[2])[int(seed.sign == 0)] == pytest.approx(
             seed.eigenvalue, rel=1e-6
         )
@@ -169,7 +169,7 @@ def test_the_tangent_of_a_boundary_touches_it(axes, rod):
         bends = []
         for step in (1e-3, 1e-4):
             guess = start.v + step * tangent
-            bends.append(np.linalg.norm(boundary.corrected(guess, tangent).v - guess) / step**2)
+            bends.append(np.linalg.norm(boundary.point_near(guess, tangent).v - guess) / step**2)
         assert bends[0] == pytest.approx(bends[1], rel=0.02)
 
 

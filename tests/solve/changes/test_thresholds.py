@@ -138,13 +138,13 @@ def test_a_change_along_any_parameter_is_a_change_along_the_force(name, fixed, s
 
 
 def test_a_lost_crossing_is_noticed_by_the_counts(monkeypatch):
-    whole = transitions_module.cover
+    whole = transitions_module.cover_with_boxes
 
     def loses_one(*arguments):
         zeros, left, examined = whole(*arguments)
         return sorted(zeros, key=lambda z: z[1])[1:], left, examined
 
-    monkeypatch.setattr(transitions_module, "cover", loses_one)
+    monkeypatch.setattr(transitions_module, "cover_with_boxes", loses_one)
     found = thresholds(1e4, 1e4, 1e-4)
     assert found.status == ThresholdStatus.not_certified
     assert "modes are unstable between" in found.message
@@ -250,7 +250,7 @@ def test_strong_pulls_cost_no_more_than_pushes(k1):
     """Both exponentials of D grow there and cancel; bounded apart they would take a million boxes."""
     path = Path(Rod(F=0.0, k1=k1, k2=1e4, gamma3=1e-4), "F")
     for start in (-400.0, -100.0):
-        zeros, left, examined = transitions_module.cover(
+        zeros, left, examined = transitions_module.cover_with_boxes(
             transitions_module.first_boxes(path, start, 0.0), path.origin, path.direction
         )
         assert (zeros, left) == ([], [])

@@ -10,7 +10,7 @@ from reference.displaced_segments import Segments
 from reference.strain_collocation import Arm, Law
 from surveyed import survey_only
 
-from rodsweep.discretization.at_jumps import carried_stress, stresses_beside_jumps
+from rodsweep.discretization.at_jumps import interpolate_stress, stresses_beside_jumps
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh_on
 from rodsweep.discretization.plane import balance, balance_change
@@ -88,7 +88,7 @@ def test_the_balance_changes_with_every_parameter_as_its_differences_say(name, p
     form = on_mesh(name)
     x, V, _ = moving(form, 1.0)
     change = np.empty((3, *V.shape))
-    balance_change(x, V, change, form.change(parameter), form.nodal, form.mesh.matrices)
+    balance_change(x, V, change, form.parameter_derivative(parameter), form.nodal, form.mesh.matrices)
     at = form.rod.coordinate(parameter)
     h = 1e-6 * max(abs(at), 1e-3)
     ends = []
@@ -121,7 +121,7 @@ def test_the_mixed_form_has_the_same_motion_to_third_order(name):
     errors = []
     for size in (0.02, 0.01):
         x, V, G = moving(form, size)
-        X = mixed.unknown(form.stresses(x), V)
+        X = mixed.state(form.stresses(x), V)
         cubic = mixed.trilinear(X, X, X) / 6
         S, _ = mixed.fields(mixed_rate(mixed, X) + cubic)
         errors.append(np.abs(S[:, :-1] - G[:, :-1]).max() / np.abs(G).max())
@@ -296,7 +296,7 @@ def test_fields_with_a_jump_are_carried_to_other_meshes():
             for component, share in ((0, 3), (2, 4)):
                 S[component, node] = sides[:, share] @ [before(u[node]), behind(u[node])]
             fields.append(S)
-        errors.append(np.abs(carried_stress(rod, fields[0], source.mesh, target.mesh) - fields[1]).max())
+        errors.append(np.abs(interpolate_stress(rod, fields[0], source.mesh, target.mesh) - fields[1]).max())
     assert errors[0] < 1e-2
     assert errors[1] < 1e-7
 

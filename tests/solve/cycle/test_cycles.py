@@ -9,7 +9,7 @@ import pytest
 from rods import rod_of
 
 from rodsweep.discretization.elements.mesh import mesh
-from rodsweep.discretization.elements.periodic import resampled, time_derivative
+from rodsweep.discretization.elements.periodic import interpolate_samples, time_derivative
 from rodsweep.discretization.elements.quadrature import lobatto_points
 from rodsweep.errors import EnvironmentIncomplete
 from rodsweep.model.rod import Rod
@@ -200,7 +200,7 @@ def test_what_is_stored_agrees_with_the_numbers():
     assert c.tip.shape == c.energy.shape == (3, 100)
     assert c.shape.shape == (3, 8, 33)
     x, y, theta = c.tip
-    assert np.abs(c.shape[:, :, -1] - resampled(c.tip.T, np.arange(8) / 8).T).max() < 1e-9
+    assert np.abs(c.shape[:, :, -1] - interpolate_samples(c.tip.T, np.arange(8) / 8).T).max() < 1e-9
     assert c.shape[:, :, 0] == pytest.approx(0.0, abs=1e-12)
     assert (x.min(), x.max()) == pytest.approx((c.measures.tip_x_min, c.measures.tip_x_max), rel=1e-3)
     assert (y.max(), theta.max()) == pytest.approx((c.measures.tip_y_max, c.measures.tip_theta_max), rel=1e-3)

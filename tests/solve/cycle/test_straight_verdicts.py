@@ -15,7 +15,7 @@ from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cy
 from rodsweep.solve.cycle.second_state import SecondState
 from rodsweep.solve.cycle.straight_rod import StraightRod, eigenvalues_to_follow, straight_rod
 from rodsweep.solve.hopf.normal_form import accurate_normal_form
-from rodsweep.solve.spectrum.path.followed_leader import followed_leader
+from rodsweep.solve.spectrum.path.followed_leader import follow_leading_eigenvalue
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 BESIDE = Rod(F=28.201858565493147, k1=inf, k2=100.0, gamma3=1e-3, gamma1=100.0)
@@ -89,8 +89,8 @@ def test_an_eigenvalue_that_does_not_lead_is_not_followed(taper):
     rod = Rod(F=30.0, k1=1e4, k2=1e3, gamma3=1e-2, taper=taper)
     w = solve_spectrum(rod, SpectrumRequest(6, 1e-9, True)).eigenvalues
     upper = w[w.imag >= 0]
-    assert followed_leader(rod, upper, 1e-9).w == pytest.approx(upper[0], rel=1e-12)
-    assert followed_leader(rod, upper[1:], 1e-9) is None
+    assert follow_leading_eigenvalue(rod, upper, 1e-9).w == pytest.approx(upper[0], rel=1e-12)
+    assert follow_leading_eigenvalue(rod, upper[1:], 1e-9) is None
 
 
 def test_an_unstable_rod_beside_its_hopf_point_ends_at_its_small_cycle():

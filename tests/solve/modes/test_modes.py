@@ -11,12 +11,12 @@ from rods import rod_of
 from scipy.linalg import expm
 from surveyed import few
 
-from rodsweep.determinant.value import distance_to_next
+from rodsweep.determinant.value import distance_to_next_root
 from rodsweep.discretization.elements.basis import differentiation
 from rodsweep.discretization.elements.quadrature import gauss_lobatto, lobatto_points
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.discretization.straight.dense_form import dense_form
-from rodsweep.discretization.straight.pencil import assemble, fields_of, shear_force, tip_scale
+from rodsweep.discretization.straight.pencil import assemble_pencil, fields_of_vectors, shear_force, tip_scale
 from rodsweep.model.rod import Rod
 from rodsweep.solve.modes import convergence as convergence_module
 from rodsweep.solve.modes import inverse_iteration as inverse_module
@@ -272,7 +272,7 @@ def test_left_null_vector_of_the_pencil_has_the_adjoint_ends():
     w = complex(ClosedForm(rod, -43.923).w)
     left_over = []
     for order in (8, 12, 16):
-        pencil = assemble(1, order)
+        pencil = assemble_pencil(1, order)
         form = dense_form(rod, pencil)
         _, z = null_vectors(form.A, form.B, w)
         force = shear_force(pencil, z[:, None].astype(complex), np.linspace(0, 1, 11))
@@ -330,7 +330,7 @@ def test_a_decaying_rod_may_grow_at_first():
 @pytest.mark.parametrize("parameters", RODS)
 def test_abscissa_is_the_largest_root_of_the_averaged_ends(parameters):
     rod = rod_of(*parameters)
-    found = numerical_abscissa(rod, assemble(1, 24))
+    found = numerical_abscissa(rod, assemble_pencil(1, 24))
     exact = ClosedForm(rod, found, 0.5).w
     assert found == pytest.approx(float(mp.re(exact)), rel=1e-11, abs=1e-10)
     assert ClosedForm(rod, found, 0.5)._root(mp.mpf(found)) == pytest.approx(exact)
@@ -339,7 +339,7 @@ def test_abscissa_is_the_largest_root_of_the_averaged_ends(parameters):
 def test_abscissa_is_found_where_no_bound_is_known():
     """A soft rod without rotational drag, pulled beyond its shear stiffness (g < 0)."""
     rod = Rod(F=-48.0, k1=1e6, k2=3.5, gamma3=0.0)
-    found = numerical_abscissa(rod, assemble(2, 32))
+    found = numerical_abscissa(rod, assemble_pencil(2, 32))
     leading = solve_modes(rod, ModesRequest(1, 1e-8, 9, growth=False, certify=False)).spectrum.eigenvalues[0]
     assert rod.g < 0
     assert found > leading.real > 5000
@@ -386,7 +386,7 @@ def polynomial_suprema(rod, degree):
 def test_abscissa_is_the_supremum_over_the_domain(parameters):
     """The form domain reaches it at once; fields with the ends of L only in the limit, like 1/degree^2."""
     rod = rod_of(*parameters)
-    exact = numerical_abscissa(rod, assemble(1, 24))
+    exact = numerical_abscissa(rod, assemble_pencil(1, 24))
     over_form, over_domain = np.array([polynomial_suprema(rod, degree) for degree in (14, 28)]).T
     assert over_form == pytest.approx(exact, rel=1e-7)
     assert (over_domain < exact).all()
@@ -431,14 +431,14 @@ def test_without_rotational_drag_only_the_abscissa_jumps():
 
 def test_abscissa_is_continuous_where_theta_is_no_state_of_its_own():
     """c2 = 0, gamma3 -> 0 at first order; and c2 -> 0 at gamma3 = 0 like the layer's thickness, sqrt(c2)."""
-    limit = numerical_abscissa(Rod(F=15.0, k1=1e4, k2=INF, gamma3=0.0), assemble(1, 24))
+    limit = numerical_abscissa(Rod(F=15.0, k1=1e4, k2=INF, gamma3=0.0), assemble_pencil(1, 24))
     drags = [
-        abs(numerical_abscissa(Rod(F=15.0, k1=1e4, k2=INF, gamma3=x), assemble(1, 24)) - limit)
+        abs(numerical_abscissa(Rod(F=15.0, k1=1e4, k2=INF, gamma3=x), assemble_pencil(1, 24)) - limit)
         for x in (1e-4, 1e-5)
     ]
     assert drags[0] / drags[1] == pytest.approx(10, rel=0.02)
     shears = [
-        abs(numerical_abscissa(Rod(F=15.0, k1=1e4, k2=x, gamma3=0.0), assemble(1, 24)) - limit)
+        abs(numerical_abscissa(Rod(F=15.0, k1=1e4, k2=x, gamma3=0.0), assemble_pencil(1, 24)) - limit)
         for x in (1e6, 1e8)
     ]
     assert shears[0] / shears[1] == pytest.approx(10, rel=0.02)
@@ -512,7 +512,7 @@ def test_no_pair_is_cut():
 
 def test_all_modes_of_a_mesh_say_the_same_as_few():
     """Most have decayed by 1e-100 then, and must not cost digits: w t is up to 1e6."""
-    propagator = growth_module.propagator_of(Rod(F=12.0, k1=INF, k2=INF, gamma3=0.0), assemble(1, 32))
+    propagator = growth_module.propagator_of(Rod(F=12.0, k1=INF, k2=INF, gamma3=0.0), assemble_pencil(1, 32))
     norms = []
     for k in (12, 18, 32):
         assert propagator.keep(k) == k
@@ -742,13 +742,13 @@ def test_coarse_meshes_are_refined_until_they_agree(monkeypatch):
 
 def test_a_tip_that_does_not_move_leaves_a_mode_without_scale():
     """Y(1) = 0 is met at single points only: a made-up vector has it."""
-    rod, pencil = rod_of(*FIG_2A), assemble(1, 12)
+    rod, pencil = rod_of(*FIG_2A), assemble_pencil(1, 12)
     vectors = np.ones((pencil.unknowns, 3), complex)
     vectors[pencil.nodes - 1] = [0.0, 1e-15, 2.0]
     with np.errstate(all="ignore"):
-        scale = tip_scale(*fields_of(vectors, pencil.scale(rod)))
+        scale = tip_scale(*fields_of_vectors(vectors, pencil.scale(rod)))
     assert np.isnan(scale[:2]).all()
-    assert scale[2] * fields_of(vectors, pencil.scale(rod))[0][-1, 2] == pytest.approx(1)
+    assert scale[2] * fields_of_vectors(vectors, pencil.scale(rod))[0][-1, 2] == pytest.approx(1)
 
 
 def test_a_mode_whose_tip_does_not_move_is_nan_and_not_called_accurate(monkeypatch):
@@ -775,7 +775,7 @@ def test_of_a_pair_only_one_vector_is_computed(monkeypatch):
         calls.append(w)
         return null_vectors(A, B, w)
 
-    rod, pencil = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), assemble(1, 24)
+    rod, pencil = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), assemble_pencil(1, 24)
     pair = solve_spectrum(rod, SpectrumRequest(2, 1e-10, True)).eigenvalues
     other = pair[1] - 5j  # no eigenvalue: its vector is the nearest one's, from a shift of its own
     monkeypatch.setattr(inverse_module, "null_vectors", counted)
@@ -792,14 +792,14 @@ def test_the_distance_to_the_next_eigenvalue_is_sharp_where_it_is_small():
     for force, tolerance in ((20.0080207, 1e-3), (20.0081, 1e-3), (20.0, 1e-2)):
         rod = Rod(F=force, k1=1e4, k2=1e4, gamma3=1e-4)
         w = solve_spectrum(rod, SpectrumRequest(2, 1e-10, True)).eigenvalues
-        found = distance_to_next(complex(w[0]), rod.coefficients)
+        found = distance_to_next_root(complex(w[0]), rod.coefficients)
         assert found == pytest.approx(abs(w[0] - w[1]), rel=tolerance)
 
 
 def test_growth_on_a_coarse_mesh_is_refined_until_meshes_agree():
     rod = rod_of(*FIG_2A)
     exact = solve_modes(rod, TIGHT)
-    coarse, fine = (growth_module.propagator_of(rod, assemble(1, order)) for order in (4, 6))
+    coarse, fine = (growth_module.propagator_of(rod, assemble_pencil(1, order)) for order in (4, 6))
     first = growth_module.transient_growth(coarse, fine, 23.0, 1e-10)
     assert 1e-9 < abs(first.transient_growth / exact.growth.transient_growth - 1) < first.growth_error
     growth = growth_module.growth_of(rod, Resolution(1, 4), 1e-10, True, 45.0)

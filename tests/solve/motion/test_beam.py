@@ -5,7 +5,7 @@ import pytest
 
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.basis import differentiation
-from rodsweep.discretization.elements.mesh import configuration, mesh
+from rodsweep.discretization.elements.mesh import mesh, shape_from_strains
 from rodsweep.discretization.elements.quadrature import gauss_lobatto
 from rodsweep.model.balance import ad
 from rodsweep.model.longitudinal import longitudinal_rates
@@ -40,7 +40,7 @@ def bent(beam, size=1.0):
     u = beam.mesh.positions
     E = beam.strains(np.zeros(beam.layout.unknowns))
     wave = np.array([0.01 * np.cos(3 * u), 0.3 * np.sin(2 * u + 1), 2 * np.cos(4 * u)])
-    return beam.unknown(E + size * (1 - u) * wave)
+    return beam.state_of_strains(E + size * (1 - u) * wave)
 
 
 def rough(beam):
@@ -52,7 +52,7 @@ def injected_and_dissipated(beam, z):
     """-F v1(1), by the reaction v1(1) of the tip's stress, and <Gamma V, V>."""
     material, matrices = beam.rod.material, beam.mesh.matrices
     stress = np.zeros((3, beam.mesh.nodes + 1))
-    stress[:, :-1] = z.reshape(3, -1) / beam.roots[:, :-1]
+    stress[:, :-1] = z.reshape(3, -1) / beam.sqrt_compliance[:, :-1]
     stress += material.tip_stress[:, None]
     V = material.velocity(stress, stress @ matrices.D.T)
     dissipated = material.dissipation(V) @ matrices.weights
@@ -92,8 +92,8 @@ def test_energy_law_holds_on_the_mesh_to_rounding(elements, order):
 def test_strains_do_not_depend_on_where_the_clamp_is(elements, order):
     beam = Beam(ROD, mesh(elements, 2 * order))
     E = beam.element_strains(bent(beam))
-    here = configuration(beam.mesh, E, np.zeros(3))
-    x, y, theta = there = configuration(beam.mesh, E, np.array([2.0, -1.0, 2.5]))
+    here = shape_from_strains(beam.mesh, E, np.zeros(3))
+    x, y, theta = there = shape_from_strains(beam.mesh, E, np.array([2.0, -1.0, 2.5]))
     turn = np.array([[np.cos(2.5), -np.sin(2.5)], [np.sin(2.5), np.cos(2.5)]])
     assert np.abs(there[:2] - turn @ here[:2] - np.array([[2.0], [-1.0]])).max() < 1e-13
     D = 2 * elements * differentiation(gauss_lobatto(2 * order)[0])
@@ -110,7 +110,7 @@ def test_uniformly_bent_rod_is_an_arc(elements, order):
     grid = mesh(elements, order)
     E = np.zeros((3, grid.element_nodes.size))
     E[0], E[2] = 0.9, 2.0
-    x, y, theta = configuration(grid, E, np.zeros(3))
+    x, y, theta = shape_from_strains(grid, E, np.zeros(3))
     angle = 2.0 * grid.positions
     assert np.abs(theta - angle).max() < 1e-14
     assert np.abs(x - 0.45 * np.sin(angle)).max() < 1e-14

@@ -148,7 +148,7 @@ def whole_matrix(matrix):
 def test_steps_keep_their_digits_however_much_perturbations_grow(period, growth):
     form = StressForm(RODS["soft"].changed(F=150.0, gamma1=0.7), mesh(1, 8))
     states = 0.3 * np.random.default_rng(3).normal(size=(61, form.unknowns))
-    states -= 150 * form.layout.row({"n1": np.ones(8)})  # beside the straight rod, which is unstable
+    states -= 150 * form.layout.vector({"n1": np.ones(8)})  # beside the straight rod, which is unstable
     orbit, border = Orbit.of(form, REFLECTION, period, states, 3), np.array([0.6, 0.0, 0.8])
     matrix = BorderedMatrix(orbit, Scale.of(orbit, "F", 0.1), NewtonWorkspace())
     assert np.linalg.norm(matrix.propagator) > growth

@@ -9,7 +9,7 @@ from surveyed import RODS
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum.path.arm_stretch import followed_arms
+from rodsweep.solve.spectrum.path.arm_stretch import follow_stretch_of_arms
 from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
 from rodsweep.solve.spectrum.path.stretch import Stretch, solve_stretch
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -59,9 +59,9 @@ def test_uniform_rubber_has_the_spectra_of_its_linear_equivalent():
 
 def test_a_cone_is_followed_and_proved_without_single_points():
     path = Path(Rod(**CONE), "F")
-    reached = followed_arms(path, np.linspace(5, 14, 32), REQUEST)
-    assert len(reached.good) == 32
-    assert reached.good.all()
+    reached = follow_stretch_of_arms(path, np.linspace(5, 14, 32), REQUEST)
+    assert len(reached.accepted) == 32
+    assert reached.accepted.all()
 
 
 @pytest.mark.parametrize("seed", range(RODS // 10 or 2))
@@ -71,12 +71,12 @@ def test_counts_of_followed_points_are_those_of_dense_eigenvalues(seed):
         rod = random_arm(rng)
         values = np.linspace(0.4, 1.0, 24) * rod.F
         path = Path(rod.changed(F=float(values[0])), "F")
-        reached = followed_arms(path, values, REQUEST)
+        reached = follow_stretch_of_arms(path, values, REQUEST)
         if reached is None:
             continue
-        for i in np.flatnonzero(reached.good)[::8]:
+        for i in np.flatnonzero(reached.accepted)[::8]:
             dense = eigenvalues(path.at(float(values[i])))
-            assert reached.unstable[i] == int((dense.real > 0).sum()), (rod, rod.build, values[i])
+            assert reached.unstable_count[i] == int((dense.real > 0).sum()), (rod, rod.build, values[i])
             for w in dense[:4]:
                 assert np.abs(reached.w[i] - w).min() <= 1e-4 * max(abs(w), 1.0)
             compared += 1

@@ -11,7 +11,7 @@ from surveyed import RODS
 
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull.region import NO_BOUND
-from rodsweep.determinant.arm.newton import refined
+from rodsweep.determinant.arm.newton import refine_eigenvalue
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
@@ -35,7 +35,7 @@ def test_random_arms_have_the_leading_eigenvalues_of_another_discretisation(seed
         assert found.unstable_count == int((dense.real > 0).sum())
         for w, error in zip(found.eigenvalues.tolist(), found.error_estimate.tolist(), strict=True):
             assert np.abs(dense - w).min() <= 1e-5 * max(abs(w), 1.0)
-            assert abs(refined(w, ArmDeterminant(rod)) - w) <= 4 * error + 1e-15 * abs(w)
+            assert abs(refine_eigenvalue(w, ArmDeterminant(rod)) - w) <= 4 * error + 1e-15 * abs(w)
 
 
 @mp.workdps(32)
@@ -153,7 +153,7 @@ def test_growing_modes_beyond_enough_are_solved_for_only_for_a_count(monkeypatch
         return whole(rod_problem, mesh, number, vectors, tight)
 
     monkeypatch.setattr(search, "candidates_on", attempt)
-    monkeypatch.setattr(search, "SEARCH", replace(search.SEARCH, enough_unproved=2))
+    monkeypatch.setattr(search, "SEARCH", replace(search.SEARCH, max_unproved_modes=2))
     if not countable:
         monkeypatch.setattr(problem, "hull_of", lambda rod: NO_BOUND)
     found = solve_spectrum(rod, SpectrumRequest(2, 1e-6, certify=True))

@@ -10,12 +10,12 @@ from followed_lines import Comparison, line, random_line
 from surveyed import RODS
 
 from rodsweep.determinant import moving_line
-from rodsweep.determinant.certificate.winding_number import count_right_of, stepped_change
-from rodsweep.determinant.moving_line import IntervalEnd, free_of_zeros, none_crosses
+from rodsweep.determinant.certificate.winding_number import count_right_of, phase_change_by_nodes
+from rodsweep.determinant.moving_line import IntervalEnd, is_free_of_zeros, proves_no_crossing
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.spectrum.path import stretch as stretch_of
-from rodsweep.solve.spectrum.path.prediction import extrapolated
+from rodsweep.solve.spectrum.path.prediction import extrapolate_hermite
 from rodsweep.solve.spectrum.path.stretch import solve_stretch
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
@@ -78,7 +78,7 @@ def random_strips(count: int):
             rod = whole.rod(int(at))
             w = eigenvalues(rod)
             at_line = float(w[gap - 1].real + w[gap].real) / 2
-            ends.append(IntervalEnd(float(whole.coordinates[at]), rod.coefficients, at_line))
+            ends.append(IntervalEnd(float(whole.path_variables[at]), rod.coefficients, at_line))
             counts.append(count_right_of(at_line, rod).number if math.isfinite(at_line) else None)
         if None not in counts and max(end.line for end in ends) < 0 and ends[0].p != ends[1].p:
             count -= 1
@@ -95,11 +95,11 @@ def test_what_crosses_a_moving_line_is_never_overlooked():
     """Where the counts at both ends differ something crosses, in either direction of the path."""
     strips = list(random_strips(100))
     assert sum(a != b for _, _, (a, b) in strips) > 30
-    proved, wrong = wrong_proofs(none_crosses, strips)
+    proved, wrong = wrong_proofs(proves_no_crossing, strips)
     assert proved > 15
     assert wrong == 0
     for ends, direction, _ in strips:
-        assert none_crosses(*ends, direction, 2000) == none_crosses(*ends[::-1], direction, 2000)
+        assert proves_no_crossing(*ends, direction, 2000) == proves_no_crossing(*ends[::-1], direction, 2000)
 
 
 def holds_always(*words):
@@ -108,19 +108,19 @@ def holds_always(*words):
 
 def no_width_in_p(at, y, direction, half, tilt):
     """The proof for the rod in the middle alone, which is what negative half-widths make of it."""
-    return free_of_zeros(at, y, direction, (half[0], 1e-12 * half[1]), 0.0)
+    return is_free_of_zeros(at, y, direction, (half[0], 1e-12 * half[1]), 0.0)
 
 
 @pytest.mark.parametrize(
     ("name", "broken"),
-    [("remainder_fits", holds_always), ("free_of_zeros", no_width_in_p)],
+    [("is_remainder_below", holds_always), ("is_free_of_zeros", no_width_in_p)],
     ids=["bound", "width"],
 )
 def test_a_broken_proof_is_noticed(monkeypatch, name, broken):
     """Without the remainder, or the width of a rectangle in p, strips are proved that counts refute."""
-    monkeypatch.setattr(moving_line, "free_of_zeros", free_of_zeros.py_func)
+    monkeypatch.setattr(moving_line, "is_free_of_zeros", is_free_of_zeros.py_func)
     monkeypatch.setattr(moving_line, name, broken)
-    _, wrong = wrong_proofs(none_crosses.py_func, random_strips(20))
+    _, wrong = wrong_proofs(proves_no_crossing.py_func, random_strips(20))
     assert wrong >= 3
 
 
@@ -129,7 +129,7 @@ def test_rectangles_without_an_inside_are_refused(half):
     rod = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
     at = IntervalEnd(30.0, rod.coefficients, -20.0)
     with pytest.raises(ValueError, match="half-widths of a rectangle must be above 0"):
-        free_of_zeros(at, 5.0, Coefficients(1.0, -1e-4, 0.0, 0.0), half, 0.0)
+        is_free_of_zeros(at, 5.0, Coefficients(1.0, -1e-4, 0.0, 0.0), half, 0.0)
 
 
 def test_what_is_proved_has_no_zero_inside():
@@ -141,13 +141,13 @@ def test_what_is_proved_has_no_zero_inside():
         half = (y * 10 ** rng.uniform(-2, -0.4), 10 ** rng.uniform(-3, 0.5))
         tilt = rng.normal() * at_line / 10
         at = IntervalEnd(p, path.at(p).coefficients, at_line)
-        if free_of_zeros(at, y, path.direction, half, tilt)[0]:
+        if is_free_of_zeros(at, y, path.direction, half, tilt)[0]:
             proved += 1
             for share in (-1, -0.3, 0.6, 1):
                 rod = path.at(p + share * half[1]).coefficients
                 middle = at_line + share * tilt * half[1]
                 corners = [complex(middle + 1e-3 * a * half[0], y + b * half[0]) for a, b in CORNERS]
-                turn = [stepped_change(a, b, rod)[0] for a, b in pairwise([*corners, corners[0]])]
+                turn = [phase_change_by_nodes(a, b, rod)[0] for a, b in pairwise([*corners, corners[0]])]
                 assert abs(sum(turn)) < 1
     assert proved > 300
 
@@ -158,7 +158,9 @@ def test_cubics_are_extrapolated_exactly():
 
     (a, slope_a), (b, slope_b) = cubic(1.0), cubic(1.5)
     for ahead in (0.5, 0.2, 1.3):
-        assert extrapolated((a, b), (slope_a, slope_b), (0.5, ahead)) == pytest.approx(cubic(1.5 + ahead)[0])
+        assert extrapolate_hermite((a, b), (slope_a, slope_b), (0.5, ahead)) == pytest.approx(
+            cubic(1.5 + ahead)[0]
+        )
 
 
 def test_coefficients_of_a_line_are_those_of_its_rods():

@@ -12,7 +12,7 @@ from rodsweep.model.dispersion import most_amplified_wave
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.spectrum import problem as problem_module
-from rodsweep.solve.spectrum.krylov_schur import eigen_solver
+from rodsweep.solve.spectrum.krylov_schur import uniform_solver
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.shift_invert import KRYLOV
 from rodsweep.solve.spectrum.status import SpectrumStatus
@@ -184,9 +184,9 @@ class Forgetful:
 def test_lost_mode_is_found_again_or_the_numbers_are_withheld(monkeypatch, remembers_from, status):
     rod = Rod(F=50.0, k1=1e4, k2=1e4, gamma3=1e-4)
     whole = solve_spectrum(rod, TIGHT)
-    real = problem_module.eigen_solver
+    real = problem_module.uniform_solver
     monkeypatch.setattr(
-        problem_module, "eigen_solver", lambda resolution: Forgetful(real(resolution), remembers_from)
+        problem_module, "uniform_solver", lambda resolution: Forgetful(real(resolution), remembers_from)
     )
     result = solve_spectrum(rod, TIGHT)
     assert result.status == status
@@ -214,7 +214,7 @@ def test_mesh_never_gives_more_eigenvalues_than_it_has(gamma3):
     for nodes in range(6, 20):
         for wanted in range(1, nodes // 2 + 1):
             rod = Rod(F=float(10 ** rng.uniform(0, 2.5)), k1=np.inf, k2=np.inf, gamma3=gamma3)
-            solver = eigen_solver(Resolution(1, nodes))
+            solver = uniform_solver(Resolution(1, nodes))
             found = solver.solve(rod, 1.05 * most_amplified_wave(rod)[0], wanted, tight=True)
             assert wanted <= len(found) <= nodes
             assert (np.abs(found) < 1e12).all(), "an infinite one is as large as rounding lets it be"
@@ -237,8 +237,8 @@ class Failing:
 def test_error_inside_slepc_is_followed_by_another_mesh(monkeypatch, failures):
     rod = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
     whole = solve_spectrum(rod, TIGHT)
-    failing = Failing(problem_module.eigen_solver, failures, PETSc.Error(76))
-    monkeypatch.setattr(problem_module, "eigen_solver", failing)
+    failing = Failing(problem_module.uniform_solver, failures, PETSc.Error(76))
+    monkeypatch.setattr(problem_module, "uniform_solver", failing)
     result = solve_spectrum(rod, TIGHT)
     assert (result.status, result.unstable_count, result.certified) == (SpectrumStatus.ok, 0, True)
     assert np.allclose(result.eigenvalues, whole.eigenvalues, rtol=1e-12)
@@ -248,9 +248,9 @@ def test_error_inside_slepc_is_followed_by_another_mesh(monkeypatch, failures):
 def test_lasting_error_inside_slepc_is_told(monkeypatch):
     # A PETSc.Error that PETSc did not raise speaks of the last one that it did.
     failing = Failing(
-        problem_module.eigen_solver, 10**9, SystemError("Error in LAPACK subroutine trexc: info=1")
+        problem_module.uniform_solver, 10**9, SystemError("Error in LAPACK subroutine trexc: info=1")
     )
-    monkeypatch.setattr(problem_module, "eigen_solver", failing)
+    monkeypatch.setattr(problem_module, "uniform_solver", failing)
     result = solve_spectrum(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), TIGHT)
     assert (result.status, len(failing.meshes)) == (SpectrumStatus.failed, 4)
     assert result.message == "Error in LAPACK subroutine trexc: info=1"
@@ -385,9 +385,9 @@ def test_resting_modes_a_hundred_deep_are_those_of_the_cantilever():
 
 def test_a_solver_that_is_no_longer_kept_gives_its_memory_back():
     """petsc4py would set it aside until the end of the process, some megabyte a resolution."""
-    solvers = [eigen_solver(Resolution(1, nodes)) for nodes in range(6, 6 + KRYLOV.uniform_solvers_kept)]
-    assert eigen_solver(Resolution(1, 6)) is solvers[0]
-    eigen_solver(Resolution(2, 6))
+    solvers = [uniform_solver(Resolution(1, nodes)) for nodes in range(6, 6 + KRYLOV.max_uniform_solvers)]
+    assert uniform_solver(Resolution(1, 6)) is solvers[0]
+    uniform_solver(Resolution(2, 6))
     first, longest_unused, *others = solvers
     assert not any((longest_unused.eps, longest_unused.A, longest_unused.B, longest_unused.start))
     assert all(solver.eps and solver.A for solver in (first, *others))
@@ -417,7 +417,7 @@ def test_krylov_schur_on_two_meshes_is_sparse_where_elements_are_many():
     )
     result, reference = solve_on_two_meshes(rod, request), solve_spectrum(rod, TIGHT)
     assert result.status == SpectrumStatus.ok
-    assert 3 * result.elements * result.order > KRYLOV.dense_up_to
+    assert 3 * result.elements * result.order > KRYLOV.max_dense_unknowns
     assert np.abs(result.eigenvalues[:4] / reference.eigenvalues - 1).max() < 1e-8
 
 

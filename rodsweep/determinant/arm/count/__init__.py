@@ -1,1 +1,1 @@
-"""Number of an arm's eigenvalues right of a vertical line."""
+"""Number of an arm's eigenvalues right of a vertical line, from the winding number of D."""

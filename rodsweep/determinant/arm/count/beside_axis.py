@@ -1,8 +1,8 @@
-"""Eigenvalues of an arm beside the imaginary axis, by Newton's method from points on the axis.
+"""Eigenvalues of an arm close to the imaginary axis, by Newton's method from points on the axis.
 
-Beside the axis, D exp(-Phi) with the dominant wave Phi changes slowly but for the zeros close to it. Newton's
-method on this function, without the zeros found before, therefore says at each point of the axis whether a
-further zero is close. Nothing proves that all are found.
+With the dominant wave Phi, D exp(-Phi) varies slowly on the axis but for its zeros close by. Newton's method
+on this function, with the zeros found before divided out, therefore shows at each point of the axis whether a
+further zero is close. It is not proved that all are found.
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
 from ....model.compiled.settings import CompiledSettings
-from ..determinant import ArmDeterminant, Level
+from ..determinant import ArmDeterminant, BoundedPropagators
 from ..local_waves import ArmSamples
 from ..value import chain_value
 from .dominant_wave import slope_of_wave
@@ -23,53 +23,54 @@ from .settings import ARM_COUNT
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BesideAxisSettings(CompiledSettings):
-    """Settings for the points on the axis and for Newton's method from them."""
+    """Settings for the starting points on the imaginary axis, and for Newton's method from them."""
 
-    lowest: float = 0.01
-    """Height of the first point, in 1/tau2: crossings of the arms of the surveys lie above 1."""
-    ratio: float = 1.25
-    """Ratio of the heights of two points."""
-    close: float = 0.5
-    """Largest first step, and largest distance of a zero from its point, in units of the height."""
+    first_height: float = 0.01
+    """Im w of the first starting point, in 1/tau2; crossings of all arms of the surveys lie above 1."""
+    height_ratio: float = 1.25
+    """Ratio of Im w of one starting point to that of its predecessor."""
+    max_distance: float = 0.5
+    """Largest first Newton step, and largest distance of an eigenvalue from its starting point, in units of
+    Im w of the starting point."""
     max_steps: int = 12
-    """Maximum number of Newton steps from one point."""
-    converged: float = 1e-9
-    """Relative length of the last step; Newton's method on D refines the eigenvalue further."""
-    most: int = 64
-    """Maximum number of eigenvalues."""
-    ranges: ClassVar = {"ratio": (1.0, math.inf), "close": (0.0, 1.0)}
+    """Maximum number of Newton steps from one starting point."""
+    converged_step: float = 1e-9
+    """Relative length of the last Newton step; Newton's method on D refines the eigenvalue later."""
+    max_modes: int = 64
+    """Maximum number of eigenvalues, the known ones included."""
+    ranges: ClassVar = {"height_ratio": (1.0, math.inf), "max_distance": (0.0, 1.0)}
 
 
 BESIDE_AXIS = BesideAxisSettings()
 
 
-def modes_beside_axis(determinant: ArmDeterminant, top: float, known: Complex) -> Complex:
-    """Eigenvalues beside the axis with heights up to `top`, (n,), one of each pair, the known ones first.
+def modes_near_axis(determinant: ArmDeterminant, top: float, known: Complex) -> Complex:
+    """Eigenvalues close to the imaginary axis with Im w up to `top`, one of each pair, (n,), the known ones
+    first.
 
-    Raises FloatingPointError if no elements resolve the arm there.
+    known: eigenvalues found before, (m,). Raises FloatingPointError if no elements resolve the arm there.
     """
-    found = known[: BESIDE_AXIS.most]
-    height = BESIDE_AXIS.lowest
+    found = known[: BESIDE_AXIS.max_modes]
+    height = BESIDE_AXIS.first_height
     while height < top:
-        W, propagators = determinant.level((1 + BESIDE_AXIS.close) * height, ARM_COUNT.highest)
+        W, propagators = determinant.level((1 + BESIDE_AXIS.max_distance) * height, ARM_COUNT.max_level_ratio)
         heights = [height]
-        while heights[-1] * BESIDE_AXIS.ratio < min(top, W / (1 + BESIDE_AXIS.close)):
-            heights.append(heights[-1] * BESIDE_AXIS.ratio)
+        while heights[-1] * BESIDE_AXIS.height_ratio < min(top, W / (1 + BESIDE_AXIS.max_distance)):
+            heights.append(heights[-1] * BESIDE_AXIS.height_ratio)
         found = _modes_from(np.array(heights), found, (W, propagators), determinant.gauss_samples)
-        height = heights[-1] * BESIDE_AXIS.ratio
+        height = heights[-1] * BESIDE_AXIS.height_ratio
     return found
 
 
 @compiled
-def _modes_from(heights: Array, known: Complex, level: Level, samples: ArmSamples) -> Complex:
-    """The known eigenvalues, (n,), followed by further ones found by Newton's method from i times each
-    height, (k,).
-    """
-    found = np.empty(BESIDE_AXIS.most, np.complex128)
+def _modes_from(heights: Array, known: Complex, level: BoundedPropagators, samples: ArmSamples) -> Complex:
+    """The known eigenvalues, (n,), and those that Newton's method finds from i times each of `heights`,
+    (k,)."""
+    found = np.empty(BESIDE_AXIS.max_modes, np.complex128)
     n = len(known)
     found[:n] = known
     for height in heights:
-        while n < BESIDE_AXIS.most:
+        while n < BESIDE_AXIS.max_modes:
             w = _mode_near(complex(0.0, height), found[:n], level, samples)
             if math.isnan(w.real):
                 break
@@ -79,9 +80,9 @@ def _modes_from(heights: Array, known: Complex, level: Level, samples: ArmSample
 
 
 @compiled
-def _mode_near(start: complex, known: Complex, level: Level, samples: ArmSamples) -> complex:
-    """The eigenvalue near a starting point that is not among the known eigenvalues, (n,); nan if no such
-    eigenvalue is close.
+def _mode_near(start: complex, known: Complex, level: BoundedPropagators, samples: ArmSamples) -> complex:
+    """The eigenvalue close to `start` that is not among the known ones, (n,); nan if no such eigenvalue is
+    close.
     """
     w = start
     for _ in range(BESIDE_AXIS.max_steps):
@@ -91,12 +92,12 @@ def _mode_near(start: complex, known: Complex, level: Level, samples: ArmSamples
         slope = value.D_w / value.D - slope_of_wave(w, samples)
         for k in range(len(known)):
             slope -= 1 / (w - known[k]) if w != known[k] else 0j
-        if not abs(slope) * BESIDE_AXIS.close * start.imag > 1:
+        if not abs(slope) * BESIDE_AXIS.max_distance * start.imag > 1:
             break
         step = 1 / slope
         w -= step
-        if not (w.imag > 0 and abs(w - start) < BESIDE_AXIS.close * start.imag):
+        if not (w.imag > 0 and abs(w - start) < BESIDE_AXIS.max_distance * start.imag):
             break
-        if abs(step) <= BESIDE_AXIS.converged * abs(w):
+        if abs(step) <= BESIDE_AXIS.converged_step * abs(w):
             return w
     return complex(math.nan, math.nan)

@@ -2,11 +2,11 @@
 
 The number is the change of arg D along the upper half of a box that contains all these eigenvalues, divided
 by pi, as in `rodsweep.determinant.certificate.winding_number`. The phase between two nodes follows from the
-tangents log D(w) + L (v - w), L = D'/D, at both nodes, if each tangent is wrong by less than pi/2 where
-the tangents meet.
+tangents log D(w) + L (v - w), L = D'/D, at both nodes, if the error of each tangent is below pi/2 where the
+two meet.
 
 Known eigenvalues close to the line are divided out: D above stands for D(w)/prod (w - w_n), whose zeros are
-far from the line. Those of them right of the line are added to the count.
+far from the line. The known eigenvalues right of the line are then added to the count.
 """
 
 import cmath
@@ -17,9 +17,9 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
-from ...certificate.winding_number import COUNT, Count
+from ...certificate.winding_number import COUNT, NO_INTEGER, PHASE_LOST, EigenvalueCount
 from ..completeness import has_conjugate
-from ..determinant import ArmDeterminant, Level
+from ..determinant import ArmDeterminant, BoundedPropagators
 from ..elements.settings import ARM_ELEMENTS
 from ..hull.region import Hull
 from ..local_waves import ArmSamples, scales_at
@@ -27,31 +27,33 @@ from .phase_node import PhaseNode, phase_node, tangent
 from .settings import ARM_COUNT
 
 NONE_KNOWN: Complex = np.empty(0, complex)
+"""No known eigenvalues, (0,)."""
 
 
 class PhaseLost(ArithmeticError):
-    """The change of phase could not be determined; nodes: number of nodes used."""
+    """The change of arg D along the contour could not be determined; nodes: number of nodes used."""
 
     def __init__(self, nodes: int):
-        super().__init__("an eigenvalue lies too close to the contour, or the contour is too long")
+        super().__init__(PHASE_LOST)
         self.nodes = nodes
 
 
 class BoxWalk(NamedTuple):
-    """A walk along the sides of a box: the side, the distance t from its start, the change of arg D so far.
+    """State of a walk along the contour of a count: on side number `side`, at a distance from its start.
 
-    here: the last of `nodes` nodes. growth: change of the reach per distance. ahead: distance of the next
-    node, 0 if not chosen. needed: |w| for which elements are needed; inf where the phase is lost.
+    phase_change: of arg D so far. node: the last of `nodes` nodes. reach_growth: change of the reach per
+    distance. next_distance: distance of the next node, 0 if not chosen yet. needed_size: |w| for which
+    propagators are needed to go on; 0 at the end, inf if the phase is lost.
     """
 
     side: int
-    t: float
-    total: float
+    distance: float
+    phase_change: float
     nodes: int
-    here: PhaseNode
-    growth: float
-    ahead: float
-    needed: float
+    node: PhaseNode
+    reach_growth: float
+    next_distance: float
+    needed_size: float
 
 
 def count_right_of(
@@ -60,65 +62,69 @@ def count_right_of(
     hull: Hull,
     known: Complex = NONE_KNOWN,
     error: Array | float = 0.0,
-) -> Count:
-    """The number of transverse eigenvalues with Re w > line, for any real line.
+) -> EigenvalueCount:
+    """Number of transverse eigenvalues of an arm with Re w > line, for any real `line`, in 1/tau2.
 
-    known, error: some eigenvalues, (n,), and the error of each, (n,); known eigenvalues make the count
-    faster. Raises no error: a failed count is a Count without a number, with the reason.
+    known, error: some eigenvalues, (n,), and their errors, (n,), which make the count faster. No exception is
+    raised: a failed count is a Count without a number, with the reason.
     """
     if not math.isfinite(hull.a):
-        return Count(None, 0, "no a-priori bound on the eigenvalues applies to this rod")
+        return EigenvalueCount(None, 0, "no a-priori bound on the eigenvalues applies to this rod")
     if line >= hull.box(max(-line, 0.0))[0]:
-        return Count(0, 0)
-    known = known[error < ARM_COUNT.sharp * np.abs(known.real - line)]
+        return EigenvalueCount(0, 0)
+    known = known[error < ARM_COUNT.max_known_error * np.abs(known.real - line)]
     known = known[has_conjugate(known)]
     height = np.maximum(np.abs(known.imag), abs(line))
-    known = known[np.abs(known.real - line) < ARM_COUNT.close_to_line * height]
+    known = known[np.abs(known.real - line) < ARM_COUNT.max_known_distance * height]
     try:
         total, nodes = _phase_change(line, determinant, hull, known)
     except PhaseLost as lost:
-        return Count(None, lost.nodes, str(lost))
+        return EigenvalueCount(None, lost.nodes, str(lost))
     except FloatingPointError as unresolved:
-        return Count(None, 0, str(unresolved))
+        return EigenvalueCount(None, 0, str(unresolved))
     number = round(total / math.pi)
-    if abs(total / math.pi - number) > COUNT.not_an_integer:
-        return Count(None, nodes, "the winding number of D is not an integer within rounding errors")
-    return Count(number + int((known.real > line).sum()), nodes)
+    if abs(total / math.pi - number) > COUNT.integer_tolerance:
+        return EigenvalueCount(None, nodes, NO_INTEGER)
+    return EigenvalueCount(number + int((known.real > line).sum()), nodes)
 
 
 def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
-    """Whether eigenvalues right of a line at most 0 can be counted: a bound is known, and D resolved."""
+    """Whether eigenvalues right of a line at Re w <= 0 can be counted: the hull is bounded, and elements
+    resolve D.
+    """
     if not math.isfinite(hull.a):
         return False
     try:
-        determinant.level(abs(_corner(0.0, hull)), ARM_COUNT.highest)
+        determinant.level(abs(_corner(0.0, hull)), ARM_COUNT.max_level_ratio)
     except FloatingPointError:
         return False
     return True
 
 
 def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: Hull) -> float:
-    """The largest |w| at which a count right of a line evaluates D."""
+    """The largest |w| at which a count right of the line evaluates D."""
     corner = _corner(line, hull)
     return abs(corner) + ARM_COUNT.first_radius * determinant.length(corner)
 
 
 def _corner(line: float, hull: Hull) -> complex:
-    """The corner of the box about all eigenvalues right of the line, with the largest |w|."""
+    """The corner in the upper half plane, with the largest |w|, of the box about all eigenvalues right of the
+    line.
+    """
     real, imag = hull.box(max(-line, 0.0))
-    return complex(COUNT.width_factor * real + COUNT.width_added, max(imag, COUNT.least_height * abs(line)))
+    return complex(COUNT.width_factor * real + COUNT.width_added, max(imag, COUNT.min_height * abs(line)))
 
 
 def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: Complex) -> tuple[float, int]:
-    """(change of arg D, without the known eigenvalues, along half the box; nodes used).
+    """(change of arg D, without the known eigenvalues, along the upper half of the box; number of nodes).
 
-    Raises `PhaseLost` if the nodes do not connect.
+    Raises `PhaseLost` if a node's reach is too small, or too many nodes are needed.
     """
     corner = _corner(line, hull)
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # Elements for the largest |w| first: they serve most others.
     largest = largest_w_of_count(line, determinant, hull)
-    level = determinant.level(largest, ARM_COUNT.highest)
+    level = determinant.level(largest, ARM_COUNT.max_level_ratio)
     samples = determinant.samples, determinant.gauss_samples
     unit = determinant.length(corners[0])
     trial = unit, min(ARM_COUNT.first_radius * unit, level[0] - abs(corners[0]))
@@ -126,12 +132,12 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
     walk = BoxWalk(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
     while True:
         walk = _advance(walk, (corners, largest), known, hull, samples, level)
-        if walk.needed == 0:
+        if walk.needed_size == 0:
             break
-        if walk.needed == math.inf:
+        if walk.needed_size == math.inf:
             raise PhaseLost(walk.nodes)
-        level = determinant.level(walk.needed, ARM_COUNT.highest)
-    return walk.total, walk.nodes
+        level = determinant.level(walk.needed_size, ARM_COUNT.max_level_ratio)
+    return walk.phase_change, walk.nodes
 
 
 @compiled
@@ -141,12 +147,13 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
     known: Complex,
     hull: Hull,
     samples: tuple[ArmSamples, ArmSamples],
-    level: Level,
+    level: BoundedPropagators,
 ) -> BoxWalk:
-    """Continues a walk along the box over all nodes for which the present elements suffice.
+    """Continues a walk along the box until its end, or until propagators for a larger or smaller |w| are
+    needed.
 
-    box: (corners, largest |w| for which elements are known to exist). level: (W, propagators) of the present
-    elements. samples: of the arm, for the lengths over which D changes and for the dominant wave.
+    box: (corners, largest |w| for which propagators are known to exist). level: (W, propagators) in use.
+    samples: of the arm, for the lengths over which D changes and for the dominant wave.
     """
     corners, largest = box
     side, t, total, nodes, here, growth, ahead, _ = walk
@@ -156,7 +163,7 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
         if t == length:
             side, t, growth = side + 1, 0.0, 0.0
             continue
-        if not here.reach > ARM_COUNT.smallest_reach * abs(here.w) or nodes > ARM_COUNT.max_nodes:
+        if not here.reach > ARM_COUNT.min_reach * abs(here.w) or nodes > ARM_COUNT.max_nodes:
             return BoxWalk(side, t, total, nodes, here, growth, ahead, math.inf)
         if ahead == 0:
             ahead = min(_stride(here.reach, growth), length - t)
@@ -164,10 +171,10 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
         unit = scales_at(w, samples[0])[1]
         first = ARM_COUNT.first_radius * unit
         radius = min(2 * here.radius, ARM_COUNT.largest_radius * unit) if here.radius > 0 else first
-        radius = max(radius, ARM_COUNT.of_height * w.imag)
-        enough = max(first, min(ARM_COUNT.of_height * w.imag, largest - abs(w)))
+        radius = max(radius, ARM_COUNT.max_wave_radius * w.imag)
+        enough = max(first, min(ARM_COUNT.max_wave_radius * w.imag, largest - abs(w)))
         needed = abs(w) + min(radius, enough)
-        if not needed <= level[0] <= ARM_COUNT.highest * max(needed, ARM_ELEMENTS.smallest_level):
+        if not needed <= level[0] <= ARM_COUNT.max_level_ratio * max(needed, ARM_ELEMENTS.smallest_level):
             return BoxWalk(side, t, total, nodes, here, growth, ahead, needed)
         there = phase_node(w, known, (unit, min(radius, level[0] - abs(w))), hull, (samples[1], level))
         nodes += 1
@@ -184,23 +191,25 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
 
 @compiled
 def _stride(reach: float, growth: float) -> float:
-    """Distance at which the reaches of two nodes just overlap, if they grow by `growth` per distance."""
-    overlap = ARM_COUNT.overlap
+    """Distance of the next node at which the reaches of both nodes just overlap, if the reach grows by
+    `growth` per distance.
+    """
+    overlap = ARM_COUNT.reach_overlap
     return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), ARM_COUNT.largest_growth))
 
 
 @compiled
 def _nearer(reach: float, growth: float, ahead: float) -> float:
-    """A shorter distance of the next node than `ahead`; repeated calls end within the reach of the present
+    """A smaller distance of the next node than `ahead`; repeated calls end within the reach of the present
     node.
     """
-    nearer = min(_stride(reach, growth), ARM_COUNT.closer * ahead)
-    return nearer if nearer > reach else min(ARM_COUNT.within_reach * reach, ahead / 2)
+    nearer = min(_stride(reach, growth), ARM_COUNT.max_step_ratio * ahead)
+    return nearer if nearer > reach else min(ARM_COUNT.safe_step * reach, ahead / 2)
 
 
 @compiled
 def _turn(here: PhaseNode, there: PhaseNode, samples: ArmSamples) -> float:
-    """The change of arg D between two nodes whose reaches overlap."""
+    """The change of arg D between two nodes whose reaches overlap, from their tangents and values of D."""
     share = here.reach / (here.reach + there.reach)
     between = here.w + share * (there.w - here.w)
     # The tangents at both nodes predict the turn. D gives the remainder, which is below half a turn because

@@ -1,10 +1,10 @@
-"""The fastest growing exponential of D along an arm: how D changes over distances of the size of |w|.
+"""The dominant wave Phi of an arm: log D(w) without the zeros of D, over distances of the size of |w|.
 
 With the local exponents of the minors, +-sqrt(z+-) of `rodsweep.determinant.arm.local_waves`, D is about
 exp(Phi), Phi = int sqrt(z+) du, times a factor that changes slowly where no eigenvalue is near.
 
-For Im w > 0 is Im P > 0 and Im z+ > 0: Phi has no branch point in the upper half plane. Nothing rests on Phi
-being close to log D: the count divides D by exp(Phi), and Phi is analytic, whatever its quadrature.
+For Im w > 0 is Im P > 0 and Im z+ > 0: Phi has no branch point in the upper half plane. The count does not
+rely on Phi being close to log D: it divides D by exp(Phi), and Phi, as a quadrature sum, is analytic.
 """
 
 import cmath
@@ -15,7 +15,7 @@ from ..local_waves import ArmSamples, root_of_upper_half
 
 @compiled_for_vectors
 def dominant_wave(w: complex, samples: ArmSamples) -> complex:
-    """Phi at w, Im w > 0."""
+    """Phi(w) = int sqrt(z+) du of an arm, by quadrature over its samples; Im w > 0."""
     root = cmath.sqrt(w)
     a = root.real
     b = root.imag
@@ -34,7 +34,7 @@ def dominant_wave(w: complex, samples: ArmSamples) -> complex:
 
 @compiled
 def slope_of_wave(w: complex, samples: ArmSamples) -> complex:
-    """dPhi/dw at w, Im w > 0."""
+    """dPhi/dw of the dominant wave at w, Im w > 0."""
     root = cmath.sqrt(w)
     slope = 0j
     for i in range(len(samples.weights)):

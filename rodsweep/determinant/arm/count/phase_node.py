@@ -1,10 +1,10 @@
-"""Points of a count with a tangent of log D each, and the distance within which the tangent holds.
+"""Nodes on the contour of a count, each with a tangent of log D and the distance within which it holds.
 
-The phase of D between two nodes follows from the tangents log D(w) + L (v - w), L = D'/D, at both, if each is
-wrong by less than pi/2 where they meet.
+The phase of D between two nodes follows from the tangents log D(w) + L (v - w), L = D'/D, at both nodes, if
+the error of each tangent is below pi/2 where the two meet.
 
-Outside the hull of the spectrum this condition is proved from D'/D alone. D is entire of order 1/2, so that
-D = prod (1 - w/w_n), and with the distance d of w from the hull and the unit normal n towards w
+Outside the hull of the spectrum this condition is proved from D'/D alone. D is entire of order 1/2, so that D
+= prod (1 - w/w_n), and with the distance d of w from the hull and the unit normal n towards w
 
     Re(n L) = sum <n, w - w_n>/|w - w_n|^2 >= d S,   S = sum 1/|w - w_n|^2,
     |log D(v) - log D(w) - L (v - w)| <= S r^2/2/(1 - r/d)^2,   r = |v - w|.
@@ -14,9 +14,9 @@ Inside the hull, f(v) = D(v) exp(-h(v)) has f'(w) = 0 with
     h(v) = L (v - w)   or   h(v) = Phi(v) - Phi(w) + (L - Phi'(w)) (v - w),
 
 Phi the dominant wave (`rodsweep.determinant.arm.count.dominant_wave`). Cauchy's estimate with the maximum of
-|f| on a circle bounds the change of f. The maximum is estimated from `ARM_COUNT.circle` points and a safety
-factor. Inside the hull the count is therefore an estimate; the rounding errors of D and the errors of its
-elements are estimates everywhere.
+|f| on a circle bounds the change of f. The maximum is estimated from `ARM_COUNT.circle_points` points and a
+safety factor. Inside the hull the count is therefore an estimate; the rounding errors of D and the errors of
+its elements are estimates everywhere.
 """
 
 import math
@@ -26,7 +26,7 @@ from ....arrays import Complex
 from ....model.compiled.compilation import compiled
 from ...exponents import EXPONENTS
 from ...value import DeterminantValue
-from ..determinant import Level
+from ..determinant import BoundedPropagators
 from ..hull.region import Hull, clearance
 from ..local_waves import ArmSamples
 from ..value import chain_size, chain_value
@@ -35,11 +35,11 @@ from .settings import ARM_COUNT
 
 
 class PhaseNode(NamedTuple):
-    """A point w on the contour with a tangent h of log D, and the distance within which h is valid.
+    """A point w on the contour with a tangent h of log D, and the distance from w within which h holds.
 
-    direction, L: of D, and D'/D, both after division by the known eigenvalues. wave: (Phi, dPhi/dw) if h
-    contains the dominant wave, else 0. reach: distance within which h is valid. radius: radius of the best
-    circle, 0 without a circle.
+    direction, L: D/|D| and D'/D, both after division of D by the known eigenvalues. wave: (Phi, dPhi/dw) if h
+    contains the dominant wave, else 0. reach: this distance. radius: radius of the circle that gave
+    the reach, 0 without a circle.
     """
 
     w: complex
@@ -52,7 +52,7 @@ class PhaseNode(NamedTuple):
 
 @compiled
 def tangent(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
-    """The tangent h of log D at a node, evaluated at v (see the module)."""
+    """The tangent h(v) of log D at a node, less log D(w) (see the module)."""
     Phi, slope = node.wave
     ahead = (node.L - slope) * (v - node.w)
     return ahead + dominant_wave(v, samples) - Phi if Phi != 0 else ahead
@@ -60,15 +60,19 @@ def tangent(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
 
 @compiled
 def phase_node(
-    w: complex, known: Complex, trial: tuple[float, float], hull: Hull, arm: tuple[ArmSamples, Level]
+    w: complex,
+    known: Complex,
+    trial: tuple[float, float],
+    hull: Hull,
+    arm: tuple[ArmSamples, BoundedPropagators],
 ) -> PhaseNode:
-    """The node about w, inside or outside the hull.
+    """The node at w, inside or outside the hull.
 
-    known: known eigenvalues, (n,). trial: (length over which D changes, largest radius). arm: samples of the
-    arm, and the propagators for |v| <= W on the largest circle about w.
+    known: eigenvalues to divide out of D, (n,). trial: (length over which D changes, largest radius of a
+    circle). arm: samples of the arm, and the propagators for |v| <= W on the largest circle about w.
     """
     value = chain_value(w, arm[1][0], arm[1][1])
-    if not abs(value.D) > ARM_COUNT.rounding * value.noise:
+    if not abs(value.D) > ARM_COUNT.rounding_over_noise * value.noise:
         return PhaseNode(w, value.D, 0j, (0j, 0j), 0.0, 0.0)
     direction = value.D / abs(value.D)
     L = value.D_w / value.D
@@ -80,7 +84,7 @@ def phase_node(
     reach = 0.0
     if distance > 0:
         S = max((normal * L).real, 0.0) / distance
-        reach = 1 / (1 / distance + math.sqrt(S / (2 * ARM_COUNT.largest_turn)))
+        reach = 1 / (1 / distance + math.sqrt(S / (2 * ARM_COUNT.max_tangent_error)))
     node = PhaseNode(w, direction, L, (0j, 0j), reach, 0.0)
     return node if reach > trial[0] else _node_inside(node, value, known, trial, arm)
 
@@ -91,36 +95,36 @@ def _node_inside(
     value: DeterminantValue,
     known: Complex,
     trial: tuple[float, float],
-    arm: tuple[ArmSamples, Level],
+    arm: tuple[ArmSamples, BoundedPropagators],
 ) -> PhaseNode:
-    """The node at w inside the hull, with the circle on which the bound of |f| gives the largest reach.
+    """The node at w inside the hull, with the circle whose bound of |f| gives the largest reach.
 
     value: D at the node. Further arguments as in `phase_node`.
     """
     w = node.w
     samples, (W, propagators) = arm
-    unit = min(trial[0], ARM_COUNT.steepest / max(abs(node.L), EXPONENTS.least_divisor))
+    unit = min(trial[0], ARM_COUNT.max_log_slope / max(abs(node.L), EXPONENTS.least_divisor))
     smallest = ARM_COUNT.smallest_radius * unit
-    room = ARM_COUNT.clearance - ARM_COUNT.rounding * value.noise / abs(value.D)
+    room = ARM_COUNT.max_change - ARM_COUNT.rounding_over_noise * value.noise / abs(value.D)
     here = math.log(abs(value.D)) + value.S - _log_of_known(w, known)
     best = node
     rho = max(trial[1], smallest)
     while rho >= smallest:
         wave = (0j, 0j)
-        if rho <= ARM_COUNT.of_height * w.imag:
+        if rho <= ARM_COUNT.max_wave_radius * w.imag:
             wave = (dominant_wave(w, samples), slope_of_wave(w, samples))
         tried = PhaseNode(w, node.direction, node.L, wave, 0.0, rho)
         # No smaller circle reaches farther than half of this one could.
-        enough = max(best.reach, _reach_of_circle(rho / 2, ARM_COUNT.between_points, room))
+        enough = max(best.reach, _reach_of_circle(rho / 2, ARM_COUNT.between_points_factor, room))
         reach = math.inf
         size = -math.inf  # log of the largest |f| of the points of the circle
         for direction in ARM_COUNT.directions:
             v = w + rho * direction
             log = chain_size(v, W, propagators) - _log_of_known(v, known)
             size = max(size, log - tangent(tried, v, samples).real)
-            M = ARM_COUNT.between_points * math.exp(min(size - here, EXPONENTS.largest_exponent))
+            M = ARM_COUNT.between_points_factor * math.exp(min(size - here, EXPONENTS.largest_exponent))
             reach = _reach_of_circle(rho, M, room)
-            if reach <= best.reach or (reach < ARM_COUNT.given_up * rho and rho / 2 >= smallest):
+            if reach <= best.reach or (reach < ARM_COUNT.min_reach_fraction * rho and rho / 2 >= smallest):
                 reach = 0.0
                 break
         if reach > best.reach:
@@ -135,14 +139,16 @@ def _node_inside(
 
 @compiled
 def _reach_of_circle(rho: float, M: float, room: float) -> float:
-    """Distance within which f changes by less than `room`, in units of |D|, if |f| is at most M at rho."""
+    """Distance from w within which f changes by less than room |D|, if |f| <= M |D| on the circle of radius
+    rho.
+    """
     q = room / M
     return rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q > 0 else 0.0
 
 
 @compiled
 def _log_of_known(v: complex, known: Complex) -> float:
-    """log prod |v - w_n| over known eigenvalues."""
+    """log prod |v - w_n| over the known eigenvalues w_n, (n,)."""
     total = 0.0
     for n in range(len(known)):
         total += math.log(max(abs(v - known[n]), EXPONENTS.least_divisor))

@@ -53,7 +53,9 @@ from .settings import ARM_ELEMENTS, MINORS
 
 
 class IntegrationMatrices(NamedTuple):
-    """Integrals on [0, 1] from 0 to each Gauss point, (STAGES, STAGES), and Gauss weights, (STAGES,)."""
+    """Matrix of the integrals on [0, 1] from 0 to each Gauss point, (STAGES, STAGES), and Gauss weights,
+    (STAGES,).
+    """
 
     integrals: Array
     weights: Array
@@ -61,10 +63,10 @@ class IntegrationMatrices(NamedTuple):
 
 @compiled
 def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: IntegrationMatrices) -> Array:
-    """Terms of w/W of the elements of n arms, (n, elements, terms, PADDED); no terms where MAX_TERMS are too
-    few.
+    """Coefficients of the propagators in powers of w/W, (n, elements, terms, PADDED); no terms if MAX_TERMS
+    are too few.
 
-    F: forces, (n,). local: `LocalCoefficients`, (6, n, elements, STAGES). lengths: (elements,).
+    F: forces of n arms, (n,). local: `LocalCoefficients`, (6, n, elements, STAGES). lengths: (elements,).
     """
     n, elements = local.shape[1:3]
     batches = -(-elements // ARM_ELEMENTS.lanes)
@@ -86,10 +88,11 @@ def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: I
 
 @compiled
 def fill_terms(F: Array, W: float, coefficients: Array, method: IntegrationMatrices, terms: Array) -> int:
-    """Fills the terms of the elements of n arms; returns how many are needed, MAX_TERMS + 1 for more.
+    """Fills the coefficients of propagators, `terms`; returns the number of terms needed, MAX_TERMS + 1 if
+    too many.
 
-    F: forces, (n,). coefficients: `LocalCoefficients` times the lengths of the elements, (n, batches, 6,
-    STAGES, LANES). terms: of w/W, (n, batches * LANES, MAX_TERMS, PADDED), all 0.
+    F: forces of n arms, (n,). coefficients: `LocalCoefficients` times the lengths of the elements, (n,
+    batches, 6, STAGES, LANES). terms: of w/W, (n, batches * LANES, MAX_TERMS, PADDED), all 0 at first.
     """
     most = 1
     values = np.empty((MINORS, ARM_ELEMENTS.stages, ARM_ELEMENTS.width))
@@ -135,10 +138,12 @@ def _fill_batch(
     work: tuple[Array, Array],
     terms: Array,
 ) -> int:
-    """Fills the terms of some elements, (LANES, MAX_TERMS, PADDED); returns how many are needed.
+    """Fills the propagators' coefficients of one batch of elements, `terms`; returns the number of terms
+    needed.
 
-    load: (F, W). local: (6, STAGES, WIDTH). method: the second is `elimination_matrix` in lanes. work: values
-    of the minors and their rates, (MINORS, STAGES, WIDTH) each.
+    terms: (LANES, MAX_TERMS, PADDED). load: (F, W). local: coefficients, (6, STAGES, WIDTH). method:
+    integrals, and `elimination_matrix` of each lane's element. work: values of the minors and their rates,
+    (MINORS, STAGES, WIDTH) each.
     """
     F, W = load
     (Q, weights), turning = method
@@ -188,7 +193,10 @@ def _integrate(Q: Array, rates: Array, out: Array) -> None:
 
 @compiled_for_vectors
 def _integrate_eliminated(turning: Array, rates: Array, out: Array) -> None:
-    """out = M Q rates, both (STAGES, WIDTH), for the M of each lane; turning: (STAGES, 1 + STAGES, WIDTH)."""
+    """Writes M Q rates into out, both (STAGES, WIDTH): rates integrated after the elimination of a minor.
+
+    turning: `elimination_matrix` of each lane's element, with M Q, (STAGES, 1 + STAGES, WIDTH).
+    """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             out[i, c] = 0.0
@@ -200,7 +208,11 @@ def _integrate_eliminated(turning: Array, rates: Array, out: Array) -> None:
 
 @compiled
 def _end_values(weights: Array, rates: Array, n: int, terms: Array) -> bool:
-    """Fills term n, (LANES, MAX_TERMS, PADDED), from rates; whether it is negligible in all elements."""
+    """Writes the propagators' coefficients of w^n into terms[:, n] and returns whether all of them are
+    negligible.
+
+    terms: (LANES, MAX_TERMS, PADDED). rates: of the minors, (MINORS, STAGES, WIDTH). weights: Gauss weights.
+    """
     end = np.zeros((MINORS, ARM_ELEMENTS.width))
     _add_ends(weights, rates, end)
     done = True

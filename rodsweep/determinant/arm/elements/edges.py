@@ -1,4 +1,6 @@
-"""Ends of the elements of arms, which resolve waves and coefficients in each of them."""
+"""Boundaries between the elements of arms: elements so short that they resolve the waves and the
+coefficients.
+"""
 
 import math
 from functools import cache
@@ -14,12 +16,12 @@ from .settings import ARM_ELEMENTS
 
 @compiled
 def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks: Array) -> Array:
-    """Ends of elements for |w| <= W, from 0 to 1: equal shares of the density that the local exponents ask
-    for.
+    """Boundaries of elements for |w| <= W, increasing from 0 to 1; each element has an equal share of
+    `_density`.
 
     squares: those of `ArmSamples` of n arms, (4, n, points). tapers: (n,). points: midpoints of equal parts
-    of the pieces between breaks, (points,). Where a piece needs more than `max_elements`, or W is no finite
-    number, there are more than `max_elements` ends, all 0.
+    of the intervals between breaks, (points,). If an interval needs more than `max_elements`, or W is not
+    finite, more than `max_elements` boundaries are returned, all 0.
     """
     density = _density(W, squares, tapers, points)
     pieces = len(breaks) - 1
@@ -48,7 +50,11 @@ def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks
 
 @compiled
 def _density(W: float, squares: Array, tapers: Array, points: Array) -> Array:
-    """Elements per length at points of n arms, (points,), for the arm that needs most."""
+    """Number of elements per length that the local exponents and the taper need, at points of n arms,
+    (points,).
+
+    The arm that needs most elements counts. Arguments as in `element_edges`.
+    """
     density = np.empty(len(points))
     for i in range(len(points)):
         waves = 0.0  # an upper bound of |q| for all |w| <= W
@@ -64,7 +70,8 @@ def _density(W: float, squares: Array, tapers: Array, points: Array) -> Array:
 
 
 def halved_where_coarse(edges: Array, local: Array) -> Array:
-    """Edges with every element halved in which the coefficients of an arm are not resolved; `edges` if none.
+    """Boundaries after halving every element that does not resolve the coefficients of an arm; `edges` itself
+    if none.
 
     local: coefficients of n arms at the Gauss points, (6, n, elements, stages).
     """
@@ -85,7 +92,10 @@ def _last_terms(stages: int) -> Array:
 
 @compiled
 def _is_coarse(local: Array, last_terms: Array) -> NDArray[np.bool_]:
-    """Mask of the elements, (elements,), whose last two Legendre coefficients are too large in an arm."""
+    """Mask of the elements, (elements,), in which the last two Legendre coefficients of an arm are too large.
+
+    local: coefficients, (6, n, elements, stages).
+    """
     quantities, arms, elements, stages = local.shape
     coarse = np.zeros(elements, np.bool_)
     # The sixth, g, follows from the others and the force.

@@ -21,7 +21,7 @@ RE, IM, RE_SLOPE, IM_SLOPE = range(4)
 
 @compiled
 def _needed_terms(size: float, terms: int) -> int:
-    """The number of powers of z that matter to C and dC/dz at |z| = size, at most `terms`."""
+    """Number of powers of z that are not negligible in C and dC/dz at |z| = size, at most `terms`."""
     needed = terms
     while needed > 2 and size <= ARM_ELEMENTS.largest_of_terms[needed - 1]:
         needed -= 1
@@ -30,7 +30,8 @@ def _needed_terms(size: float, terms: int) -> int:
 
 @compiled
 def powers_of(z: complex, terms: int) -> Array:
-    """The powers z^n that matter, and their derivatives n z^(n-1): real and imaginary parts, (n, 4).
+    """The powers z^n that are not negligible, and their derivatives n z^(n-1): real and imaginary parts,
+    (n, 4).
 
     terms: number of powers in the polynomials.
     """
@@ -49,7 +50,7 @@ def powers_of(z: complex, terms: int) -> Array:
 
 @compiled_for_vectors
 def fill_propagator(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes C and dC/dz into out, (4, PADDED)."""
+    """Writes a propagator C and dC/dz into out, (4, PADDED); polynomial, powers: see the module."""
     for k in range(PADDED):
         out[RE, k] = polynomial[0, k]
         out[IM, k] = out[RE_SLOPE, k] = out[IM_SLOPE, k] = 0.0
@@ -72,13 +73,13 @@ def fill_propagator(polynomial: Array, powers: Array, out: Array) -> None:
 
 @compiled_for_vectors
 def fill_value(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes C alone into out, (2, PADDED)."""
+    """Writes a propagator C, without dC/dz, into out, (2, PADDED); polynomial, powers: see the module."""
     _fill_rows(polynomial, powers, (RE, IM), out)
 
 
 @compiled_for_vectors
 def fill_real_propagator(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes C and dC/dz at real z into out, (2, PADDED)."""
+    """Writes a propagator C and dC/dz at real z into out, (2, PADDED); polynomial, powers: see the module."""
     _fill_rows(polynomial, powers, (RE, RE_SLOPE), out)
 
 
@@ -112,7 +113,9 @@ def _fill_rows(polynomial: Array, powers: Array, rows: tuple[int, int], out: Arr
 
 @compiled_for_vectors
 def fill_real_value(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes C alone at real z into out, (PADDED,)."""
+    """Writes a propagator C at real z, without dC/dz, into out, (PADDED,); polynomial, powers: see the
+    module.
+    """
     for k in range(PADDED):
         out[k] = polynomial[0, k]
     for n in range(1, len(powers)):
@@ -122,7 +125,7 @@ def fill_real_value(polynomial: Array, powers: Array, out: Array) -> None:
 
 @compiled_for_vectors
 def multiply(C: Array, x: Array, out: Array) -> None:
-    """out = C x; C: rows RE and IM of a propagator, (2 or more, PADDED); x, out: minors, (2, MINORS)."""
+    """out = C x for a propagator C, (2 or more, PADDED), and minors x and out, (2, MINORS)."""
     for i in range(MINORS):
         out[0, i] = out[1, i] = 0.0
     for j in range(MINORS):
@@ -135,7 +138,9 @@ def multiply(C: Array, x: Array, out: Array) -> None:
 
 @compiled_for_vectors
 def multiply_both(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
-    """out = C t + change x; C, change: (2 or more, PADDED); t, x, out: minors, (2, MINORS)."""
+    """out = C t + change x for propagators C and change, (2 or more, PADDED), and minors t, x, out,
+    (2, MINORS).
+    """
     for i in range(MINORS):
         out[0, i] = out[1, i] = 0.0
     for j in range(MINORS):
@@ -151,7 +156,7 @@ def multiply_both(C: Array, t: Array, change: Array, x: Array, out: Array) -> No
 
 @compiled_for_vectors
 def multiply_real(C: Array, x: Array, out: Array) -> None:
-    """out = C x, of a real propagator, (PADDED,), and real minors, (MINORS,)."""
+    """out = C x for a real propagator C, (PADDED,), and real minors x and out, (MINORS,)."""
     for i in range(MINORS):
         out[i] = 0.0
     for j in range(MINORS):
@@ -162,7 +167,9 @@ def multiply_real(C: Array, x: Array, out: Array) -> None:
 
 @compiled_for_vectors
 def multiply_real_both(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
-    """out = C t + change x, of real propagators, (PADDED,), and real minors, (MINORS,)."""
+    """out = C t + change x for real propagators C and change, (PADDED,), and real minors t, x, out,
+    (MINORS,).
+    """
     for i in range(MINORS):
         out[i] = 0.0
     for j in range(MINORS):
@@ -174,12 +181,10 @@ def multiply_real_both(C: Array, t: Array, change: Array, x: Array, out: Array) 
 
 @compiled
 def size_of_products(C: Array, x: Array) -> float:
-    """The sum of the moduli of the products whose sum is s^m at the end of an element, C x.
+    """Sum of the moduli of all terms of C x that add up to the minor s^m at the end of an element.
 
-    C: rows RE and IM of a propagator, (2 or more, PADDED). x: minors, (2, MINORS).
-
-    Minors differ in size by powers of the wave number. The rounding error of D follows these products, which
-    may be larger than all minors at the tip near a root of D.
+    C: propagator, (2 or more, PADDED). x: minors, (2, MINORS). Near a root of D the terms cancel, and the
+    rounding error of D is relative to their moduli, not to s^m.
     """
     total = 0.0
     for j in range(MINORS):
@@ -190,7 +195,7 @@ def size_of_products(C: Array, x: Array) -> float:
 
 @compiled_for_vectors
 def size_of_real_products(C: Array, x: Array) -> float:
-    """`size_of_products` of a real propagator, (PADDED,), and real minors, (MINORS,)."""
+    """`size_of_products` for a real propagator C, (PADDED,), and real minors x, (MINORS,)."""
     total = 0.0
     for j in range(MINORS):
         total += abs(C[MINORS * j + SM] * x[j])

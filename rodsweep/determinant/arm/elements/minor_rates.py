@@ -1,4 +1,5 @@
-"""Rates of the five minors along an element, term by term in w, and the start values of the minors.
+"""Rates d/du of the five minors along an element, one power of w at a time, and the start values of the
+minors.
 
 The equations are those of `rodsweep.determinant.arm.elements.collocation`. values, rates: of the minors at
 the Gauss points of some elements, (MINORS, STAGES, WIDTH). local: coefficients there, (6, STAGES, WIDTH).
@@ -10,18 +11,19 @@ from ....model.compiled.compilation import compiled_for_vectors
 from .settings import ARM_ELEMENTS, MINORS
 
 SM, TS, TM, YT, YM = range(MINORS)
-"""Places of the minors s^m, theta^s, theta^m, y^theta and y^m."""
+"""Row indices of the minors s^m, theta^s, theta^m, y^theta and y^m."""
 ENTRIES = MINORS * MINORS
+"""Number of entries of a propagator, a matrix that multiplies the minors."""
 PADDED = 28
-"""Entries of a stored propagator: ENTRIES and zeros, a multiple of 4, the doubles of a vector instruction."""
+"""Length of a stored propagator: its ENTRIES, then zeros up to a multiple of 4, for vector instructions."""
 NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
-"""Places of the `LocalCoefficients`."""
+"""Row indices of the `LocalCoefficients` nu, c2, c3, gamma2, gamma3 and g."""
 
 
 @compiled_for_vectors
 def add_start_value(minor: int, start: float, values: Array) -> None:
-    """Adds a minor's start value to values, (MINORS, STAGES, WIDTH), of the solution that starts with this
-    minor.
+    """Adds the start value of a minor to `values`, (MINORS, STAGES, WIDTH), for the solution that starts with
+    this minor.
     """
     for i in range(ARM_ELEMENTS.stages):
         for lane in range(ARM_ELEMENTS.lanes):
@@ -41,7 +43,8 @@ def add_eliminated_start_value(minor: int, start: float, turning: Array, values:
 
 @compiled_for_vectors
 def fill_drag_rates(W: float, local: Array, values: Array, rates: Array) -> None:
-    """Writes the rates of the minors by the drags, proportional to w, from the values one power of w lower.
+    """Writes the rates of s^m, theta^s and y^m that are proportional to w, from the values one power of w
+    lower.
 
     values, rates: (MINORS, STAGES, WIDTH). W: unit of w.
     """
@@ -97,7 +100,7 @@ def fill_y_theta_rates(local: Array, values: Array, rates: Array) -> None:
 
 @compiled_for_vectors
 def add_rates_by_y_theta(F: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of y^m, (STAGES, WIDTH), the term of the force with y^theta."""
+    """Adds to the rates of y^m, (STAGES, WIDTH), the term -F g y^theta."""
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[YM, i, c] -= F * local[G, i, c] * values[YT, i, c]

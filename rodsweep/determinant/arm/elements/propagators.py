@@ -1,8 +1,8 @@
-"""Propagators of the transverse problem over elements of a non-uniform arm, as polynomials in w.
+"""Propagators of the transverse problem over elements of a nonuniform arm, as polynomials in w.
 
 Over one element the minors of `rodsweep.determinant.arm.elements.collocation` are multiplied by a matrix
-C(w), entire in w. Its Taylor polynomial comes from collocation at the Gauss points of the element.
-Coefficients are sampled at the Gauss points alone, so every profile and law costs the same.
+C(w), the propagator, which is entire in w. Collocation at the Gauss points of the element gives its Taylor
+polynomial. Coefficients are evaluated at the Gauss points only, so every profile and law costs the same.
 """
 
 from collections.abc import Sequence
@@ -17,7 +17,9 @@ from .settings import ARM_ELEMENTS
 
 @cache
 def gauss_method(stages: int) -> tuple[Array, Array, Array]:
-    """(points, integrals from 0 to each point, weights) on [0, 1], shapes (s,), (s, s), (s,)."""
+    """(Gauss points on [0, 1], (s,); integrals from 0 to each point, (s, s); Gauss weights, (s,)); s:
+    `stages`.
+    """
     x, weights = np.polynomial.legendre.leggauss(stages)
     # The Legendre coefficients of a function's interpolant, integrated exactly.
     vandermonde = np.polynomial.legendre.legvander(x, stages - 1)
@@ -37,11 +39,11 @@ def _method() -> IntegrationMatrices:
 
 
 def element_propagators(F: Sequence[float], local: Array, lengths: Array, W: float) -> Array:
-    """The coefficients of C in powers of w/W, (n, elements, terms, PADDED), each C column by column.
+    """The propagators C of the elements of n arms in powers of w/W, (n, elements, terms, PADDED), C column
+    by column.
 
-    F: forces of n arms. local: `LocalCoefficients` at the Gauss points, (6, n, elements, stages). lengths:
-    lengths of the elements, in L, (elements,). Raises FloatingPointError if `max_terms` powers do not resolve
-    C.
+    F: forces, (n,). local: `LocalCoefficients` at the Gauss points, (6, n, elements, stages). lengths: of
+    elements, in L, (elements,). Raises FloatingPointError if `max_terms` powers do not resolve C.
     """
     terms = propagator_terms(np.array(F, float), W, local, lengths, _method())
     if not terms.size:

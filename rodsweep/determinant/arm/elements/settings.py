@@ -1,4 +1,4 @@
-"""Settings for the elements of arms, on which minors of two solutions are integrated."""
+"""Settings for the elements of an arm, over which the minors of two solutions are integrated."""
 
 import math
 from dataclasses import dataclass
@@ -7,51 +7,54 @@ from typing import ClassVar
 from ....model.compiled.settings import CompiledSettings
 
 MINORS = 5
-"""Number of minors of two solutions that are independent."""
+"""Number of independent minors of two solutions of the transverse problem."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmElementSettings(CompiledSettings):
-    """Settings for the elements of an arm and for the propagators that are kept."""
+    """Settings for the elements of an arm and for the propagators that are kept in memory."""
 
     longest: float = 3.2
-    """Largest |q1 +- q2| h of an element, the exponents of minors: twelve stages integrate exp(3.2) to 1e-19,
-    and rounding errors are those of elements half as long."""
+    """Largest |q1 +- q2| h of an element of length h; these are the exponents of the minors. Twelve Gauss
+    points integrate exp(3.2) to 1e-19, with rounding errors like those of elements half as long."""
     to_apex: float = 0.5
-    """Longest element in units of its distance from the apex of the cone, where stiffnesses vanish."""
+    """Longest element, in units of its distance from the apex of the cone, where stiffnesses vanish."""
     largest_tail: float = 1e-9
-    """Relative tail of the coefficients' Legendre series above which an element is halved. The error of a
-    Gauss method is about the square of the tail."""
+    """Last two Legendre coefficients of a coefficient over an element, relative to its size, above which the
+    element is halved. The error of a Gauss method is about their square."""
     max_halvings: int = 12
     """Maximum number of halvings of an element, down to 2e-4 of the first length."""
     smallest_level: float = 16.0
-    """Smallest W: for smaller |w| the load and the taper limit the elements."""
+    """Smallest bound W of |w|; for smaller |w| the load and the taper, not w, determine the length of
+    elements."""
     headroom: float = 1.1
-    """W of new elements in units of the |w| they are made for, so that they serve close ones too."""
+    """W of new elements, in units of the |w| for which they are made, so that they also serve slightly larger
+    |w|."""
     highest: float = 1e3
-    """Largest W, in units of |w|, of existing elements that serve in place of new ones: making elements costs
-    as much as some thirty evaluations on twice as many."""
+    """Largest W of existing elements that serve, in units of |w|. Making new elements costs as much as thirty
+    evaluations of D on twice as many elements."""
     highest_compared: float = 1.5
-    """As `highest`, for elements on which D is compared with D on others, and which must not be the same."""
+    """`highest` of elements on which D is compared with D on other elements; near 1, so that the two
+    differ."""
     max_elements: int = 4000
-    """Maximum number of elements of an arm; an arm that needs more counts as unresolved."""
+    """Maximum number of elements of an arm; an arm that needs more is refused as unresolved."""
     stages: int = 12
-    """Gauss points of an element. Eleven integrate exp(3.2) to 3e-17, twelve to 1e-19: the twelfth allows for
-    coefficients that vary. A multiple of 4, as sums take four at a time."""
+    """Number of Gauss points of an element. Eleven integrate exp(3.2) to 3e-17, twelve to 1e-19: the twelfth
+    allows for coefficients that vary. A multiple of 4, as sums take four terms at a time."""
     lanes: int = 4
-    """Number of elements that are solved together."""
+    """Number of elements that are solved together by vector instructions."""
     max_terms: int = 28
-    """Largest number of powers of w; 24 are enough for exp(3.2)."""
+    """Maximum number of powers of w in a propagator; 24 suffice for exp(3.2)."""
     negligible: float = 1e-18
-    """Size of a term, relative to the first term, at which the polynomial is truncated."""
+    """Size of the term of a power of w, relative to the first term, at which a propagator is truncated."""
     arms_kept: int = 16
-    """Arms whose propagators are kept: a bound of memory, which changes no number."""
+    """Maximum number of arms whose propagators are cached: it bounds the memory and changes no number."""
 
     ranges: ClassVar = {"headroom": (1.0, math.inf)}
 
     @property
     def width(self) -> int:
-        """Number of initial values of all lanes: the length of the last axis of arrays over elements."""
+        """Length of the last axis of arrays over elements: number of initial values times number of lanes."""
         return MINORS * self.lanes
 
     @property
@@ -72,7 +75,7 @@ class ArmElementSettings(CompiledSettings):
     def __post_init__(self) -> None:
         CompiledSettings.__post_init__(self)
         if self.stages % 4:
-            raise ValueError(f"{self.stages} stages are no multiple of 4")
+            raise ValueError(f"{self.stages} stages are not a multiple of 4")
 
 
 ARM_ELEMENTS = ArmElementSettings()

@@ -1,1 +1,1 @@
-"""Convex regions that hold all eigenvalues of an arm."""
+"""The hull of an arm: a convex region of w that contains all its eigenvalues."""

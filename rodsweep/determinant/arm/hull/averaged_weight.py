@@ -1,13 +1,13 @@
-"""Regions that contain every eigenvalue of an arm with jumps, from weights averaged over a window.
+"""Hulls of an arm whose coefficients jump, from weights alpha averaged over a window of u.
 
-The identity of `rodsweep.determinant.arm.hull.hull` needs a continuous weight alpha. Best would be
+The identity of `rodsweep.determinant.arm.hull.hull` needs a continuous weight alpha. The best weight would be
 t = g/(nu + l) with l = f |F| sqrt(c2 c3 gamma3/gamma2), which jumps with the material. With log alpha as the
-mean of log t over [u - h, u + h], the slope of log alpha is (log t(u + h) - log t(u - h))/(2 h), and what is
-left of the term with theta has two parts,
+mean of log t over [u - h, u + h], the slope of log alpha is (log t(u + h) - log t(u - h))/(2 h), and the
+remaining factor of the term with theta is a sum,
 
     g - alpha nu = (g - t nu) + (t - alpha) nu.
 
-The first part is bounded by the rotational drag. The second differs from 0 near the jumps only and is bounded
+The first term is bounded by the rotational drag. The second differs from 0 only near the jumps and is bounded
 by theta(0) = 0; or the drag bounds both.
 """
 
@@ -25,28 +25,28 @@ from ....model.compiled.settings import CompiledSettings
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AveragedWeightSettings(CompiledSettings):
-    """Settings for the weights that are tried."""
+    """Settings for the averaged weights alpha that are tried."""
 
     factors: tuple[float, ...] = (0.0, 0.5, 1.0)
-    """Trial f."""
+    """Values of the factor f of l in the weight t."""
     half_widths: tuple[float, ...] = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
-    """Trial h, in L."""
-    close: float = 1e-6
-    """Distance of two points, in L, below which they are the two sides of a jump."""
-    beside: float = 1e-12
-    """Distance from the places where a slope jumps, in L, of the points on both their sides."""
+    """Values of the half-width h of the window, in L."""
+    jump_distance: float = 1e-6
+    """Distance of two successive points, in L, below which a jump lies between them."""
+    point_distance: float = 1e-12
+    """Distance, in L, of two points added on both sides of every u at which the slope of alpha jumps."""
 
     @property
-    def trials(self) -> int:
-        """Number of trial regions: two for each f and h."""
+    def trial_count(self) -> int:
+        """Number of trial regions: two for each pair of f and h."""
         return 2 * len(self.factors) * len(self.half_widths)
 
 
 AVERAGED_WEIGHT = AveragedWeightSettings()
 
 
-class GridPlaces(NamedTuple):
-    """Intervals of a grid, (n,), and shares of their lengths, (n,)."""
+class GridPositions(NamedTuple):
+    """Positions of n points in a grid: index of the grid interval, (n,), and fraction of its length, (n,)."""
 
     interval: NDArray[np.int64]
     share: Array
@@ -54,12 +54,12 @@ class GridPlaces(NamedTuple):
 
 @compiled
 def averaged_regions(u: Array, local: Array, F: float) -> Array:
-    """Constants (a, c) of a region for each trial weight, (trials, 2); inf where a trial gives no bound.
+    """Constants (a, c) of the region of each trial weight, (trials, 2); inf where a trial gives no bound.
 
-    u: points of an arm from base to tip, (points,), two at a jump. local: the `LocalCoefficients` at the
-    points, (6, points), with c2 > 0 and g > 0.
+    u: points of an arm from clamp to tip, (points,), two at a jump. local: `LocalCoefficients` at the points,
+    (6, points), with c2 > 0 and g > 0. F: force.
     """
-    regions = np.full((AVERAGED_WEIGHT.trials, 2), math.inf)
+    regions = np.full((AVERAGED_WEIGHT.trial_count, 2), math.inf)
     row = 0
     for h in AVERAGED_WEIGHT.half_widths:
         points = _with_places_beside_jumps(u, h)
@@ -76,16 +76,16 @@ def averaged_regions(u: Array, local: Array, F: float) -> Array:
 
 @compiled
 def _with_places_beside_jumps(u: Array, h: float) -> Array:
-    """The points u of an arm and further points, increasing: two at each place whose distance from a jump is
-    h.
+    """The points u of an arm, (points,), with two further points at each u at the distance h from a jump,
+    sorted.
     """
     points = np.empty(5 * len(u))
     count = len(u)
     points[:count] = u
     for i in range(len(u) - 1):
-        if u[i + 1] - u[i] < AVERAGED_WEIGHT.close:
+        if u[i + 1] - u[i] < AVERAGED_WEIGHT.jump_distance:
             for side in (-h, h):
-                for at in (-AVERAGED_WEIGHT.beside, AVERAGED_WEIGHT.beside):
+                for at in (-AVERAGED_WEIGHT.point_distance, AVERAGED_WEIGHT.point_distance):
                     place = (u[i + 1] + u[i]) / 2 + side + at
                     if u[0] < place < u[-1]:
                         points[count] = place
@@ -94,8 +94,8 @@ def _with_places_beside_jumps(u: Array, h: float) -> Array:
 
 
 @compiled
-def _places(x: Array, grid: Array) -> GridPlaces:
-    """The places of x, (n,), increasing, among the points of a grid; the ends for x outside."""
+def _places(x: Array, grid: Array) -> GridPositions:
+    """Positions of x, (n,), increasing, in the intervals of a grid; values outside the grid get its end."""
     interval = np.empty(len(x), np.int64)
     share = np.empty(len(x))
     i = 0
@@ -105,12 +105,12 @@ def _places(x: Array, grid: Array) -> GridPlaces:
         width = grid[i + 1] - grid[i]
         interval[n] = i
         share[n] = min(max((x[n] - grid[i]) / width, 0.0), 1.0) if width > 0 else 0.0
-    return GridPlaces(interval, share)
+    return GridPositions(interval, share)
 
 
 @compiled
-def _interpolated(places: GridPlaces, values: Array) -> Array:
-    """Values at places, (n,), from values at the points of the grid."""
+def _interpolated(places: GridPositions, values: Array) -> Array:
+    """Values at positions in a grid, (n,), interpolated linearly from `values` at the grid points."""
     out = np.empty(len(places.share))
     for n in range(len(out)):
         i = places.interval[n]
@@ -123,13 +123,13 @@ def _fill(
     regions: Array,
     u: Array,
     local: Array,
-    window: tuple[GridPlaces, GridPlaces],
+    window: tuple[GridPositions, GridPositions],
     trial: tuple[float, float, float],
 ) -> None:
-    """Writes the two regions of a trial (F, f, h): with (t - alpha) nu bounded by the clamp, and bounded by
-    the drag.
+    """Writes the two regions (a, c) of a trial (F, f, h): (t - alpha) nu is bounded by the clamp, and by the
+    drag.
 
-    window: places of u - h and u + h among the points of the arm.
+    window: positions of u - h and of u + h among the points u of the arm.
     """
     F, f, h = trial
     count = len(u)
@@ -167,11 +167,11 @@ def _fill(
 
 @compiled
 def _averaged(
-    u: Array, log_t: Array, integral: Array, window: tuple[GridPlaces, GridPlaces], h: float
+    u: Array, log_t: Array, integral: Array, window: tuple[GridPositions, GridPositions], h: float
 ) -> tuple[Array, Array, Array]:
     """(log t at u - h, log t at u + h, 2 h times the mean of log t over [u - h, u + h]), (points,) each.
 
-    integral: integral of log t from the first point, (points,).
+    integral: integral of log t from the first point to every point, (points,).
     """
     behind = _interpolated(window[0], log_t)
     ahead = _interpolated(window[1], log_t)
@@ -183,7 +183,8 @@ def _averaged(
 
 @compiled
 def squared_norm(A2: float, B2: float, e: float, drag: float) -> float:
-    """The squared norm of [[A, B], [e/sqrt(drag), 0]]; inf where there is no drag."""
+    """Squared norm of the matrix [[A, B], [e/sqrt(drag), 0]]; A2 = A^2, B2 = B^2; inf if drag = 0 and e !=
+    0."""
     if e == 0:
         return A2 + B2
     if drag == 0:

@@ -1,4 +1,5 @@
-"""A convex region that contains every transverse eigenvalue of an arm with profiles and any law.
+"""The hull of an arm: a convex region that contains all transverse eigenvalues, for any profiles and material
+law.
 
 Testing the eigenproblem with alpha(u) y* and theta*, alpha > 0 continuous, gives with N^2 = int alpha gamma2
 |y|^2 + gamma3 |theta|^2 and n^2 N^2 = int alpha c2 |s|^2 + c3 |m|^2
@@ -9,8 +10,8 @@ The last three terms are at most a n N^2, where a is the largest norm of the mat
 
     [[alpha'/(alpha sqrt(gamma2 c2)), F sqrt(alpha c3/gamma2)], [(g - alpha nu)/sqrt(gamma3 alpha c2), 0]]
 
-along the arm. Where gamma3 is small the term with theta is better bounded by theta(0) = 0: it is at most
-c n^2 N^2 with 4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du. Both give, for some n >= 0,
+along the arm. Where gamma3 is small the term with theta is better bounded by theta(0) = 0: it is at most c
+n^2 N^2 with 4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du. Both give, for some n >= 0,
 
     Re w <= a n - (1 - c) n^2,   |Im w| <= a n + c n^2,
 
@@ -18,7 +19,8 @@ a convex region bounded by a parabola. Of several alpha the one with the smalles
 = g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) the region of a uniform rod is that of
 `rodsweep.determinant.certificate.box`.
 
-Extremes along the arm are looked up at points between the breaks, with `HULL.margin` for those between.
+Extremes along the arm are evaluated at points between the breaks, and `HULL.margin` allows for the arm
+between these points.
 """
 
 from collections.abc import Sequence
@@ -38,32 +40,32 @@ from .weights import clamp_integrals, constant_weights, least_squared_norm, vary
 
 
 def hull_of(rod: Rod) -> Hull:
-    """The smallest known region that contains the spectrum of the arm; `NO_BOUND` without a bound."""
+    """The smallest hull found for the spectrum of an arm; `NO_BOUND` without a bound."""
     return _hull(_arms([rod]))
 
 
-def hulls_along(rods: Sequence[Rod], places: Array) -> PathHulls:
-    """The regions for all arms between neighbouring places of a path, (k,); rods: the arms at the places.
+def hulls_along(rods: Sequence[Rod], p: Array) -> PathHulls:
+    """The hulls of all arms of a path between neighbouring values of p, (k,); rods: the arms at these values.
 
-    Extremes along the path are evaluated at the places only, like those along an arm at its points;
-    `HULL.margin` allows for the arms between.
+    Extremes along the path are evaluated at these values only; `HULL.margin` allows for the arms between.
     """
     arms = _arms(rods)
     hulls = [_hull(_part(arms, slice(i, i + 2))) for i in range(len(rods) - 1)]
-    return PathHulls(places, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
+    return PathHulls(p, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
 
 
 def _hull(arms: "SampledArms") -> Hull:
-    largest = 1 - HULL.least_remainder
+    largest = 1 - HULL.min_remainder
     a, c = _smallest(arms.F, arms.lengths, arms.local, arms.averaged, _chebyshev(), largest)
     return Hull((1 + HULL.margin) * a, c) if isfinite(a) else NO_BOUND
 
 
 class SampledArms(NamedTuple):
-    """n arms: F, (n,); lengths of the smooth pieces, (pieces,); coefficients, (6, n, pieces, points).
+    """Coefficients of n arms of one build at Chebyshev points, from which hulls are computed.
 
-    The points of a piece are its Chebyshev points, with increasing u. averaged: `averaged_regions` of each,
-    (n, trials, 2), inf for an arm that allows none, without trials for arms without jumps.
+    F: forces, (n,). lengths: of the intervals between breaks, (pieces,). local: coefficients,
+    (6, n, pieces, points), with increasing u. averaged: `averaged_regions` of each arm, (n, trials, 2), inf
+    for an arm that allows none; (n, 0, 2) for arms without jumps.
     """
 
     F: Array
@@ -81,38 +83,40 @@ def _arms(rods: Sequence[Rod]) -> SampledArms:
     return SampledArms(F, lengths, local, averaged)
 
 
-@lru_cache(maxsize=HULL.builds_kept)
+@lru_cache(maxsize=HULL.max_builds)
 def _points_of(build: Build) -> tuple[Array, Array]:
-    """Lengths of the smooth pieces of arms, (pieces,), and points in them, (pieces, points)."""
-    x = (1 - 2 * HULL.inside) * _chebyshev().points
+    """(lengths of the intervals between breaks, (pieces,); Chebyshev points u in these, (pieces, points))."""
+    x = (1 - 2 * HULL.end_distance) * _chebyshev().points
     lengths = np.diff(build.breaks)
     u = build.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
-    return lengths * (1 - 2 * HULL.inside), u
+    return lengths * (1 - 2 * HULL.end_distance), u
 
 
 def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:
-    """`averaged_regions` of each arm with jumps, (n, trials, 2), inf for an arm without c2 > 0 and g > 0."""
+    """`averaged_regions` of each arm with jumps, (n, trials, 2); inf for an arm without c2 > 0 and g > 0
+    everywhere.
+    """
     starts = np.cumsum(lengths) - lengths
-    x = (1 - 2 * HULL.inside) * _chebyshev().points
+    x = (1 - 2 * HULL.end_distance) * _chebyshev().points
     u = (starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
     along = local.reshape(6, len(F), -1)
-    regions = np.full((len(F), AVERAGED_WEIGHT.trials, 2), inf)
+    regions = np.full((len(F), AVERAGED_WEIGHT.trial_count, 2), inf)
     for i in np.flatnonzero(((along[5] > 0) & (along[1] > 0)).all(axis=1)).tolist():
         regions[i] = averaged_regions(u, along[:, i], float(F[i]))
     return regions
 
 
 def _part(arms: SampledArms, chosen: slice) -> SampledArms:
-    """The arms with the indices `chosen`."""
+    """The samples of the arms with the indices `chosen`."""
     local = np.ascontiguousarray(arms.local[:, chosen])
     return arms._replace(F=arms.F[chosen], local=local, averaged=arms.averaged[chosen])
 
 
 class ChebyshevMatrices(NamedTuple):
-    """Chebyshev points in [-1, 1], (points,), and the matrices that differentiate and integrate the
+    """Chebyshev points in [-1, 1], (points,), and the matrices that differentiate and integrate an
     interpolant.
 
-    derivative, integral: from values at the points to values at the points, (points, points); integrals start
+    derivative, integral: from values at the points to values at the points, (points, points). Integrals start
     at -1.
     """
 
@@ -136,9 +140,10 @@ def _chebyshev() -> ChebyshevMatrices:
 def _smallest(
     F: Array, lengths: Array, local: Array, averaged: Array, chebyshev: ChebyshevMatrices, largest: float
 ) -> tuple[float, float]:
-    """(a, c) of the smallest region of all arms, without the margin of a; inf without a bound.
+    """(a, c) of the smallest region that contains the spectra of all arms, without the margin of a; inf
+    without a bound.
 
-    largest: bound of c.
+    largest: bound of c. averaged: as in `SampledArms`.
     """
     nu, c2, c3, gamma2, gamma3, g = local
     push = 0.0
@@ -168,12 +173,12 @@ def _smallest(
 
 @compiled
 def _smaller(best: tuple[float, float], other: tuple[float, float], largest: float) -> tuple[float, float]:
-    """The smaller of two regions (a, c), by the measure a^2 (1 + (c/wide)^4).
+    """The smaller of two regions (a, c), by the measure a^2 (1 + (c/HULL.wide_c)^4).
 
-    A region with c above `largest` is never chosen.
+    A region with c >= `largest` is never chosen.
     """
     if not other[1] < largest:
         return best
-    here = best[0] ** 2 * (1 + (best[1] / HULL.wide) ** 4)
-    there = other[0] ** 2 * (1 + (other[1] / HULL.wide) ** 4)
+    here = best[0] ** 2 * (1 + (best[1] / HULL.wide_c) ** 4)
+    there = other[0] ** 2 * (1 + (other[1] / HULL.wide_c) ** 4)
     return other if there < here else best

@@ -1,4 +1,4 @@
-"""Convex regions, bounded by a parabola, that contain the spectrum of an arm."""
+"""The hull of an arm: a convex region of w, bounded by a parabola, that contains all eigenvalues."""
 
 from dataclasses import dataclass
 from math import inf, isfinite, sqrt
@@ -12,45 +12,50 @@ from ...certificate.box import BOX
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HullSettings(CompiledSettings):
-    """Settings for the points and weights from which a region is computed."""
+    """Settings for the points and the weights alpha from which a hull is computed."""
 
     points: int = 25
-    """Chebyshev points of each smooth piece, where coefficients are looked up and alpha is differentiated."""
+    """Number of Chebyshev points of each interval between breaks of the profile, where coefficients are
+    evaluated and alpha is differentiated."""
     margin: float = 0.05
-    """Relative excess of a, for extremes between the points and for rounding."""
-    inside: float = 1e-9
-    """Distance of the first and last point from the ends of a piece, in units of the piece's length."""
-    least_remainder: float = 0.1
-    """Least 1 - c: the region grows beyond use where c approaches 1."""
-    wide: float = 0.15
-    """Smallest c of a region that counts as wide for every a."""
-    weights: int = 41
-    """Number of constant weights alpha to try, between the smallest and the largest g/nu."""
-    least_ratio: float = 1e-3
-    """Smallest |g/nu| that is tried as a constant weight."""
-    directions: int = 48
-    """Number of normals of the region to try for the distance of a point."""
-    builds_kept: int = 16
-    """Builds whose points are kept: a bound of memory, which changes no number."""
-    middles: tuple[float, ...] = (0.0, 0.5, 1.0)
-    """Trial factors of |F| sqrt(c2 c3 gamma3/gamma2) in alpha."""
+    """Relative excess of the constants of a hull, for extremes between the points and for rounding."""
+    end_distance: float = 1e-9
+    """Distance of the first and last Chebyshev point from the ends of an interval between breaks, over its
+    length, so that no point lies on a jump."""
+    min_remainder: float = 0.1
+    """Least 1 - c of a hull; hulls with c closer to 1 are too large to be useful."""
+    wide_c: float = 0.15
+    """Value of c at which the measure a^2 (1 + (c/wide_c)^4), by which the smallest hull is chosen, is twice
+    that of c = 0."""
+    constant_weights: int = 41
+    """Number of constant weights alpha tried, from the smallest to the largest |g/nu| along the arm."""
+    min_weight: float = 1e-3
+    """Smallest constant weight alpha tried, if |g/nu| is smaller somewhere."""
+    supporting_lines: int = 48
+    """Number of supporting lines of the hull tried for the distance of a point w from the hull."""
+    max_builds: int = 16
+    """Maximum number of builds whose points are cached: it bounds the memory and changes no number."""
+    weight_factors: tuple[float, ...] = (0.0, 0.5, 1.0)
+    """Factors of |F| sqrt(c2 c3 gamma3/gamma2) in the varying weights alpha that are tried."""
 
 
 HULL = HullSettings()
 
 
 class Hull(NamedTuple):
-    """Parabolic region that contains all eigenvalues: Re w <= a n - (1 - c) n^2, |Im w| <= a n + c n^2 for
-    some n >= 0.
+    """Region that contains all eigenvalues: Re w <= a n - (1 - c) n^2 and |Im w| <= a n + c n^2 for some n >=
+    0.
 
-    a = inf if no bound is known.
+    a = inf if no bound exists.
     """
 
     a: float
     c: float
 
     def box(self, depth: float = 0.0) -> tuple[float, float]:
-        """(max Re w, max |Im w|) of the eigenvalues with Re w >= -depth, depth >= 0."""
+        """Bounds (max Re w, max |Im w|) of all points of the hull with Re w >= -depth, depth >= 0; inf
+        without a bound.
+        """
         a = self.a
         b = 1 - self.c
         if not isfinite(a):
@@ -62,21 +67,22 @@ class Hull(NamedTuple):
 
 
 NO_BOUND = Hull(inf, 0.0)
-"""The whole plane, when no bound applies."""
+"""The whole plane of w, for an arm whose eigenvalues have no a-priori bound."""
 
 
 @compiled
 def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
-    """(distance, normal): lower bound of the distance of w, Im w >= 0, from the hull; unit normal towards w.
+    """(distance, normal): lower bound of the distance of w from the hull, Im w >= 0, and a unit normal
+    towards w.
 
     The distance is at most 0 for w inside. <normal, w - v> >= distance for every v in the hull.
     """
     b = 1 - c
     best = -inf
     normal = 1 + 0j
-    for k in range(HULL.directions):
+    for k in range(HULL.supporting_lines):
         # Close to the imaginary axis the support function grows without bound.
-        T = (k / (HULL.directions - k)) ** 2
+        T = (k / (HULL.supporting_lines - k)) ** 2
         if not c * T < b:
             break
         size = sqrt(1 + T * T)
@@ -89,21 +95,20 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
 
 
 class PathHulls(NamedTuple):
-    """Regions for all arms of a path, one region for each interval between neighbouring places.
+    """Hulls of all arms of a path: each hull holds for every p between two neighbouring values of p.
 
-    places: increasing values of the path variable, (k,). a, c: constants of `Hull` for each interval, (k -
-    1,).
+    p: increasing values of the path variable, (k,). a, c: constants of `Hull`, (k - 1,).
     """
 
-    places: Array
+    p: Array
     a: Array
     c: Array
 
 
 @compiled
 def hull_at(hulls: PathHulls, p: float) -> Hull:
-    """The region for the arm at p, between the first and the last place."""
+    """The hull of the arm at p, which lies between the first and the last of `hulls.p`."""
     i = 0
-    while i < len(hulls.a) - 1 and p > hulls.places[i + 1]:
+    while i < len(hulls.a) - 1 and p > hulls.p[i + 1]:
         i += 1
     return Hull(hulls.a[i], hulls.c[i])

@@ -1,4 +1,6 @@
-"""Norms for the regions of `rodsweep.determinant.arm.hull.hull`, from constant or smooth weights alpha."""
+"""Bounds for the hull of `rodsweep.determinant.arm.hull.hull`, from constant or smoothly varying weights
+alpha.
+"""
 
 from math import exp, inf, log, sqrt
 
@@ -12,11 +14,11 @@ from .region import HULL
 
 @compiled
 def least_squared_norm(alphas: Array, local: Array, push: float) -> float:
-    """The smallest a^2, over the constant weights alpha to try, (n,): the squared norm of the matrix along
-    all arms.
+    """The smallest a^2, over the constant weights alpha, (n,): a is the largest norm of the hull's matrix
+    along all arms.
 
-    The matrix is given in `rodsweep.determinant.arm.hull.hull`. local: coefficients at all points, (6,
-    points). push: the largest F^2 c3/gamma2.
+    The matrix is given in `rodsweep.determinant.arm.hull.hull`. local: coefficients at all points,
+    (6, points). push: the largest F^2 c3/gamma2.
     """
     least = inf
     for alpha in alphas:
@@ -35,34 +37,38 @@ def least_squared_norm(alphas: Array, local: Array, push: float) -> float:
 
 @compiled
 def constant_weights(local: Array) -> Array:
-    """Constant alpha that are tried, (HULL.weights + 1,): between the extremes of g/nu along arms, and 1."""
+    """Constant weights alpha to try, (HULL.constant_weights + 1,): from the smallest to the largest |g/nu|
+    along the arms, and 1.
+
+    local: coefficients, (6, n, pieces, points).
+    """
     ratio = np.abs(local[5] / local[0])
-    start = log(max(ratio.min(), HULL.least_ratio))
-    stop = log(max(ratio.max(), 2 * HULL.least_ratio))
-    alphas = np.ones(HULL.weights + 1)
-    for k in range(HULL.weights):
-        alphas[k] = exp(start + (stop - start) * k / (HULL.weights - 1))
+    start = log(max(ratio.min(), HULL.min_weight))
+    stop = log(max(ratio.max(), 2 * HULL.min_weight))
+    alphas = np.ones(HULL.constant_weights + 1)
+    for k in range(HULL.constant_weights):
+        alphas[k] = exp(start + (stop - start) * k / (HULL.constant_weights - 1))
     return alphas
 
 
 @compiled
 def varying_weight_norms(F: Array, lengths: Array, local: Array, derivative: Array) -> Array:
-    """The largest a^2 along all arms for each of the weights alpha(u) = g/(nu + middle |F| sqrt(c2 c3
-    gamma3/gamma2)) with a factor of `HULL.middles`.
+    """a^2 of each weight alpha(u) = g/(nu + f |F| sqrt(c2 c3 gamma3/gamma2)), f from `HULL.weight_factors`:
+    the largest squared norm of the hull's matrix along all arms, (middles,).
 
     F: (n,). lengths: (pieces,). local: coefficients, (6, n, pieces, points). derivative: (points, points),
     from `ChebyshevMatrices`.
     """
-    found = np.zeros(len(HULL.middles))
+    found = np.zeros(len(HULL.weight_factors))
     points = local.shape[3]
     level = np.empty(points)
     log_alpha = np.empty(points)
-    for m in range(len(HULL.middles)):
+    for m in range(len(HULL.weight_factors)):
         for arm in range(len(F)):
             for piece in range(len(lengths)):
                 for i in range(points):
                     nu, c2, c3, gamma2, gamma3, g = local[:, arm, piece, i]
-                    level[i] = HULL.middles[m] * abs(F[arm]) * sqrt(c2 * c3 * gamma3 / gamma2)
+                    level[i] = HULL.weight_factors[m] * abs(F[arm]) * sqrt(c2 * c3 * gamma3 / gamma2)
                     log_alpha[i] = log(g / (nu + level[i]))
                 for i in range(points):
                     nu, c2, c3, gamma2, gamma3, g = local[:, arm, piece, i]
@@ -77,8 +83,8 @@ def varying_weight_norms(F: Array, lengths: Array, local: Array, derivative: Arr
 
 @compiled
 def clamp_integrals(alphas: Array, F: Array, lengths: Array, local: Array, integral: Array) -> Array:
-    """The largest 4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du over the arms, for each constant
-    alpha, (alphas,).
+    """4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du, largest of all arms, for each constant alpha,
+    (alphas,).
 
     c bounds the term with theta by the clamp theta(0) = 0, without rotational drag
     (`rodsweep.determinant.arm.hull.hull`). local: coefficients, (6, n, pieces, points). integral: from

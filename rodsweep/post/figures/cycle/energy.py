@@ -55,12 +55,12 @@ def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
 
 def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     """Draws the three panels of a cycle."""
-    from ....discretization.elements.periodic import resampled, time_derivative  # compiled code
+    from ....discretization.elements.periodic import interpolate_samples, time_derivative  # compiled code
 
     top, middle, bottom = column
     phase = np.linspace(0, 1, 401, dtype=np.float64)
     time = phase * cycle.period
-    energy, injection, dissipation = (resampled(cycle.values[name], phase) for name in ENERGIES)
+    energy, injection, dissipation = (interpolate_samples(cycle.values[name], phase) for name in ENERGIES)
     top.plot(time, energy, color="k", lw=1.5)
     mean = float(cycle.values["injection_mean"])
     middle.axhline(mean, color="0.6", lw=0.9, ls=":", label="mean injection", zorder=1)
@@ -69,7 +69,11 @@ def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     bottom.axhline(0, color="0.8", lw=0.6, zorder=0)
     bottom.plot(time, injection - dissipation, color=THIRD, lw=1.5, label=r"injection $-$ dissipation")
     at = np.arange(RATE_MARK_COUNT) / RATE_MARK_COUNT
-    rate = resampled(time_derivative(cycle.values["energy"]), at) / cycle.period * cycle.units.power_of_rate
+    rate = (
+        interpolate_samples(time_derivative(cycle.values["energy"]), at)
+        / cycle.period
+        * cycle.units.power_of_rate
+    )
     bottom.plot(at * cycle.period, rate, "o", color="k", mfc="none", ms=3.5, label="derivative of $U$")
     bottom.set_xlabel(cycle.units.time_label)
     bottom.set_xlim(0, cycle.period)

@@ -140,10 +140,14 @@ def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step
 
 def draw_tip_path(axes: Axes, cycle: StoredCycle) -> None:
     """Draws the closed path of the tip."""
-    from ....discretization.elements.periodic import resampled  # compiled code, which few figures need
+    from ....discretization.elements.periodic import (
+        interpolate_samples,  # compiled code, which few figures need
+    )
 
     phase = np.linspace(0, 1, 401, dtype=np.float64)
-    axes.plot(*(resampled(v, phase) for v in cycle.tip), color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1)
+    axes.plot(
+        *(interpolate_samples(v, phase) for v in cycle.tip), color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1
+    )
 
 
 def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, length: float) -> Quiver:
@@ -194,11 +198,13 @@ def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[fl
 
 def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
     """Draws x and y of the tip over time, with a second axis in tau1 if the rod has this time scale."""
-    from ....discretization.elements.periodic import resampled  # compiled code, which few figures need
+    from ....discretization.elements.periodic import (
+        interpolate_samples,  # compiled code, which few figures need
+    )
 
     time = np.linspace(0, end, 801, dtype=np.float64)
     for axes, values, colour in zip((upper, lower), cycle.tip, (FIRST, SECOND), strict=True):
-        axes.plot(time, resampled(values, time / cycle.period), color=colour, lw=1.4)
+        axes.plot(time, interpolate_samples(values, time / cycle.period), color=colour, lw=1.4)
         if len(values) < FEW_SAMPLES:
             at = np.arange(int(end / cycle.period * len(values)) + 1)
             axes.plot(at * cycle.period / len(values), values[at % len(values)], "o", color=colour, ms=2.5)

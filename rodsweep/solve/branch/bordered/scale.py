@@ -64,9 +64,9 @@ def deflection_row(orbit: Orbit) -> Array:
     return _deflection_row(form.layout, form.mesh, form.rod.build)
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.max_meshes)
 def _deflection_row(layout: StateLayout, mesh: Mesh, build: Build) -> Array:
     """`deflection_row`, (n,), shared by all callers and not to be changed."""
     # Small deflection at the tip: the curvature at u acts with the lever 1 - u. Tip values drop out.
     weights = mesh.quadrature * profile_compliance_on(build, mesh)
-    return layout.row({"m3": weights[:-1] * (1 - mesh.positions[:-1])})
+    return layout.vector({"m3": weights[:-1] * (1 - mesh.positions[:-1])})

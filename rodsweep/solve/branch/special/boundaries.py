@@ -199,7 +199,7 @@ def _traced(
     special: Sequence[RowSpecial],
 ) -> TracedHalf:
     """Half a curve from a special point of a row; the field `half` is None if no curve is found."""
-    width = abs(limits.line.stretch(one.at))
+    width = abs(limits.line.parameter_slope(one.at))
     same = [
         point
         for point in located

@@ -6,8 +6,8 @@ from math import inf
 import numpy as np
 
 from ....arrays import Array, Complex
-from ....discretization.element_strains import place_before
-from ....discretization.elements.periodic import maxima, samples_of
+from ....discretization.element_strains import index_before_jump
+from ....discretization.elements.periodic import maxima, series_samples
 from ...orbit.measures import CyclePath
 from ...orbit.orbit import Orbit
 from ..arc import ArcPoint
@@ -63,12 +63,12 @@ def least_stretch(path: CyclePath, enough: float = inf) -> float:
 
     def least_of(coefficients: Complex) -> Array:
         at = -np.ascontiguousarray(coefficients)
-        return -maxima(at, samples_of(at, LEAST_STRETCH.times_per_harmonic * len(c)))
+        return -maxima(at, series_samples(at, LEAST_STRETCH.times_per_harmonic * len(c)))
 
     def least(u: Array) -> Array:
         return least_of(c @ grid.evaluation_by_element(u).T)
 
-    before = [place_before(int(node), grid.order) for node in form.nodal.jumps]
+    before = [index_before_jump(int(node), grid.order) for node in form.nodal.jumps]
     at_jumps = float(least_of(c[:, before + [place + 1 for place in before]]).min(initial=inf))
     places = np.linspace(0.0, 1.0, LEAST_STRETCH.places_per_node * len(grid.positions))
     values = least(places)

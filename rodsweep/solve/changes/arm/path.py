@@ -8,11 +8,11 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....determinant.arm.along_path import ArmAlongPath
-from ....determinant.arm.count.beside_axis import modes_beside_axis
+from ....determinant.arm.count.beside_axis import modes_near_axis
 from ....determinant.arm.determinant import arm_determinant
 from ....determinant.arm.family import ArmFamily, family_of
 from ....determinant.arm.hull.hull import hull_of
-from ....determinant.certificate.winding_number import Count
+from ....determinant.certificate.winding_number import EigenvalueCount
 from ....determinant.parameter_path import Path
 from ....determinant.roots.newton import LocatedZero
 from ....model.dispersion import sampled
@@ -148,9 +148,9 @@ class ArmPath(PathProblem):
         return self._along.eigenvalue(guess, p) if known is None else (guess, *known)
 
     def double(self, x: float, p: float, reach: float) -> LocatedZero:
-        return self._along.double(x, p, reach)
+        return self._along.double_eigenvalue(x, p, reach)
 
-    def count(self, line: float, p: float) -> Count:
+    def count(self, line: float, p: float) -> EigenvalueCount:
         found = self.followed(p, ARM_PATH.followed_modes)
         if found is not None:
             w = found.eigenvalues
@@ -158,9 +158,9 @@ class ArmPath(PathProblem):
             clear = (np.abs(w.real - line) > 2 * error).all()
             # The followed modes are complete down to the last of them, so counting them is a proof.
             if clear and w[-1].real < line <= 0:
-                return Count(int((w.real > line).sum()), 0)
+                return EigenvalueCount(int((w.real > line).sum()), 0)
             if clear and line == 0 and found.unstable_count < ARM_PATH.followed_modes:
-                return Count(found.unstable_count, 0)
+                return EigenvalueCount(found.unstable_count, 0)
         known = self._followed.roots(p) if self._followed is not None else None
         return ArmProblem(self.path.at(p)).count(line, known)
 
@@ -184,7 +184,7 @@ class ArmPath(PathProblem):
         known: some of them, (k,), which come first. Raises FloatingPointError if no elements resolve the arm.
         """
         rod = self.path.at(p)
-        return modes_beside_axis(arm_determinant(rod), min(highest, hull_of(rod).box()[1]), known)
+        return modes_near_axis(arm_determinant(rod), min(highest, hull_of(rod).box()[1]), known)
 
     def relaxation(self, p: float) -> tuple[float, float]:
         return 1.0, 0.0

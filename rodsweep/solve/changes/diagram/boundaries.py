@@ -138,10 +138,10 @@ def _at_height(boundary: Boundary, a: Array, b: Array, y: float) -> Array | None
         guess = a + share * (b - a)
         level = guess.copy()
         level[1] = y
-        there = boundary.corrected(level, np.eye(3)[1])
+        there = boundary.point_near(level, np.eye(3)[1])
         if there is not None:
             return there.v
-        there = boundary.corrected(guess, (b - a) / np.linalg.norm(b - a))
+        there = boundary.point_near(guess, (b - a) / np.linalg.norm(b - a))
         if there is None:
             return None
         a, b = (there.v, b) if (there.v[1] - y) * (b[1] - y) <= 0 else (a, there.v)

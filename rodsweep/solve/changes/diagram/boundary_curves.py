@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....arrays import Array
-from ....determinant.boundary import Boundary, OnBoundary
+from ....determinant.boundary import Boundary, BoundarySolution
 from ....determinant.parameter_plane import Plane
 from ....watch import report
 from ...continuation.follower import CurveStop, follow, zero_along
@@ -105,7 +105,7 @@ def _fold(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: i
     boundary = curve.boundary
     noise = _tangent_noise(curve.boundary)
     chord = b.v - a.v
-    found = dict[float, OnBoundary]()
+    found = dict[float, BoundarySolution]()
     size = float(np.linalg.norm(chord))
 
     def component(length: float) -> float:
@@ -129,11 +129,11 @@ def _tangent_noise(boundary: Boundary) -> float:
     return CHANGE_CURVES.double_tangent if boundary.sign else CHANGE_CURVES.hopf_tangent
 
 
-def _as_fold(boundary: Boundary, there: OnBoundary, axis: int, along: float) -> Fold:
+def _as_fold(boundary: Boundary, there: BoundarySolution, axis: int, along: float) -> Fold:
     """The fold at a point of a boundary. along: error of the point in the direction of the curve."""
     axes = boundary.plane.axes
     first, second = (a.value(float(x)) for a, x in zip(axes, there.v[:2], strict=True))
-    units = [abs(a.stretch(x)) for a, x in zip(axes, (first, second), strict=True)]
+    units = [abs(a.parameter_slope(x)) for a, x in zip(axes, (first, second), strict=True)]
     # Along the curve the extremal coordinate is stationary at the fold, the other coordinate is not.
     errors = [unit * (there.error if i == axis else there.error + along) for i, unit in enumerate(units)]
     growth_rate, frequency = boundary.eigenvalue(there.v[2])

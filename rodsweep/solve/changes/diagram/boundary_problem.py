@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array
-from ....determinant.boundary import Boundary, OnBoundary
+from ....determinant.boundary import Boundary, BoundarySolution
 from ...continuation.follower import Curve, CurveStop, StepControl, StepResult
 from ...point import Unsolvable
 
@@ -67,7 +67,7 @@ class BoundaryPoint(NamedTuple):
     tangent: Array
 
     @classmethod
-    def on(cls, there: OnBoundary, way: Array) -> "BoundaryPoint":
+    def on(cls, there: BoundarySolution, way: Array) -> "BoundaryPoint":
         """A point of a boundary; the tangent is oriented to a side, (3,)."""
         tangent = there.tangent
         return cls(there.v, tangent if tangent @ way > 0 else -tangent)
@@ -86,9 +86,9 @@ class ChangeCurveProblem:
         # The turn of the tangent alone controls the step length.
         return StepResult(there, 0.0, float(there.tangent @ tangent))
 
-    def near(self, guess: Array, normal: Array) -> OnBoundary:
+    def near(self, guess: Array, normal: Array) -> BoundarySolution:
         """The point in the plane through a guess with a normal, both (3,); raises Unsolvable."""
-        there = self.boundary.corrected(guess, normal)
+        there = self.boundary.point_near(guess, normal)
         if there is None:
             raise Unsolvable("no point of the boundary is near")
         return there
@@ -98,7 +98,7 @@ class ChangeCurveProblem:
         x, y = map(float, point.v[:2])
         on_plane = 0 <= x <= 1 and 0 <= y <= 1
         # Outside the plane the parameters may describe no rod.
-        alive = 1.0 if not on_plane or self.boundary.plane.uncrushed(x, y) else -1.0
+        alive = 1.0 if not on_plane or self.boundary.plane.is_uncrushed(x, y) else -1.0
         return np.array([x, 1 - x, y, 1 - y, alive])
 
     def landed(
@@ -111,7 +111,7 @@ class ChangeCurveProblem:
         axis, limit = divmod(margin, 2)
         inner = behind[-1].v
         share = (limit - inner[axis]) / (outer.v[axis] - inner[axis])
-        found = self.boundary.corrected(inner + share * (outer.v - inner), np.eye(3)[axis])
+        found = self.boundary.point_near(inner + share * (outer.v - inner), np.eye(3)[axis])
         if (
             found is None
             or not -CHANGE_CURVES.beside_an_edge <= found.v[1 - axis] <= 1 + CHANGE_CURVES.beside_an_edge

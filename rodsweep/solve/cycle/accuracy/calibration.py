@@ -115,9 +115,7 @@ class Calibration:
         """The cheapest mesh that is expected to reach the accuracy."""
         present = self.mesh
         lowest = max(ORBIT_MESH.min_order, present.order - CALIBRATION.max_fewer_orders)
-        orders = np.arange(
-            lowest, min(RESOLUTION.largest_order, present.order + CALIBRATION.max_more_orders) + 1
-        )
+        orders = np.arange(lowest, min(RESOLUTION.max_order, present.order + CALIBRATION.max_more_orders) + 1)
         fewest = max(ORBIT_MESH.min_intervals, ceil(CALIBRATION.min_interval_ratio * present.intervals))
         most = min(CALIBRATION.max_interval_ratio * present.intervals, ORBIT_MESH.max_intervals)
         intervals = np.arange(fewest, most + 1)

@@ -40,7 +40,7 @@ RETURNS = ReturnSettings()
 
 def angle_weights(beam: Beam) -> Array:
     """Row c, shape (unknowns,), with c z = theta of the tip."""
-    return beam.layout.row({"m3": (beam.roots[2] * beam.mesh.quadrature)[:-1]})
+    return beam.layout.vector({"m3": (beam.sqrt_compliance[2] * beam.mesh.quadrature)[:-1]})
 
 
 def until_returns(row: Array, z: Array, wanted: int) -> RunLimit:

@@ -7,8 +7,8 @@ last row of this system is the phase condition.
 import numpy as np
 
 from ....arrays import Array, Complex
-from ....discretization.nodal_rod import NO_SIDE_CHANGE, NodalChange
-from ....discretization.state_layout import COMPONENTS, stress_place
+from ....discretization.nodal_rod import NO_JUMP_CHANGE, NodalChange
+from ....discretization.state_layout import PLANE_COMPONENTS, stress_index
 from ....discretization.stress.form import StressForm
 from ....model.compiled.compilation import compiled_for_vectors
 from ..orbit import Orbit
@@ -21,7 +21,7 @@ from .right_sides import ParameterDerivatives, residuals, right_sides, variation
 from .substitution import reduce, substitute, to_end
 from .workspace import Factors, MatrixMemory, NewtonWorkspace
 
-NO_CHANGE = NodalChange(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_SIDE_CHANGE)
+NO_CHANGE = NodalChange(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_JUMP_CHANGE)
 """Placeholder for no change of the rod, which compiled code never reads."""
 
 
@@ -71,7 +71,7 @@ def over_period(partial: Complex, orbit: Orbit) -> Complex:
 
 def change_along(form: StressForm, name: str) -> ParameterDerivatives:
     """Change of a rod and of its mass, (n,), with the coordinate of a parameter."""
-    change = form.change(name)
+    change = form.parameter_derivative(name)
     return ParameterDerivatives(change, form.mass_of(change))
 
 
@@ -89,7 +89,7 @@ def linearise(
     n = len(p.mass)
     points = values[:-1].reshape(1 + K * s, n)
     duration = values[-1] / p.parts
-    V = np.empty((K, s, COMPONENTS, len(p.matrices.weights)))
+    V = np.empty((K, s, PLANE_COMPONENTS, len(p.matrices.weights)))
     columns = np.empty((K, s, count, n))
     right_sides(points, duration, p, along, V, columns)
     ends = eliminate(points, V, duration, p, factors, columns)
@@ -229,14 +229,14 @@ def largest_change(values: Array, step: Array, unknowns: int, nodes: int) -> flo
         # NaN would be lost in the comparisons below.
         if not np.isfinite(change):
             return np.inf
-    most = np.zeros(COMPONENTS)
-    size = np.zeros(COMPONENTS)
+    most = np.zeros(PLANE_COMPONENTS)
+    size = np.zeros(PLANE_COMPONENTS)
     # From the first stage on: the state at the start is the last stage of the part before.
     for first in range(unknowns, len(values) - 1, unknowns):
-        for a in range(1, COMPONENTS):
+        for a in range(1, PLANE_COMPONENTS):
             for i in range(nodes):
-                at = first + stress_place(a, i, nodes)
+                at = first + stress_index(a, i, nodes)
                 most[a], size[a] = max(most[a], abs(step[at])), max(size[a], abs(values[at]))
-    for a in range(1, COMPONENTS):
+    for a in range(1, PLANE_COMPONENTS):
         largest = max(largest, most[a] / size[a])
     return largest

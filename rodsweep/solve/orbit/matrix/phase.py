@@ -9,7 +9,7 @@ from ....arrays import Array
 from ....discretization.elements.mesh import NodeMatrices
 from ....discretization.nodal_rod import NodalChange, NodalRod
 from ....discretization.plane import balance, balance_change, jacobian
-from ....discretization.state_layout import BENDING, COMPONENTS, stress_place
+from ....discretization.state_layout import BENDING_INDEX, PLANE_COMPONENTS, stress_index
 from ....model.compiled.compilation import compiled_for_vectors
 
 
@@ -53,7 +53,7 @@ def tip_angle(x: Array, compliance: Array, m: NodeMatrices) -> float:
     theta = 0.0
     nodes = len(m.weights) - 1
     for i in range(nodes):
-        theta += m.weights[i] * compliance[BENDING, i] * x[stress_place(BENDING, i, nodes)]
+        theta += m.weights[i] * compliance[BENDING_INDEX, i] * x[stress_index(BENDING_INDEX, i, nodes)]
     return theta
 
 
@@ -64,7 +64,7 @@ def phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> None:
     V = np.empty(c.drag.shape)
     G = np.empty(c.drag.shape)
     J = np.empty((n, n))
-    tip = np.empty((COMPONENTS, n))
+    tip = np.empty((PLANE_COMPONENTS, n))
     balance(start, V, G, c, m)
     jacobian(start, V, J, tip, c, m)
     theta = tip_angle(start, c.compliance, m)
@@ -75,5 +75,5 @@ def phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> None:
         row[i] = -(sin * tip[0, i] + cos * tip[1, i])
     for i in range(nodes):
         # theta is the integral of the curvature C m3, so each node turns the tip by its weight.
-        turn = m.weights[i] * c.compliance[BENDING, i]
-        row[stress_place(BENDING, i, nodes)] += (sin * G[1, nodes] - cos * G[0, nodes]) * turn
+        turn = m.weights[i] * c.compliance[BENDING_INDEX, i]
+        row[stress_index(BENDING_INDEX, i, nodes)] += (sin * G[1, nodes] - cos * G[0, nodes]) * turn

@@ -7,7 +7,7 @@ import numpy as np
 from ....arrays import Array
 from ....discretization.nodal_rod import NodalChange
 from ....discretization.plane import balance, balance_change, jacobian, velocity_balance
-from ....discretization.state_layout import stress_place, velocity_place
+from ....discretization.state_layout import stress_index, velocity_index
 from ....model.compiled.compilation import compiled_for_vectors
 from ..semidiscrete import Semidiscrete
 from .substitution import add_products
@@ -27,7 +27,7 @@ def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
     """
     balance(x, V, G, p.rod, p.matrices)
     _store_stresses(G, F)
-    if len(p.rod.kept):
+    if len(p.rod.unknown_velocities):
         velocity_balance(x, F, p.rod, p.matrices)
 
 
@@ -38,7 +38,7 @@ def _store_stresses(G: Array, F: Array) -> None:
     n = G.shape[1] - 1
     for a in range(d):
         for i in range(n):
-            F[stress_place(a, i, n)] = G[a, i]
+            F[stress_index(a, i, n)] = G[a, i]
 
 
 @compiled_for_vectors
@@ -50,9 +50,11 @@ def equations_change(x: Array, F: Array, V: Array, out: Array, change: NodalChan
     balance_change(x, V, out, change, p.rod, p.matrices)
     _store_stresses(out[2], F)
     d, size = V.shape
-    for k in range(len(p.rod.kept)):
+    for k in range(len(p.rod.unknown_velocities)):
         for i in range(size):
-            F[velocity_place(k, i, d, size - 1)] = p.matrices.weights[i] * out[0, p.rod.kept[k], i]
+            F[velocity_index(k, i, d, size - 1)] = (
+                p.matrices.weights[i] * out[0, p.rod.unknown_velocities[k], i]
+            )
 
 
 @compiled_for_vectors

@@ -1,1 +1,1 @@
-"""Spectra along a path in one parameter: followed, predicted, counted."""
+"""Spectra of rods along a path in one parameter: eigenvalues are predicted, followed and counted."""

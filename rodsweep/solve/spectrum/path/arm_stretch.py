@@ -1,140 +1,125 @@
-"""Spectra of arms at neighbouring points along a parameter: followed, and proved complete at each point.
+"""Spectra of arms at neighbouring values of one parameter: eigenvalues are followed, and proved complete at
+each arm.
 
-Krylov-Schur solves the first point for more modes than wanted: known modes beyond the line make the proof
-easy. The propagators of all arms are interpolated from a few arms (`rodsweep.determinant.arm.family`), on an
-interval short enough for smooth polynomials.
+Krylov-Schur solves the first arm for more modes than wanted, because eigenvalues known left of the line make
+the proof easy. The propagators of all arms are interpolated from those of a few
+(`rodsweep.determinant.arm.family`), on an interval short enough for smooth polynomials.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array, Complex
-from ....determinant.arm.completeness import COMPLETENESS, has_conjugate, none_is_missing, right_of_hull
+from ....determinant.arm.completeness import (
+    COMPLETENESS,
+    has_conjugate,
+    none_is_missing,
+    points_right_of_hull,
+)
 from ....determinant.arm.count.count import count_right_of
 from ....determinant.arm.determinant import ArmDeterminant, arm_determinant
-from ....determinant.arm.family import ArmFamily, family_of, is_smooth, level_at
+from ....determinant.arm.family import ArmFamily, family_of, is_smooth, propagators_in_family
 from ....determinant.arm.hull.hull import hulls_along
 from ....determinant.arm.hull.region import PathHulls, hull_at
 from ....determinant.parameter_path import Path
 from ....determinant.roots.roots import Roots
 from ...backend.kept import forget_all
 from ...point import FAILURES
-from ..candidates import line_of_proof, lines_of_count
+from ..candidates import line_for_proof, lines_for_count
 from ..search import Search
 from ..spectrum import FollowedPoints, SpectrumRequest
-from .arm_following import follow_arms
-from .carried_count import judge_points, leading
-from .prediction import Track, part_of_track, track_from
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ArmStretchSettings:
-    """Settings for arms along a path: followed modes, families of arms, and their hulls."""
-
-    further_modes: tuple[int, ...] = (3, 9)
-    """Numbers of modes followed beyond the wanted ones; the larger if too few points are proved."""
-    proved_enough: float = 0.5
-    """Fraction of points proved complete below which more modes are followed, if they prove a point."""
-    headroom: float = 2.0
-    """Largest |w| of the propagators, in units of the largest |w| of the first point."""
-    reused_headroom: float = 1.25
-    """`headroom` of propagators of an earlier interval."""
-    points_growth: int = 2
-    """Largest number of points for which a family is tried, in units of those reached by the last."""
-    fewest_points: int = 4
-    """Minimum number of points of a family of arms."""
-    accuracy: float = 1e-8
-    """Relative accuracy of eigenvalues along a path."""
-    modes_beyond_growing: int = 2
-    """Modes beyond the growing ones that a search for crossings asks for."""
-    steps_from_nearest: tuple[int, ...] = (1, 4)
-    """Numbers of steps tried from the nearest point of the path to a point between."""
-    hull_arms: int = 7
-    """Number of arms of an interval from which the hulls of all arms between are interpolated."""
-
-
-ARM_STRETCH = ArmStretchSettings()
+from .arm_following import follow_eigenvalues_of_arms
+from .arm_stretch_settings import ARM_STRETCH
+from .carried_count import assess_points, leading_eigenvalues
+from .prediction import Track, slice_track, start_track
 
 
 class ArmInterval(NamedTuple):
-    """Points of a path, (n,), followed with one family of arms; track and `known` as in `follow_arms`.
+    """Points p of a path, (n,), whose eigenvalues were followed with one family of arms.
 
-    arms: number of points inside the family, of which `p` are followed. further: modes beyond the wanted.
+    track: as in `follow_eigenvalues_of_arms`. proved_modes: number of leading modes proved complete at each
+    point, (n,). arm_count: number of given points inside the family, of which the first n were reached.
+    further_modes: number of modes followed beyond the wanted modes.
     """
 
     p: Array
     track: Track
-    known: NDArray[np.int64]
+    proved_modes: NDArray[np.int64]
     family: ArmFamily
     hulls: PathHulls
-    arms: int
-    further: int
+    arm_count: int
+    further_modes: int
 
-    def proved(self, modes: int) -> int:
-        """Number of points at which `modes` leading modes are proved complete."""
-        return int((self.known >= modes).sum())
+    def proved_points(self, modes: int) -> int:
+        """Number of points at which at least `modes` leading modes are proved complete."""
+        return int((self.proved_modes >= modes).sum())
 
 
-def followed_arms(path: Path, p: Array, request: SpectrumRequest) -> FollowedPoints | None:
-    """Spectra at the points p, (n,), up to the last one reached from the first; None if none is reached."""
-    found = interval_of(path, p, request)
+def follow_stretch_of_arms(path: Path, p: Array, request: SpectrumRequest) -> FollowedPoints | None:
+    """Spectra of the arms at p, (n,), from the first up to the last point reached; None if none is
+    reached."""
+    found = follow_interval(path, p, request)
     if found is None:
         return None
-    for i in np.flatnonzero(found.known < request.modes).tolist():
-        here = part_of_track(found.track, i, i + 1)
-        found.known[i] = counted(path, found, float(found.p[i]), request.modes, here)
-    good, unstable = judge_points(found.track, found.known, request.modes, request.accuracy)
-    return FollowedPoints(*leading(found.track, request.modes), unstable, good)
+    for i in np.flatnonzero(found.proved_modes < request.modes).tolist():
+        here = slice_track(found.track, i, i + 1)
+        found.proved_modes[i] = count_at(path, found, float(found.p[i]), request.modes, here)
+    good, unstable = assess_points(found.track, found.proved_modes, request.modes, request.accuracy)
+    return FollowedPoints(*leading_eigenvalues(found.track, request.modes), unstable, good)
 
 
-def interval_of(
+def follow_interval(
     path: Path, p: Array, request: SpectrumRequest, before: ArmInterval | None = None
 ) -> ArmInterval | None:
-    """The points of p, (n,), that are reached with one family of arms; None if following fails at the first.
+    """The first points of p, (n,), that are reached with one family of arms; None if the first point fails.
 
-    If too few points are proved, more eigenvalues are followed. before: the previous interval of the path,
-    whose family serves again where it contains enough of the points.
+    If too few points are proved complete, more eigenvalues are followed. before: the previous interval of the
+    path, whose family is used again if it contains enough of the points.
     """
     best: ArmInterval | None = None
     for further in (
-        number for number in ARM_STRETCH.further_modes if before is None or number >= before.further
+        number for number in ARM_STRETCH.further_modes if before is None or number >= before.further_modes
     ):
         if best is not None and not (_too_few(best) or _proves_more(path, best, request, further)):
             break
-        found = _followed(path, p, request, further, before) if len(p) >= ARM_STRETCH.fewest_points else None
+        found = _followed(path, p, request, further, before) if len(p) >= ARM_STRETCH.min_points else None
         if found is not None and (best is None or _is_better(found, best, request.modes)):
             best = found
-        enough = best is not None and best.proved(request.modes) >= ARM_STRETCH.proved_enough * len(best.p)
+        enough = best is not None and best.proved_points(
+            request.modes
+        ) >= ARM_STRETCH.min_proved_fraction * len(best.p)
         if best is not None and enough and not _too_few(best):
             break
     return best
 
 
 def _too_few(found: ArmInterval) -> bool:
-    """Whether more modes grow somewhere than the followed modes could prove to be all growing modes."""
+    """Whether too few modes are followed to prove all growing modes complete at every point."""
     growing = (found.track.w.real > 0).sum(axis=1).max()
     return bool(growing + ARM_STRETCH.modes_beyond_growing > found.track.w.shape[1])
 
 
 def _is_better(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
-    """Whether `found` has more proved points, or as many and enough modes where `other` has too few."""
-    here = found.proved(modes)
-    there = other.proved(modes)
+    """Whether `found` has more proved points than `other`, or equally many where `other` follows too few
+    modes.
+    """
+    here = found.proved_points(modes)
+    there = other.proved_points(modes)
     return here > there or (here == there and _too_few(other))
 
 
 def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, further: int) -> bool:
-    """Whether `further` known modes would prove the middle one of the points that are not proved."""
-    left = np.flatnonzero(found.known < request.modes)
+    """Whether following `further` modes would prove the middle one of the points without a proof."""
+    left = np.flatnonzero(found.proved_modes < request.modes)
     p = float(found.p[left[len(left) // 2]])
     roots = _roots(path, p, request, further)
     if roots is None or len(roots.w) < request.modes:
         return False
     arm = arm_determinant(path.at(p))
-    line = line_of_proof(complex(roots.w[request.modes - 1]), float(roots.error[request.modes - 1]))
+    line = line_for_proof(complex(roots.w[request.modes - 1]), float(roots.error[request.modes - 1]))
     try:
         return none_is_missing(line, roots.w, roots.error, arm, hull_at(found.hulls, p))[0]
     except FloatingPointError:
@@ -144,7 +129,7 @@ def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, furth
 def _followed(
     path: Path, p: Array, request: SpectrumRequest, further: int, before: ArmInterval | None
 ) -> ArmInterval | None:
-    """`interval_of` with `further` modes in addition to the wanted modes."""
+    """`follow_interval` with exactly `further` modes followed beyond the wanted modes."""
     first = _carried(before, float(p[0]), request, further)
     if first is None:
         first = first_eigenvalues(path, float(p[0]), request, further)
@@ -153,35 +138,36 @@ def _followed(
     if first is not None and before is not None:
         inside = int(((p >= before.family.low) & (p <= before.family.high)).sum())
         if (
-            inside >= ARM_STRETCH.fewest_points
+            inside >= ARM_STRETCH.min_points
             and ARM_STRETCH.reused_headroom * np.abs(first).max() <= before.family.W
         ):
             made = (before.family, before.hulls)
             n = inside
         else:
-            n = min(n, max(ARM_STRETCH.points_growth * len(before.p), ARM_STRETCH.fewest_points))
-    while first is not None and made is None and n >= ARM_STRETCH.fewest_points:
-        made = arms_between(path, p[:n], first, request.modes)
+            n = min(n, max(ARM_STRETCH.max_points_growth * len(before.p), ARM_STRETCH.min_points))
+    while first is not None and made is None and n >= ARM_STRETCH.min_points:
+        made = family_and_hulls(path, p[:n], first, request.modes)
         # On half the interval the propagators need a lower degree.
         n = n if made is not None else n // 2
     if first is None or made is None:
         return None
     family, hulls = made
-    track = track_from(first, n)
+    track = start_track(first, n)
     known = np.zeros(n, np.int64)
-    reached = follow_arms(track, family, hulls, p[:n], request.modes, known)
+    reached = follow_eigenvalues_of_arms(track, family, hulls, p[:n], request.modes, known)
     if reached == 0:
         return None
-    arms = before.arms if before is not None and family is before.family else n
+    arms = before.arm_count if before is not None and family is before.family else n
     return ArmInterval(
-        p[:reached], part_of_track(track, 0, reached), known[:reached], family, hulls, arms, further
+        p[:reached], slice_track(track, 0, reached), known[:reached], family, hulls, arms, further
     )
 
 
-def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmFamily, PathHulls] | None:
-    """The family of the arms at points p, (n,), in order, and their hulls; None if no family exists.
+def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmFamily, PathHulls] | None:
+    """(family of the arms at all p, (n,); their hulls), or None.
 
-    first: eigenvalues at the first point, (m,), leading first.
+    first: eigenvalues at the first point, (m,), leading first. None if all p are equal, if the arms are not
+    smooth in p, or if no elements resolve an arm.
     """
     low = float(p.min())
     high = float(p.max())
@@ -195,7 +181,11 @@ def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmF
         W = ARM_STRETCH.headroom * float(np.abs(first).max())
         line = min(ARM_STRETCH.headroom * float(first[modes - 1].real), 0.0)
         hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
-        ends = [points[-1] for k in COMPLETENESS.powers if len(points := right_of_hull(line, *hull, k))]
+        ends = [
+            points[-1]
+            for k in COMPLETENESS.point_counts
+            if len(points := points_right_of_hull(line, *hull, k))
+        ]
         near = [end for end in ends if end <= ARM_STRETCH.headroom * W]
         family = family_of(path, low, high, max([W, *near]))
     except (ValueError, FloatingPointError):
@@ -204,22 +194,28 @@ def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmF
 
 
 def _carried(before: ArmInterval | None, p: float, request: SpectrumRequest, further: int) -> Complex | None:
-    """Eigenvalues, (m,), at the end p of the previous interval; None unless all its points are proved."""
-    if before is None or before.further != further or before.p[-1] != p:
+    """Eigenvalues, (m,), at p, the last point of the previous interval; None unless all its points are proved
+    complete.
+    """
+    if before is None or before.further_modes != further or before.p[-1] != p:
         return None
-    if before.proved(request.modes) < len(before.p):
+    if before.proved_points(request.modes) < len(before.p):
         return None
     return before.track.w[-1][before.track.order[-1]]
 
 
 def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: int) -> Complex | None:
-    """Eigenvalues to follow from p on, (m,), pairs unsplit; None if the solve fails."""
+    """Eigenvalues at p from which following starts, (m,), with whole conjugate pairs; None if the solve
+    fails.
+    """
     found = _roots(path, p, request, further)
     return None if found is None else found.w[has_conjugate(found.w)]
 
 
 def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Roots | None:
-    """The leading eigenvalues at p, not proved, `further` ones in addition to the wanted modes."""
+    """The leading eigenvalues at p, without a proof: the wanted modes and `further` more; None if the solve
+    fails.
+    """
     try:
         modes = request.modes + further
         search = Search(path.at(p), replace(request, modes=modes, certify=False), wanted=modes)
@@ -228,21 +224,21 @@ def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Root
     except FAILURES:
         forget_all()
         return None
-    return None if search.best is None else search.best.found.roots
+    return None if search.best is None else search.best.candidates.roots
 
 
-def counted(path: Path, found: ArmInterval, p: float, modes: int, here: Track) -> int:
-    """Number of eigenvalues at p that a count confirms to be all eigenvalues right of a line; 0 if
-    unconfirmed.
+def count_at(path: Path, found: ArmInterval, p: float, modes: int, here: Track) -> int:
+    """Number of eigenvalues at p that a count confirms to be all eigenvalues right of a line; 0 if no count
+    does.
 
-    found: an interval that contains p. here: track of this point alone.
+    found: an interval that contains p. here: a track with the eigenvalues at p only.
     """
-    w, error = leading(here, here.w.shape[1])
+    w, error = leading_eigenvalues(here, here.w.shape[1])
     if w[0, -1].real > 0:  # there are further growing modes, which the count would find as well
         return 0
-    determinant = ArmDeterminant(path.at(p), level_at(found.family, p))
+    determinant = ArmDeterminant(path.at(p), propagators_in_family(found.family, p))
     hull = hull_at(found.hulls, p)
-    for line in lines_of_count(w[0].tolist(), modes):
+    for line in lines_for_count(w[0].tolist(), modes):
         number = count_right_of(line, determinant, hull, w[0], error[0]).number
         if number is not None:
             clear = (np.abs(w[0].real - line) > 2 * error[0]).all()

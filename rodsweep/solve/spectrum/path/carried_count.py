@@ -1,8 +1,8 @@
-"""A count of eigenvalues carried along a path, as far as a proof on a moving line reaches.
+"""A count of eigenvalues carried along a path, as far as a proof with a moving line succeeds.
 
-At one point the first `known` followed eigenvalues are proved to be all right of a line. If no eigenvalue
-crosses a line that moves in an open gap to another point (`rodsweep.determinant.moving_line`), the
-eigenvalues right of the line are all at every point between.
+At the first point the leading `known` followed eigenvalues are proved to be all eigenvalues right of a line.
+If no eigenvalue crosses a line that moves in a gap between followed eigenvalues to another point
+(`rodsweep.determinant.moving_line`), the number right of the line is the same at every point between.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array, Complex
-from ....determinant.moving_line import IntervalEnd, none_crosses
+from ....determinant.moving_line import IntervalEnd, proves_no_crossing
 from ....determinant.roots.settings import ROOTS
 from ....model.compiled.compilation import compiled
 from ....model.compiled.settings import CompiledSettings
@@ -21,39 +21,48 @@ from .prediction import Track
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CarriedCountSettings(CompiledSettings):
-    """Settings for counts carried from point to point."""
+    """Settings for a count that is carried from point to point of a path."""
 
-    rectangles: int = 60
-    """Number of rectangles after which a proof is given up, besides `rectangles_per_point`."""
+    base_rectangles: int = 60
+    """Maximum number of rectangles of one proof is this number plus `rectangles_per_point` for each point
+    covered."""
     rectangles_per_point: int = 20
-    """Further rectangles for each point: a count at a point costs as much as twenty."""
-    wide_enough: float = 0.2
-    """Relative half width above which all gaps are equally good; the last wide gap is taken."""
-    narrowest_gap: float = 1e-6
-    """Relative half width below which a gap is not used."""
+    """Number of rectangles that a proof may use for each point that it covers: a new count at a point costs
+    as much as twenty."""
+    wide_gap: float = 0.2
+    """Half-width of a gap, relative to the distance of its middle from the imaginary axis, above which a
+    wider gap is not preferred. Of several such gaps the one farthest left is taken."""
+    min_gap: float = 1e-6
+    """Relative half-width below which no line is drawn in a gap."""
 
 
 CARRIED_COUNT = CarriedCountSettings()
 
 
 @compiled
-def line_in(track: Track, i: int, gap: int) -> tuple[float, float]:
-    """(middle of the gap behind the first `gap` eigenvalues of point i, half its relative width)."""
+def line_in_gap(track: Track, i: int, gap: int) -> tuple[float, float]:
+    """(real part of the line in the middle of a gap at point i, relative half-width of the gap).
+
+    gap: number of eigenvalues right of the gap.
+    """
     right = track.w[i, track.order[i, gap - 1]].real
     left = track.w[i, track.order[i, gap]].real
     line = (right + left) / 2
     if not line < 0:
         return line, 0.0
-    return line, min((right - line) / -line, CARRIED_COUNT.wide_enough)
+    return line, min((right - line) / -line, CARRIED_COUNT.wide_gap)
 
 
 @compiled
-def best_gap(track: Track, i: int, modes: int) -> int:
-    """The gap for a count at point i, behind at least `modes` eigenvalues and left of the axis; 0 if none."""
+def widest_gap(track: Track, i: int, modes: int) -> int:
+    """Number of eigenvalues right of the widest gap at point i; 0 if no gap is wide enough.
+
+    The gap lies left of the leading `modes` and of the imaginary axis.
+    """
     best = 0
-    widest = CARRIED_COUNT.narrowest_gap
+    widest = CARRIED_COUNT.min_gap
     for gap in range(modes, track.w.shape[1]):
-        width = line_in(track, i, gap)[1]
+        width = line_in_gap(track, i, gap)[1]
         if width >= widest:
             best = gap
             widest = width
@@ -62,8 +71,11 @@ def best_gap(track: Track, i: int, modes: int) -> int:
 
 @compiled
 def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[float, float], p: Array) -> bool:
-    """Whether at every point between the ends exactly the first `gap` eigenvalues lie clearly right of the
-    line.
+    """Whether exactly the leading `gap` eigenvalues lie right of a moving line at every point between two
+    points.
+
+    ends: indices of the two points; lines: real part of the line there. Eigenvalues must be farther from the
+    line than twice their error.
     """
     i, j = ends
     for s in range(i, j + 1):
@@ -79,12 +91,16 @@ def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[floa
 
 @compiled
 def _gap_between(track: Track, ends: tuple[int, int], modes: int, known: int, p: Array) -> int:
-    """The widest gap among the first `known` that stays open between two points; 0 without an open gap."""
+    """Number of eigenvalues right of the widest gap that stays open between the points `ends`; 0 without such
+    a gap.
+
+    The number is at least `modes` and at most `known`.
+    """
     best = 0
-    widest = CARRIED_COUNT.narrowest_gap
+    widest = CARRIED_COUNT.min_gap
     for gap in range(modes, min(known, track.w.shape[1] - 1) + 1):
-        here, wide = line_in(track, ends[0], gap)
-        there, wide_there = line_in(track, ends[1], gap)
+        here, wide = line_in_gap(track, ends[0], gap)
+        there, wide_there = line_in_gap(track, ends[1], gap)
         if min(wide, wide_there) >= widest and _stays_open(track, ends, gap, (here, there), p):
             best = gap
             widest = min(wide, wide_there)
@@ -94,17 +110,17 @@ def _gap_between(track: Track, ends: tuple[int, int], modes: int, known: int, p:
 @compiled
 def _end(track: Track, i: int, gap: int, p: Array, coefficients: Array) -> IntervalEnd:
     F, nu, c2, gamma3 = coefficients[i]
-    return IntervalEnd(p[i], Coefficients(F, nu, c2, gamma3), line_in(track, i, gap)[0])
+    return IntervalEnd(p[i], Coefficients(F, nu, c2, gamma3), line_in_gap(track, i, gap)[0])
 
 
 @compiled
 def carry_count(
     track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int, known: NDArray
 ) -> int:
-    """Index of the last point to which the count of the first point can be carried.
+    """Index of the last point to which the count at the first point can be carried.
 
-    coefficients: (points, 4). p: (points,). known: number of leading eigenvalues that are all right of a
-    line, (points,); given at the first point, filled here.
+    coefficients: (points, 4). p: (points,). known: number of leading eigenvalues that are all eigenvalues
+    right of a line, (points,); given at the first point, filled up to the last.
     """
     i = 0
     last = len(p) - 1
@@ -116,8 +132,8 @@ def carry_count(
         if gap > 0:
             first = _end(track, i, gap, p, coefficients)
             end = _end(track, j, gap, p, coefficients)
-            most = CARRIED_COUNT.rectangles + CARRIED_COUNT.rectangles_per_point * (j - i)
-            proved, _ = none_crosses(first, end, direction, most)
+            most = CARRIED_COUNT.base_rectangles + CARRIED_COUNT.rectangles_per_point * (j - i)
+            proved, _ = proves_no_crossing(first, end, direction, most)
         if proved:
             # The proof holds for the gap of the line, though more eigenvalues may have been known.
             known[i + 1 : j + 1] = gap
@@ -132,12 +148,12 @@ def carry_count(
 
 
 @compiled
-def judge_points(track: Track, known: NDArray, modes: int, accuracy: float) -> tuple[NDArray, NDArray]:
-    """(whether each point is certified with accurate leading modes, number of unstable modes), (points,)
+def assess_points(track: Track, known: NDArray, modes: int, accuracy: float) -> tuple[NDArray, NDArray]:
+    """(whether each point is certified and its leading `modes` accurate, number of unstable modes), (points,)
     each.
 
-    A point fails if an eigenvalue may lie on the imaginary axis, or if digits are lost beside a double
-    eigenvalue.
+    known: number of leading eigenvalues proved complete at each point, (points,). A point fails if an
+    eigenvalue may lie on the imaginary axis, or if a nearly double eigenvalue has lost digits.
     """
     n = len(known)
     good = np.empty(n, np.bool_)
@@ -148,17 +164,17 @@ def judge_points(track: Track, known: NDArray, modes: int, accuracy: float) -> t
             k = track.order[s, rank]
             w = track.w[s, k]
             error = track.error[s, k]
-            if abs(w.real) <= max(ROOTS.axis_errors * error, ROOTS.on_the_axis * abs(w)):
+            if abs(w.real) <= max(ROOTS.axis_errors * error, ROOTS.axis_tolerance * abs(w)):
                 good[s] = False
-            if rank < modes and not error <= min(ROOTS.blurred, accuracy / 2) * abs(w):
+            if rank < modes and not error <= min(ROOTS.double_root_correction, accuracy / 2) * abs(w):
                 good[s] = False
             unstable[s] += w.real > 0
     return good, unstable
 
 
 @compiled
-def leading(track: Track, modes: int) -> tuple[Complex, Array]:
-    """The leading `modes` eigenvalues and their errors, (points, modes) each."""
+def leading_eigenvalues(track: Track, modes: int) -> tuple[Complex, Array]:
+    """The leading `modes` eigenvalues and their errors at every point of a track, (points, modes) each."""
     n = track.w.shape[0]
     w = np.empty((n, modes), np.complex128)
     error = np.empty((n, modes))

@@ -1,4 +1,5 @@
-"""Leading eigenvalues of arms along a path, followed once and read at any place between."""
+"""Leading eigenvalues of arms along a path, followed once from point to point and then available at every
+p."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -10,65 +11,69 @@ from ....determinant.arm.family import ArmFamily
 from ....determinant.parameter_path import Path
 from ..spectrum import Spectrum, SpectrumRequest
 from ..status import SpectrumStatus
-from .arm_following import follow_arms
-from .arm_stretch import ARM_STRETCH, ArmInterval, counted, interval_of
-from .carried_count import judge_points, leading
-from .prediction import KnownRoots, Track, part_of_track, track_from
+from .arm_following import follow_eigenvalues_of_arms
+from .arm_stretch import ArmInterval, count_at, follow_interval
+from .arm_stretch_settings import ARM_STRETCH
+from .carried_count import assess_points, leading_eigenvalues
+from .prediction import KnownRoots, Track, slice_track, start_track
 
 
 class FollowedArms:
-    """Leading eigenvalues along a path, followed once from point to point; any p between is reached from the
-    nearest point.
+    """Leading eigenvalues of arms along a path; eigenvalues at any p are followed from the nearest point.
 
-    Points are followed as far as a p is asked for. After a point at which following ends, a new interval
-    starts.
+    Points are followed only as far as the largest requested p. Where following fails, a new interval starts
+    at a later point.
     """
 
     def __init__(self, path: Path, p: Array, modes: int):
-        """p: points in order, (n,); modes: number of leading eigenvalues to prove complete at each point."""
+        """p: path variable of the points, monotone, (n,). modes: number of leading eigenvalues to prove
+        complete there.
+        """
         self.path = path
         self.request = SpectrumRequest(modes, ARM_STRETCH.accuracy, certify=True)
         self.intervals: list[ArmInterval] = []
-        self._judged: dict[float, list[JudgedPlace]] = {}
+        self._judged: dict[float, list[ProvedEigenvalues]] = {}
         self._p = p
-        self._place = 0
+        self._next = 0
         self._patience = 1
 
     def _follow_to(self, p: float) -> None:
-        """Follows the points up to p, or up to the first one beyond."""
-        while self._place < len(self._p) and (self._place == 0 or self._p[self._place] < p):
+        """Follows eigenvalues up to the first point at or beyond p."""
+        while self._next < len(self._p) and (self._next == 0 or self._p[self._next] < p):
             before = self.intervals[-1] if self.intervals else None
-            found = interval_of(self.path, self._p[self._place :], self.request, before)
+            found = follow_interval(self.path, self._p[self._next :], self.request, before)
             if found is not None:
                 self.intervals.append(found)
             # Intervals share their end points. Where following fails it often fails at the next points too,
             # so every further failure skips twice as many.
-            self._place += max(len(found.p) - 1, 1) if found is not None else self._patience
+            self._next += max(len(found.p) - 1, 1) if found is not None else self._patience
             self._patience = 1 if found is not None else 2 * self._patience
 
     def family(self, p: float) -> ArmFamily | None:
-        """The family of arms that contains p."""
+        """The family of interpolated arms that contains p; None if no interval reached p."""
         self._follow_to(p)
         return next((one.family for one in self.intervals if one.family.low <= p <= one.family.high), None)
 
     def slope(self, w: complex, p: float) -> tuple[complex, float] | None:
-        """(dw/dp, error of w) of an eigenvalue w returned by `spectrum` at p; None for any other w."""
+        """(dw/dp, error of w) of an eigenvalue w that `spectrum` returned at p; None for any other w."""
         for one in self._judged.get(p, []):
-            for k in np.flatnonzero(one.here.w[0] == w).tolist():
-                return complex(one.here.slope[0, k]), float(one.here.error[0, k])
+            for k in np.flatnonzero(one.track.w[0] == w).tolist():
+                return complex(one.track.slope[0, k]), float(one.track.error[0, k])
         return None
 
     def spectrum(self, p: float, modes: int) -> Spectrum | None:
-        """The leading eigenvalues at p; None unless followed, accurate and proved complete."""
+        """The leading `modes` eigenvalues at p; None unless they were followed, are accurate and proved
+        complete.
+        """
         self._follow_to(p)
         judged = self._judged.setdefault(p, [])
-        if not any(modes <= one.asked for one in judged):
+        if not any(modes <= one.max_modes for one in judged):
             judged += self._judge(p, modes)
         found = (one.spectrum(modes, self.request.accuracy) for one in judged)
         return next((spectrum for spectrum in found if spectrum is not None), None)
 
     def roots(self, p: float) -> KnownRoots | None:
-        """Eigenvalues followed to p, which need not be all; None if following fails."""
+        """Eigenvalues followed to p, not proved complete; None if following fails."""
         self._follow_to(p)
         for one in self.intervals:
             if one.p.min() <= p <= one.p.max():
@@ -77,10 +82,11 @@ class FollowedArms:
                     return KnownRoots(here.w[0], here.error[0])
         return None
 
-    def _judge(self, p: float, modes: int) -> Iterator["JudgedPlace"]:
-        """Yields the eigenvalues at p of every interval that contains p, up to the first that are complete.
+    def _judge(self, p: float, modes: int) -> Iterator["ProvedEigenvalues"]:
+        """Yields the eigenvalues at p of each interval that contains p, up to the first that proves `modes`
+        complete.
 
-        All growing modes and two more are judged at once, because the next requests need them.
+        All growing modes and two more are proved at once, because the next requests need them.
         """
         for one in self.intervals:
             followed = one.track.w.shape[1]
@@ -99,48 +105,50 @@ class FollowedArms:
                 continue
             for number in sorted({wanted, modes}, reverse=True):
                 if known < number:
-                    known = max(known, counted(self.path, one, p, number, here))
-            yield JudgedPlace(max(modes, min(known, wanted)), here, known)
+                    known = max(known, count_at(self.path, one, p, number, here))
+            yield ProvedEigenvalues(max(modes, min(known, wanted)), here, known)
             if known >= modes:
                 return
 
     def _from_nearest(self, one: ArmInterval, p: float, modes: int) -> tuple[Track | None, int]:
-        """(eigenvalues at p followed from the nearest point, how many are proved complete there).
+        """(track with the eigenvalues at p only, number of them proved complete), followed from the point
+        nearest to p.
 
-        The track is of p alone, None where following fails.
+        The track is None where following fails.
         """
         i = int(np.argmin(np.abs(one.p - p)))
         start = float(one.p[i])
         if p == start and modes <= self.request.modes:
-            return part_of_track(one.track, i, i + 1), int(one.known[i])
+            return slice_track(one.track, i, i + 1), int(one.proved_modes[i])
         for steps in ARM_STRETCH.steps_from_nearest:
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
-            track = track_from(one.track.w[i], len(grid))
+            track = start_track(one.track.w[i], len(grid))
             known = np.zeros(len(grid), np.int64)
             track.order[0] = one.track.order[i]
-            if follow_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
-                return part_of_track(track, len(grid) - 1, len(grid)), int(known[-1])
+            if follow_eigenvalues_of_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
+                return slice_track(track, len(grid) - 1, len(grid)), int(known[-1])
         return None, 0
 
 
-class JudgedPlace(NamedTuple):
-    """Eigenvalues at one place of a path, of which the leading `known` are proved complete.
+class ProvedEigenvalues(NamedTuple):
+    """Eigenvalues at one p of a path; the leading `proved_modes` of them are proved complete.
 
-    asked: largest number of modes for which the eigenvalues were judged.
+    max_modes: largest number of modes whose proof was tried.
     """
 
-    asked: int
-    here: Track
-    known: int
+    max_modes: int
+    track: Track
+    proved_modes: int
 
     def spectrum(self, modes: int, accuracy: float) -> Spectrum | None:
-        """The leading eigenvalues if followed, accurate and complete; else None."""
-        if self.here.w.shape[1] < modes:
+        """The leading `modes` eigenvalues if all were followed, are accurate and proved complete; else
+        None."""
+        if self.track.w.shape[1] < modes:
             return None
-        good, unstable = judge_points(self.here, np.array([self.known]), modes, accuracy)
+        good, unstable = assess_points(self.track, np.array([self.proved_modes]), modes, accuracy)
         if not good[0]:
             return None
-        w, error = leading(self.here, modes)
+        w, error = leading_eigenvalues(self.track, modes)
         return Spectrum(
             status=SpectrumStatus.ok,
             eigenvalues=w[0],

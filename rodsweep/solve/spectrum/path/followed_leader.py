@@ -1,6 +1,7 @@
-"""The leading eigenvalue of a rod from the leading eigenvalue of a neighbouring rod, without a mesh.
+"""The leading eigenvalue of a rod, followed from a neighbouring rod without a mesh.
 
-Newton's method on D follows the eigenvalue; the winding number proves that it still leads.
+Newton's method on D refines the eigenvalue of the neighbour, and a count of eigenvalues proves that the
+refined eigenvalue leads.
 """
 
 from collections.abc import Iterator
@@ -15,92 +16,99 @@ from ....determinant.arm.count.count import count_right_of as count_of_arm
 from ....determinant.arm.count.count import largest_w_of_count
 from ....determinant.arm.determinant import arm_determinant
 from ....determinant.arm.hull.hull import hull_of
-from ....determinant.arm.newton import refined_root
+from ....determinant.arm.newton import refine_eigenvalue_and_error
 from ....determinant.certificate.winding_number import count_right_of
-from ....determinant.roots.newton import refined
+from ....determinant.roots.newton import refine_eigenvalue
 from ....determinant.roots.roots import root_error
 from ....model.rod import Rod
-from ..candidates import CANDIDATES, line_of_proof
-from .following import distinct_roots
+from ..candidates import CANDIDATES, line_for_proof
+from .following import are_distinct_roots
 from .prediction import KnownRoots
 
 
-class Leader(NamedTuple):
-    """The leading eigenvalue w, in 1/tau2, with Im w >= 0, and its error.
+class LeadingEigenvalue(NamedTuple):
+    """The leading eigenvalue w of a rod, in 1/tau2, with Im w >= 0, and its absolute error.
 
-    known: eigenvalues of the rod with Im >= 0, (n,), the leading one first.
+    eigenvalues: all followed eigenvalues of the rod with Im w >= 0, (n,), the leading one first.
     """
 
     w: complex
     error: float
-    known: Complex
+    eigenvalues: Complex
 
 
-def followed_leader(rod: Rod, near: Complex, accuracy: float) -> Leader | None:
-    """The leading eigenvalue of a rod with its error, followed from a neighbouring rod; None unless proved to
-    lead.
+def follow_leading_eigenvalue(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | None:
+    """The leading eigenvalue of a rod, followed from a neighbouring rod; None unless it is proved to lead.
 
-    near: eigenvalues of the neighbouring rod with Im >= 0, (n,), the leading one first. For an arm that
-    varies along its length the further eigenvalues help the proof. accuracy: relative.
+    near: eigenvalues of the neighbouring rod with Im w >= 0, (n,), the leading one first. An arm that varies
+    along its length needs several for the proof, a uniform rod only the first. accuracy: largest relative
+    error.
     """
     if rod.standard:
         return _of_uniform(rod, complex(near[0]), accuracy)
     if rod.uniform:
         linear, rate = rod.equivalent
-        found = followed_leader(linear, near / rate, accuracy)
-        return found and Leader(rate * found.w, rate * found.error, rate * found.known)
+        found = follow_leading_eigenvalue(linear, near / rate, accuracy)
+        return found and LeadingEigenvalue(rate * found.w, rate * found.error, rate * found.eigenvalues)
     try:
         return _of_arm(rod, near, accuracy)
     except FloatingPointError:  # D needs too many elements
         return None
 
 
-def _of_uniform(rod: Rod, near: complex, accuracy: float) -> Leader | None:
-    """`followed_leader` for a uniform rod of linear material, from the leading eigenvalue alone."""
-    w = refined(near, rod.coefficients)
+def _of_uniform(rod: Rod, near: complex, accuracy: float) -> LeadingEigenvalue | None:
+    """`follow_leading_eigenvalue` for a uniform rod of linear material.
+
+    near: leading eigenvalue of the neighbouring rod.
+    """
+    w = refine_eigenvalue(near, rod.coefficients)
     error, _, _ = root_error(w, rod.coefficients)
     if not _is_of_its_kind(w, error, near, accuracy):
         return None
     number = 2 if w.imag else 1
     leads = any(count_right_of(line, rod).number == number for line in _lines(w))
-    return Leader(w, error, np.array([w])) if leads else None
+    return LeadingEigenvalue(w, error, np.array([w])) if leads else None
 
 
-def _of_arm(rod: Rod, near: Complex, accuracy: float) -> Leader | None:
-    """`followed_leader` for an arm that varies along its length."""
+def _of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | None:
+    """`follow_leading_eigenvalue` for an arm that varies along its length.
+
+    near: eigenvalues of the neighbouring arm, (n,).
+    """
     hull = hull_of(rod)
     if not isfinite(hull.a) or not np.isfinite(near).all():
         return None
     determinant = arm_determinant(rod)
     first = complex(near[0])
-    size = largest_w_of_proof(line_of_proof(first, 0.0), hull, near)
+    size = largest_w_of_proof(line_for_proof(first, 0.0), hull, near)
     if not isfinite(size):
         size = largest_w_of_count(next(_lines(first)), determinant, hull)
     determinant.level(size)  # elements for the proof, which serve the eigenvalues too
-    found = [refined_root(value, determinant) for value in near.tolist()]
+    found = [refine_eigenvalue_and_error(value, determinant) for value in near.tolist()]
     w = np.array([root for root, _ in found])
     error = np.array([error for _, error in found])
     order = np.argsort(-w.real, kind="stable")
     w = w[order]
     error = error[order]
     leader = complex(w[0])
-    if not _is_of_its_kind(leader, float(error[0]), first, accuracy) or not distinct_roots(w, error):
+    if not _is_of_its_kind(leader, float(error[0]), first, accuracy) or not are_distinct_roots(w, error):
         return None
     pairs = w.imag != 0
     known = KnownRoots(np.append(w, w[pairs].conj()), np.append(error, error[pairs]))
-    complete, _ = none_is_missing(line_of_proof(leader, float(error[0])), *known, determinant, hull)
+    complete, _ = none_is_missing(line_for_proof(leader, float(error[0])), *known, determinant, hull)
     leads = complete or any(
         count_of_arm(line, determinant, hull, *known).number == (known.w.real > line).sum()
         for line in _lines(leader)
     )
-    return Leader(leader, float(error[0]), w) if leads else None
+    return LeadingEigenvalue(leader, float(error[0]), w) if leads else None
 
 
 def _is_of_its_kind(w: complex, error: float, near: complex, accuracy: float) -> bool:
-    """Whether an eigenvalue is accurate, and real or complex as its neighbour `near`."""
+    """Whether w is accurate, and real or complex like the neighbour's eigenvalue `near`."""
     return error <= accuracy * abs(w) and w.imag >= 0 and (w.imag == 0) == (near.imag == 0)
 
 
 def _lines(w: complex) -> Iterator[float]:
-    """Lines left of a leading eigenvalue for its count, the cheapest first."""
-    return (w.real - far * abs(w) for far in (CANDIDATES.far_behind, CANDIDATES.behind))
+    """Real parts of two lines left of a leading eigenvalue w, for its count; the cheaper count comes
+    first."""
+    return (w.real - far * abs(w) for far in (CANDIDATES.leader_line_distance, CANDIDATES.last_line_distance))

@@ -1,7 +1,7 @@
-"""Eigenvalues followed along the points of a path: predicted, then corrected by Newton's method on D.
+"""Eigenvalues followed along the points of a path: predicted, then refined by Newton's method on D.
 
-Each result is a root of D within its error, and no two are the same root. Whether they are all eigenvalues,
-and whether two have exchanged, is left to the count.
+Each followed eigenvalue is a root of D within its error, and no two are the same root. Following does not
+prove that no eigenvalue is missing, nor that two have not been exchanged; the count does.
 """
 
 import math
@@ -20,46 +20,56 @@ from ....determinant.value import DETERMINANT
 from ....model.compiled.compilation import compiled
 from ....model.compiled.settings import CompiledSettings
 from ....model.rod import Coefficients
-from .prediction import Track, guess_at, guess_two, mates_of
+from .prediction import Track, find_conjugates, predict_eigenvalues, set_two_guesses
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FollowingSettings(CompiledSettings):
-    """Settings for the corrections of followed eigenvalues."""
+    """Settings of Newton's method for followed eigenvalues."""
 
-    max_corrections: int = 8
+    max_newton_steps: int = 8
     """Maximum number of Newton steps for one eigenvalue."""
     accuracy: float = 1e-9
-    """Relative accuracy of eigenvalues that do not lead, and only show where to count."""
-    safe_curvature: float = 4.0
-    """Safety factor on |D''/(2 D')|, the modulus of the sum of 1/(w - w_j) over all other roots, computed
-    from the known roots only."""
-    rounding_step: float = 4.0
-    """A step below this multiple of the rounding error ends the corrections."""
+    """Relative accuracy of eigenvalues beyond the leading modes, which only show where to draw the line of a
+    count."""
+    curvature_safety_factor: float = 4.0
+    """Safety factor on |D''/(2 D')|, which is the modulus of the sum of 1/(w - w_j) over all other roots w_j,
+    but is computed from the followed roots only."""
+    final_step: float = 4.0
+    """Newton step, in units of the rounding error of the eigenvalue, at which the iteration ends."""
 
 
 FOLLOWING = FollowingSettings()
 
 
 class CorrectedEigenvalue(NamedTuple):
-    """An eigenvalue after one Newton step: w, slope dw/dp, length of the step, rounding error `blur`."""
+    """An eigenvalue w after one Newton step: its slope dw/dp, the length of the step, and the rounding error
+    of w.
+    """
 
     w: complex
     slope: complex
     step: float
-    blur: float
+    rounding: float
 
 
 @compiled
-def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -> CorrectedEigenvalue:
-    """The eigenvalue after one Newton step from w; a real eigenvalue stays real."""
+def correct_eigenvalue(
+    w: complex, coefficients: Coefficients, direction: Coefficients
+) -> CorrectedEigenvalue:
+    """One Newton step on D from w, for a uniform rod; a real w stays real. direction:
+    d(F, nu, c2, gamma3)/dp.
+    """
     D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
     return newton_step(w, D, D_w, D_p, DETERMINANT.typical_noise * noise)
 
 
 @compiled
 def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, rounding: float) -> CorrectedEigenvalue:
-    """Newton step from D, the derivatives by w and p, and the rounding error; real w stays real."""
+    """One Newton step from w, given D and its derivatives by w and p; a real w stays real.
+
+    rounding: rounding error of D, on the same scale as D. All results are inf or 0 if D_w vanishes.
+    """
     size = abs(D_w)
     if not size > 0:
         return CorrectedEigenvalue(w, 0j, math.inf, math.inf)
@@ -72,35 +82,38 @@ def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, rounding: fl
 
 
 @compiled
-def crowding_of(w: Complex, k: int) -> float:
-    """Upper estimate of |D''/(2 D')| at root k, from its distances to the other known roots, (m,)."""
+def curvature_estimate(w: Complex, k: int) -> float:
+    """Upper estimate of |D''/(2 D')| at root w[k], from its distances to 0 and to the other followed roots w,
+    (m,).
+    """
     total = 1 / abs(w[k])
     for j in range(len(w)):
         if j != k:
             total += 1 / abs(w[k] - w[j])
-    return FOLLOWING.safe_curvature * total
+    return FOLLOWING.curvature_safety_factor * total
 
 
 @compiled
-def settled_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> float:
-    """Error of an eigenvalue after a Newton step, once the remainder crowding step^2 is small enough; inf
-    before.
+def converged_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> float:
+    """Absolute error of an eigenvalue after a Newton step; inf until the remainder crowding step^2 is small
+    enough.
 
-    crowding: upper estimate of |D''/(2 D')| at the eigenvalue, from its distance to other roots. exact:
-    whether the remainder must be below rounding, instead of `FOLLOWING.accuracy`.
+    crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact: whether the remainder must be below the
+    rounding error, instead of `FOLLOWING.accuracy`.
     """
     left = crowding * here.step * here.step
-    allowed = max(here.blur, ROUND_OFF * abs(here.w)) if exact else FOLLOWING.accuracy * abs(here.w)
-    if left <= allowed or here.step <= FOLLOWING.rounding_step * here.blur:
-        return max(here.blur, min(left, here.step))
+    allowed = max(here.rounding, ROUND_OFF * abs(here.w)) if exact else FOLLOWING.accuracy * abs(here.w)
+    if left <= allowed or here.step <= FOLLOWING.final_step * here.rounding:
+        return max(here.rounding, min(left, here.step))
     return math.inf
 
 
 @compiled
 def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalue) -> bool:
-    """Writes eigenvalue k of point i, and its conjugate as number `mate` if it has one.
+    """Writes eigenvalue k of point i to the track, and its conjugate to index `mate` unless `mate` is
+    negative.
 
-    False for a pair that has become real. The error of eigenvalue k is in the track already.
+    False if a complex pair has become real. The error of eigenvalue k must be in the track already.
     """
     w = track.w[i]
     slope = track.slope[i]
@@ -108,7 +121,7 @@ def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalu
     w[k] = last.w
     slope[k] = last.slope
     if mate >= 0:
-        if not w[k].imag > ROOT_NEWTON.real_below * abs(w[k]):
+        if not w[k].imag > ROOT_NEWTON.real_tolerance * abs(w[k]):
             return False
         w[mate] = w[k].conjugate()
         slope[mate] = slope[k].conjugate()
@@ -120,28 +133,29 @@ def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalu
 def _settled(
     first: CorrectedEigenvalue, crowding: float, exact: bool, rod: Coefficients, direction: Coefficients
 ) -> tuple[CorrectedEigenvalue, float]:
-    """(last Newton step, error) of an eigenvalue: steps until `settled_error` is finite; the error is inf
-    without convergence.
+    """(last Newton step, error) of an eigenvalue of a uniform rod, after steps until `converged_error` is
+    finite.
 
-    first: result of the first step. crowding, exact: as in `settled_error`.
+    first: result of the first step. crowding, exact: as in `converged_error`. The error is inf without
+    convergence.
     """
     here = first
-    for _ in range(FOLLOWING.max_corrections):
-        error = settled_error(here, crowding, exact)
+    for _ in range(FOLLOWING.max_newton_steps):
+        error = converged_error(here, crowding, exact)
         if error < math.inf:
             return here, error
-        here = corrected(here.w, rod, direction)
+        here = correct_eigenvalue(here.w, rod, direction)
     return here, math.inf
 
 
 @compiled
-def distinct_roots(w: Complex, error: Array) -> bool:
-    """Whether all, (m,), eigenvalues and errors are finite and no two eigenvalues may be the same root."""
+def are_distinct_roots(w: Complex, error: Array) -> bool:
+    """Whether all eigenvalues w and errors, (m,), are finite and no two eigenvalues can be the same root."""
     for k in range(len(w)):
         if not (abs(w[k]) < math.inf and error[k] < math.inf):
             return False
         for j in range(k):
-            if not abs(w[k] - w[j]) > ROOTS.same_root * (error[k] + error[j]):
+            if not abs(w[k] - w[j]) > ROOTS.same_root_distance * (error[k] + error[j]):
                 return False
     return True
 
@@ -150,22 +164,23 @@ def distinct_roots(w: Complex, error: Array) -> bool:
 def _correct_all(
     track: Track, i: int, guess: Complex, modes: int, rod: Coefficients, direction: Coefficients
 ) -> bool:
-    """Corrects the guesses for point i and writes the roots to the track. True if all converged and every
-    pair stayed a pair.
+    """Refines the guesses for all eigenvalues of point i, (m,), and writes the eigenvalues to the track.
+
+    True if all converged, no two coincide, and every complex pair stayed complex.
     """
     w = track.w[i]
     error = track.error[i]
     order = track.order[i]
     m = len(w)
     mate = np.empty(m, np.int64)
-    mates_of(guess, mate)
+    find_conjugates(guess, mate)
     # One step for all before further steps for any: the crowding of a root needs its neighbours.
     first = [CorrectedEigenvalue(0j, 0j, math.inf, math.inf) for _ in range(m)]
     for k in range(m):
         if guess[k].imag != 0 and mate[k] < 0:
             return False
         if guess[k].imag >= 0:
-            first[k] = corrected(guess[k], rod, direction)
+            first[k] = correct_eigenvalue(guess[k], rod, direction)
             w[k] = first[k].w
             if mate[k] >= 0:
                 w[mate[k]] = w[k].conjugate()
@@ -173,19 +188,22 @@ def _correct_all(
     for rank in range(m):
         k = order[rank]
         if guess[k].imag >= 0:
-            last, error[k] = _settled(first[k], crowding_of(w, k), rank <= modes, rod, direction)
+            last, error[k] = _settled(first[k], curvature_estimate(w, k), rank <= modes, rod, direction)
             if not store_root(track, i, k, mate[k], last):
                 return False
     sort_descending(w, order)
-    return distinct_roots(w, error)
+    return are_distinct_roots(w, error)
 
 
 @compiled
-def follow(track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int) -> int:
-    """Number of points, from the first, to which the eigenvalues can be followed; fills the track so far.
+def follow_eigenvalues(
+    track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int
+) -> int:
+    """Follows eigenvalues of uniform rods along the points p, (points,), and returns the number of points
+    reached.
 
-    track: with w and order at the first point. coefficients: (points, 4); p: path variables, (points,).
-    direction: d(F, nu, c2, gamma3)/dp. The leading `modes` eigenvalues get all digits.
+    track: filled from the first point on, whose w and order are given. coefficients: (points, 4). direction:
+    d(F, nu, c2, gamma3)/dp. The leading `modes` eigenvalues converge to rounding error.
     """
     guess = track.w[0].copy()
     decided = np.empty(len(guess), np.int64)
@@ -193,11 +211,11 @@ def follow(track: Track, coefficients: Array, p: Array, direction: Coefficients,
         F, nu, c2, gamma3 = coefficients[i]
         rod = Coefficients(F, nu, c2, gamma3)
         if i > 0:
-            guess_at(track, i, p, guess, decided)
+            predict_eigenvalues(track, i, p, guess, decided)
             for k in range(len(guess)):
                 if decided[k] >= 0:
                     two = (k, decided[k])
-                    guess_two(track.w[i - 1], two, two_roots(guess[k], rod), guess)
+                    set_two_guesses(track.w[i - 1], two, two_roots(guess[k], rod), guess)
             track.order[i] = track.order[i - 1]
         if not _correct_all(track, i, guess, modes, rod, direction):
             return i

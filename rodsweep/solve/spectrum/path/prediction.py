@@ -1,9 +1,9 @@
 """Prediction of eigenvalues at the next point of a path, from values and slopes at the last two points.
 
-Cubic Hermite polynomials extrapolate single real eigenvalues. Two real eigenvalues that meet, or have just
-met, are not smooth functions of the rod, but half their sum and the square of half their difference are
-smooth, as for a pair; these are extrapolated. Near the meeting point, the quadratic approximation of D about
-their mean has to decide between two real eigenvalues and a pair.
+A cubic Hermite polynomial extrapolates each single real eigenvalue. Two real eigenvalues that meet and become
+a complex pair are not smooth functions of p. Half their sum and the square of half their difference are
+smooth, before and after the meeting, so these two numbers are extrapolated. Near the meeting, the quadratic
+Taylor polynomial of D about half the sum decides whether the two are real or complex.
 """
 
 import cmath
@@ -20,23 +20,23 @@ from ....model.compiled.settings import CompiledSettings
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EigenvaluePredictionSettings(CompiledSettings):
-    """Settings for predicted eigenvalues that meet."""
+    """Settings for the prediction of two eigenvalues that meet."""
 
-    closing: float = 4.0
-    """Two real eigenvalues are extrapolated together if their present rates give a meeting within this many
-    steps, before or after."""
-    meeting: float = 0.25
-    """If the squared difference shrinks below this fraction of its last value, D decides on real or
-    complex."""
+    max_steps_to_meeting: float = 4.0
+    """Two real eigenvalues are extrapolated as a pair if their slopes let them meet within this many steps of
+    the path, ahead or behind."""
+    undecided_fraction: float = 0.25
+    """Fraction of the squared half difference at the last point. If the prediction falls below it, D decides
+    whether the two eigenvalues are real or complex."""
 
 
 EIGENVALUE_PREDICTION = EigenvaluePredictionSettings()
 
 
 class Track(NamedTuple):
-    """Followed eigenvalues w, their slopes dw/dp and errors, (points, m) each.
+    """Followed eigenvalues w, their slopes dw/dp and absolute errors, (points, m) each.
 
-    order: indices of the eigenvalues by descending real part, then frequency, (points, m).
+    order: at each point the indices of the eigenvalues by descending real part, then frequency, (points, m).
     """
 
     w: Complex
@@ -46,14 +46,16 @@ class Track(NamedTuple):
 
 
 class KnownRoots(NamedTuple):
-    """Some roots of D of one rod, (k,), in any order, with the error of each, (k,)."""
+    """Some roots w of the determinant D of one rod, (k,), in any order, and their absolute errors, (k,)."""
 
     w: Complex
     error: Array
 
 
-def track_from(first: Complex, points: int) -> Track:
-    """A track with the eigenvalues of its first point, (m,), the leading ones first."""
+def start_track(first: Complex, points: int) -> Track:
+    """A track of `points` points of which only the first is filled, with the eigenvalues `first`, (m,),
+    leading first.
+    """
     shape = (points, len(first))
     order = np.zeros(shape, np.int64)
     order[0] = np.arange(len(first))
@@ -62,15 +64,17 @@ def track_from(first: Complex, points: int) -> Track:
     return track
 
 
-def part_of_track(track: Track, start: int, stop: int) -> Track:
-    """The track from point start up to point stop."""
+def slice_track(track: Track, start: int, stop: int) -> Track:
+    """The points `start` up to, but without, `stop` of a track."""
     here = slice(start, stop)
     return Track(track.w[here], track.slope[here], track.error[here], track.order[here])
 
 
 @compiled
-def mates_of(w: Complex, mate: NDArray) -> None:
-    """Index of the complex conjugate of each eigenvalue, into `mate`, (m,); -1 for real eigenvalues."""
+def find_conjugates(w: Complex, mate: NDArray) -> None:
+    """Writes the index of the complex conjugate of each eigenvalue into `mate`, (m,); -1 for real
+    eigenvalues.
+    """
     for k in range(len(w)):
         mate[k] = -1
         if w[k].imag != 0:
@@ -81,9 +85,11 @@ def mates_of(w: Complex, mate: NDArray) -> None:
 
 @compiled
 def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
-    """Also makes mates of real eigenvalues that meet within some steps, the earliest meeting first."""
+    """Makes real eigenvalues that are about to meet each other's mates in `mate`, (m,), the earliest meeting
+    first.
+    """
     while True:
-        soonest = EIGENVALUE_PREDICTION.closing
+        soonest = EIGENVALUE_PREDICTION.max_steps_to_meeting
         a = -1
         b = -1
         for k in range(len(w)):
@@ -102,12 +108,12 @@ def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
 
 
 @compiled
-def extrapolated(
+def extrapolate_hermite(
     values: tuple[float, float], slopes: tuple[float, float], steps: tuple[float, float]
 ) -> float:
-    """Cubic Hermite extrapolation from two points, by values and slopes there, to a third point.
+    """Cubic Hermite extrapolation to a third point, from the values and slopes at two points.
 
-    steps: from the first to the second point, and from there to the third.
+    steps: distance from the first to the second point, and from the second to the third.
     """
     h, ahead = steps
     t = ahead / h
@@ -119,7 +125,7 @@ def extrapolated(
 
 @compiled
 def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, float, float, float]:
-    """(half the sum of two eigenvalues, squared half of the difference, slopes of these two numbers)."""
+    """(half the sum of eigenvalues k and j, squared half difference, slopes of these two numbers)."""
     half = (w[k] - w[j]) / 2
     slope_of_half = (slope[k] - slope[j]) / 2
     middle = (w[k] + w[j]).real / 2
@@ -131,10 +137,11 @@ def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, 
 def _two_ahead(
     track: Track, i: int, two: tuple[int, int], steps: tuple[float, float]
 ) -> tuple[complex, complex, bool]:
-    """Guesses for two eigenvalues extrapolated together; the larger real part or frequency comes first.
+    """(guess, guess, undecided) for two eigenvalues at point i; the larger real part or frequency comes
+    first.
 
-    If D has to decide between a real and a complex pair, both guesses are the middle and the last value is
-    True.
+    undecided: whether D has to decide between two real eigenvalues and a complex pair. Both guesses are then
+    half the sum. steps: as in `extrapolate_hermite`.
     """
     k, j = two
     # Where two real eigenvalues meet and become a pair, each has a square root in p; middle and squared half
@@ -143,20 +150,23 @@ def _two_ahead(
     before = square
     if i >= 2:
         middle_0, square_0, m0, s0 = _sum_and_square(track.w[i - 2], track.slope[i - 2], k, j)
-        middle = extrapolated((middle_0, middle), (m0, m1), steps)
-        square = extrapolated((square_0, square), (s0, s1), steps)
+        middle = extrapolate_hermite((middle_0, middle), (m0, m1), steps)
+        square = extrapolate_hermite((square_0, square), (s0, s1), steps)
     else:
         middle = middle + m1 * steps[1]
         square = square + s1 * steps[1]
-    if square * before <= 0 or abs(square) < EIGENVALUE_PREDICTION.meeting * abs(before):
+    if square * before <= 0 or abs(square) < EIGENVALUE_PREDICTION.undecided_fraction * abs(before):
         return complex(middle, 0.0), complex(middle, 0.0), True
     root = cmath.sqrt(complex(square, 0.0))
     return middle + root, middle - root, False
 
 
 @compiled
-def guess_two(w: Complex, two: tuple[int, int], roots: tuple[complex, complex], guess: Complex) -> None:
-    """Sets the guesses for two of the eigenvalues w, both (m,), in their order: real part, then frequency."""
+def set_two_guesses(w: Complex, two: tuple[int, int], roots: tuple[complex, complex], guess: Complex) -> None:
+    """Writes `roots` as the guesses for two eigenvalues of w, in the order of w: real part, then frequency.
+
+    two: indices of the two in w and `guess`, (m,) each.
+    """
     k, j = two
     one, other = roots
     if (one - other).real < 0 or (one - other).imag < 0:
@@ -166,16 +176,17 @@ def guess_two(w: Complex, two: tuple[int, int], roots: tuple[complex, complex], 
 
 
 @compiled
-def guess_at(track: Track, i: int, p: Array, guess: Complex, decided: NDArray) -> None:
-    """Guesses for point i >= 1, a rod with the coefficients, into `guess`, (m,); p: (points,).
+def predict_eigenvalues(track: Track, i: int, p: Array, guess: Complex, decided: NDArray) -> None:
+    """Writes the predicted eigenvalues of point i >= 1 into `guess`, (m,). p: path variable of every point,
+    (points,).
 
-    decided: shape (m,), filled with -1; for two eigenvalues of which D has to decide whether they are real,
-    the index of the partner, and both guesses are the middle.
+    decided: (m,), filled with -1. Where D has to decide whether two eigenvalues are real, it gets the index
+    of the second at the first, and both guesses are half their sum.
     """
     w = track.w[i - 1]
     slope = track.slope[i - 1]
     mate = np.empty(len(w), np.int64)
-    mates_of(w, mate)
+    find_conjugates(w, mate)
     ahead = p[i] - p[i - 1]
     _pair_up(w, slope, ahead, mate)
     steps = (p[i - 1] - p[i - 2] if i >= 2 else ahead, ahead)
@@ -185,11 +196,11 @@ def guess_at(track: Track, i: int, p: Array, guess: Complex, decided: NDArray) -
         if j < 0 and i >= 2:
             values = (track.w[i - 2, k].real, w[k].real)
             slopes = (track.slope[i - 2, k].real, slope[k].real)
-            guess[k] = complex(extrapolated(values, slopes, steps), 0.0)
+            guess[k] = complex(extrapolate_hermite(values, slopes, steps), 0.0)
         elif j < 0:
             guess[k] = complex(w[k].real + slope[k].real * ahead, 0.0)
         elif j > k:
             one, other, undecided = _two_ahead(track, i, (k, j), steps)
-            guess_two(w, (k, j), (one, other), guess)
+            set_two_guesses(w, (k, j), (one, other), guess)
             if undecided:
                 decided[k] = j

@@ -1,9 +1,8 @@
-"""Spectra of neighbouring points along one parameter: eigenvalues are followed, and one count serves all
-points.
+"""Spectra of rods at neighbouring values of one parameter: followed eigenvalues, and one count for many rods.
 
-Krylov-Schur solves the first point for some modes more than requested, and solves again where following stops
-or a count disagrees. Points without proof or with lost digits are solved singly. The outcome depends on the
-points of the stretch alone.
+Krylov-Schur solves the first rod for a few modes more than requested, and solves again where following stops
+or a count disagrees. Rods without proof or with lost digits are solved one by one. The outcome depends only
+on the rods of the stretch.
 """
 
 import time
@@ -21,20 +20,21 @@ from ...backend.kept import forget_all
 from ...point import FAILURES
 from ..search import Search, SpectrumRequest, solve_spectrum
 from ..search import warm_up as warm_up_search
-from ..spectrum import FollowedPoints, Spectrum, stated_errors
+from ..spectrum import FollowedPoints, Spectrum, errors_with_rounding
 from ..status import SpectrumStatus
-from .arm_stretch import followed_arms
-from .carried_count import best_gap, carry_count, judge_points, leading, line_in
-from .following import follow
-from .prediction import Track, part_of_track, track_from
+from .arm_stretch import follow_stretch_of_arms
+from .carried_count import assess_points, carry_count, leading_eigenvalues, line_in_gap, widest_gap
+from .following import follow_eigenvalues
+from .prediction import Track, slice_track, start_track
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StretchSettings:
-    """Settings for eigenvalues followed along a stretch."""
+    """Settings for eigenvalues followed along a stretch of rods."""
 
     further_modes: int = 2
-    """Number of modes followed beyond the requested modes; the count uses the gaps between them."""
+    """Number of modes followed beyond the requested modes. The line of a count lies in a gap between these
+    further modes."""
 
 
 STRETCH = StretchSettings()
@@ -42,7 +42,9 @@ STRETCH = StretchSettings()
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """Rods along a path, at values of its parameter, (n,)."""
+    """Rods that differ in one parameter: `path` names the parameter, `values` has its value in each rod,
+    (n,).
+    """
 
     path: Path
     values: Array
@@ -51,17 +53,17 @@ class Stretch:
         return len(self.values)
 
     def rod(self, i: int) -> Rod:
-        """The i-th rod."""
+        """Rod number i."""
         return self.path.rod.changed(**{self.path.name: float(self.values[i])})
 
     @property
-    def coordinates(self) -> Array:
-        """Path variable of every rod, (n,)."""
+    def path_variables(self) -> Array:
+        """Path variable p of every rod, (n,)."""
         return 1 / self.values if self.path.inverse else self.values
 
     @property
     def coefficients(self) -> Array:
-        """(F, nu, c2, gamma3) of every rod, shape (n, 4), bit by bit as `Rod.coefficients`."""
+        """(F, nu, c2, gamma3) of every rod, (n, 4), equal to `Rod.coefficients` in every bit."""
         columns = coefficients_of({**self.path.rod.values, self.path.name: self.values})
         table = np.empty((len(self), len(columns)))
         for place, column in enumerate(columns):
@@ -70,7 +72,9 @@ class Stretch:
 
 
 def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
-    """The leading `request.modes` eigenvalues of every rod, all certified; failures are statuses."""
+    """The leading `request.modes` eigenvalues of every rod, all certified. A failed rod gets a status;
+    nothing is raised.
+    """
     began = time.perf_counter()
     n = len(stretch)
     modes = request.modes
@@ -79,17 +83,17 @@ def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
     patience = 1
     while place < n:
         found = _followed(stretch, place, request)
-        end = place + (len(found.good) if found else min(patience, n - place))
+        end = place + (len(found.accepted) if found else min(patience, n - place))
         # If no proof succeeds, as without a bound, following is tried less and less often.
         patience = 1 if found else 2 * patience
         if found:
             here = slice(place, end)
             columns["eigenvalues"][here] = found.w
-            columns["error_estimate"][here] = stated_errors(found.w, found.error, stretch.path.rod)
-            columns["unstable_count"][here] = found.unstable
+            columns["error_estimate"][here] = errors_with_rounding(found.w, found.error, stretch.path.rod)
+            columns["unstable_count"][here] = found.unstable_count
             columns["certified"][here] = True
         for i in range(place, end):
-            if not (found and found.good[i - place]):
+            if not (found and found.accepted[i - place]):
                 alone = solve_spectrum(stretch.rod(i), request)
                 for name, column in columns.items():
                     column[i] = getattr(alone, name)
@@ -98,7 +102,7 @@ def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
 
 
 def _unsolved(n: int, modes: int) -> dict[str, Any]:
-    """Fields of a `Spectrum` of n rods, to be filled."""
+    """Arrays for the fields of a `Spectrum` of n rods, filled with the values of an unsolved rod."""
     whole = np.zeros(n, np.int64)
     return {
         "eigenvalues": np.full((n, modes), np.nan + 0j),
@@ -113,48 +117,51 @@ def _unsolved(n: int, modes: int) -> dict[str, Any]:
 
 
 def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> FollowedPoints | None:
-    """Follows and counts the points from `start` on, as far as possible; None if the first point fails."""
+    """Eigenvalues followed from rod `start` on, with their counts, as far as possible; None if the first rod
+    fails.
+    """
     rod = stretch.path.rod
     varies = stretch.path.name == "taper"
     if rod.uniform and not (rod.standard or varies):
         return None  # the linear rod to which uniform rubber is equivalent has the closed form and its proof
     if varies or not rod.standard:
-        return followed_arms(stretch.path, stretch.coordinates[start:], request)
+        return follow_stretch_of_arms(stretch.path, stretch.path_variables[start:], request)
     seed = _first_point(stretch.rod(start), request)
     if seed is None:
         return None
     first, complete = seed
     modes = request.modes
     rest = Stretch(stretch.path, stretch.values[start:])
-    track = track_from(first, len(rest))
-    n = follow(track, rest.coefficients, rest.coordinates, stretch.path.direction, modes)
+    track = start_track(first, len(rest))
+    n = follow_eigenvalues(track, rest.coefficients, rest.path_variables, stretch.path.direction, modes)
     if n == 0:
         return None
-    track = part_of_track(track, 0, n)
+    track = slice_track(track, 0, n)
     known = _known_along(rest, track, modes, complete)
-    reached = part_of_track(track, 0, len(known))
-    good, unstable = judge_points(reached, known, modes, request.accuracy)
-    return FollowedPoints(*leading(reached, modes), unstable, good)
+    reached = slice_track(track, 0, len(known))
+    good, unstable = assess_points(reached, known, modes, request.accuracy)
+    return FollowedPoints(*leading_eigenvalues(reached, modes), unstable, good)
 
 
 def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> NDArray[np.int64]:
-    """Numbers of leading eigenvalues that are proved complete at the first points of a track, (points,).
+    """Number of leading eigenvalues proved complete at each point of a track, up to the last point with a
+    proof, (points,).
 
-    complete: the number at the first point. Where it cannot be carried on, a count gives the next number.
+    complete: this number at the first point. Where no proof carries it on, a new count gives the next number.
     """
     n = len(track.w)
     coefficients = stretch.coefficients[:n]
-    p = stretch.coordinates[:n]
+    p = stretch.path_variables[:n]
     known = np.zeros(n, np.int64)
     known[0] = complete
     at = 0
     while True:
-        rest = part_of_track(track, at, n)
+        rest = slice_track(track, at, n)
         at += carry_count(rest, coefficients[at:], p[at:], stretch.path.direction, modes, known[at:])
         if at == n - 1:
             break
-        gap = best_gap(track, at + 1, modes)
-        line = float(line_in(track, at + 1, gap)[0]) if gap else 0.0
+        gap = widest_gap(track, at + 1, modes)
+        line = float(line_in_gap(track, at + 1, gap)[0]) if gap else 0.0
         if not gap or count_right_of(line, stretch.rod(at + 1)).number != gap:
             break
         at += 1
@@ -163,7 +170,9 @@ def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> N
 
 
 def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
-    """(eigenvalues to follow, pairs unsplit; number of leading eigenvalues proved complete), or None."""
+    """(eigenvalues to follow, (m,), with whole conjugate pairs; number of them proved complete); None after a
+    failure.
+    """
     try:
         modes = request.modes + STRETCH.further_modes
         search = Search(rod, replace(request, modes=modes - 1, certify=True), wanted=modes)
@@ -172,10 +181,10 @@ def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | No
     except FAILURES:
         forget_all()
         return None
-    if search.best is None or search.best.verdict is None or not outcome.certified:
+    if search.best is None or search.best.comparison is None or not outcome.certified:
         return None
-    w = search.best.found.roots.w.copy()
-    complete = search.best.verdict.here
+    w = search.best.candidates.roots.w.copy()
+    complete = search.best.comparison.found_count
     w = w[: complete + 1 + (complete < len(w) and w[complete].imag > 0)]
     for k in np.flatnonzero(w.imag > 0):
         if k + 1 == len(w):
@@ -185,7 +194,7 @@ def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | No
 
 
 def warm_up() -> None:
-    """Loads compiled code and creates solver objects, so that the first point takes no extra time."""
+    """Loads compiled code and creates the solver objects, so that the first stretch takes no extra time."""
     warm_up_search()
     path = Path(Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4), "F")
     solve_stretch(Stretch(path, np.linspace(15.0, 45.0, 12)), SpectrumRequest(2, 1e-4, certify=True))

@@ -83,7 +83,7 @@ class FoldFunction:
         columns, ends = matrix.residual_variations(orbit, tangent[None])
         row = np.empty(len(orbit.start))
         phase_row(orbit.start, p.rod, p.matrices, row)
-        along = orbit.form.change(matrix.scale.name)
+        along = orbit.form.parameter_derivative(matrix.scale.name)
         shift = phase_change(orbit.start, along, p.rod, p.matrices)
         closing = matrix.closing(jump_of(change.points, p), columns, ends)
         of_phase = shift * tangent[-1] - row @ change.start
