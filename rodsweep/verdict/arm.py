@@ -1,4 +1,4 @@
-"""Report on an arm: warnings, verdict, numbers with formulas, checks of neglected effects."""
+"""Report on an arm: warnings, verdict, table of numbers with formulas, and checks of neglected effects."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,24 +15,25 @@ from .table import NumberRow, number_rows
 from .validity import Assessment
 
 OVER_DRAG = "In brackets: the range over drag, which is known only up to a factor."
-"""Sentence below the table of numbers."""
+"""Sentence below the table of numbers. It explains the brackets: no drag coefficient is known exactly."""
 NUMBERS_BEGIN = 18
-"""Column of the values, right of the names."""
+"""Column, in characters, at which the values of the table start; the names of the numbers stand
+left of it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmReport:
-    """Report on an arm: `lines` for a terminal, text without colours, a table in a notebook."""
+    """Report on an arm. `lines` and `str` give text for a terminal; a notebook shows HTML."""
 
     validity: Validity
-    """Whether the model applies at the threshold and under the load."""
+    """Whether the model applies to the arm, at the flutter threshold and under the load."""
     warnings: tuple[Check, ...]
-    """Checks that make the verdict doubtful, printed above the verdict."""
+    """Checks that make the verdict doubtful; the report shows them above the verdict."""
     verdict: tuple[str, ...]
     """Sentences of the verdict; the first is the headline."""
     rows: tuple[NumberRow, ...]
     checks: tuple[Check, ...]
-    """All other checks of neglected effects."""
+    """Checks of neglected effects that are not among `warnings`."""
 
     def __str__(self) -> str:
         return "\n".join(line for line, _ in self.lines())
@@ -40,7 +41,9 @@ class ArmReport:
     __repr__ = __str__
 
     def lines(self) -> Iterator[tuple[str, str]]:
-        """(text wrapped at 80 columns, style); the style is "warning", "headline" or ""."""
+        """Yields (text, style) of each paragraph, wrapped at 80 columns; style: "warning",
+        "headline" or "".
+        """
         for check in self.warnings:
             yield folded(check.text), "warning"
         for number, sentence in enumerate(self.verdict):
@@ -67,7 +70,9 @@ class ArmReport:
 
 
 def report_on(arm: SlenderArm) -> ArmReport:
-    """Solves for the thresholds of an arm and reports. InputError if a relative load has no flutter."""
+    """Report on an arm; solves for the thresholds. Raises InputError if the load is given relative to the
+    flutter load and the arm does not flutter.
+    """
     planes = with_load(planes_of(arm))
     first = planes.first
     assessment = Assessment(first.arm, first.found)

@@ -1,7 +1,7 @@
-"""Verdict on an arm in sentences: flutter, frequency of beating, return to the straight state.
+"""Verdict on an arm in sentences: flutter load, frequency of beating, return to stability.
 
-The first sentence is the headline. If the model does not apply, the headline says so, and further sentences
-are conditional on the absence of the neglected effects.
+The first sentence is the headline. If the model does not apply, the headline says so, and all further
+sentences are conditional: "Without inertia it would flutter ...".
 """
 
 from ..model.arm.neglected import Validity
@@ -14,7 +14,7 @@ from .validity import Assessment
 
 
 def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
-    """Verdict in the plane in which the arm flutters first, over the range of drag."""
+    """Verdict on an arm in the plane in which it flutters first, over the range of drag."""
     plane = planes.first
     if plane.found.failures:
         return ["The thresholds could not be found with every drag: " + "; ".join(plane.found.failures) + "."]
@@ -30,7 +30,7 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
 
 
 def _verdict(plane: PlaneOfMotion) -> list[str]:
-    """Sentences for an arm inside the model, or in its doubtful range."""
+    """Sentences for an arm to which the model applies, perhaps doubtfully."""
     arm = plane.arm
     found = plane.found
     load = Load(plane.arm)
@@ -58,13 +58,15 @@ def _verdict(plane: PlaneOfMotion) -> list[str]:
 
 
 def _where(plane: PlaneOfMotion, flutter: Span) -> str:
-    """Range of the flutter load, with the plane's name for a rectangle."""
+    """Range of the flutter load over the drags as text, with the name of the plane for a
+    rectangular section.
+    """
     where = Load(plane.arm).of(flutter)
     return f"{where} in {plane.name}" if plane.name else where
 
 
 def _place(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
-    """Sentence on whether the arm beats under its load, compared with the range of the flutter load."""
+    """Sentence that compares the arm's load with the range of its flutter load: whether the arm beats."""
     F = plane.arm.F
     found = plane.found
     where = _where(plane, flutter)
@@ -86,13 +88,13 @@ def _place(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
 
 
 def _above(F: float, flutter: Span) -> str:
-    """Distance of a force above the range of flutter: in percent, or as a multiple above 2."""
+    """How far the force F exceeds the range of flutter, as text: in percent, or as a factor above 2."""
     low, high = (F / edge for edge in (flutter.high, flutter.low))
     return f"{rounded(low, high)} times" if low > 2 else f"{rounded_percent(low - 1, high - 1)} % above"
 
 
 def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
-    """Conditional sentences for an arm outside the model: flutter without the neglected effects."""
+    """Sentences on the flutter that an arm outside the model would have without the effects `neglected`."""
     arm = plane.arm
     found = plane.found
     load = Load(plane.arm)
@@ -114,7 +116,7 @@ def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
 
 
 def _other_plane(planes: Planes, verb: str) -> list[str]:
-    """Sentence on flutter in the second plane of a rectangle; empty for other sections."""
+    """Sentence on flutter in the second plane of a rectangular section; an empty list for other sections."""
     second = planes.second
     if second is None:
         return []
@@ -128,7 +130,7 @@ def _other_plane(planes: Planes, verb: str) -> list[str]:
 
 
 def _until(plane: PlaneOfMotion, load: Load) -> str:
-    """Clause on where the search ends: at a load, or at the load that crushes the arm."""
+    """Clause on the end of the search: at a load, or at the load that crushes the arm."""
     end = load.of(Span(plane.found.end, plane.found.end))
     if plane.found.end > 0.999 * plane.arm.crushing_force:
         return f"before it is crushed at {end}"
@@ -136,6 +138,6 @@ def _until(plane: PlaneOfMotion, load: Load) -> str:
 
 
 def _swinging(found: FlutterRange, load: Load) -> list[str]:
-    """Sentence on the onset of oscillation of decaying disturbances; empty without an onset."""
+    """Sentence on the load from which decaying disturbances oscillate; an empty list without such a load."""
     onset = found.force(ChangeKind.onset)
     return [] if onset is None else [f"From {load.of(onset)} on a disturbance swings as it dies away."]
