@@ -58,9 +58,9 @@ class Arm(SlenderArm):
 
     def report(self) -> "ArmReport":
         """Verdict, numbers with formulas and sources, and effects neglected by the model."""
-        from ..verdict.arm import report_on
+        from ..verdict.arm import arm_report
 
-        return report_on(self)
+        return arm_report(self)
 
     @in_sentences('arm.replace(length="12 cm")')
     def replace(self, **changed: Given | None) -> "Arm":

@@ -14,9 +14,9 @@ from .sentences import verdict_sentences
 from .table import NumberRow, number_rows
 from .validity import Assessment
 
-OVER_DRAG = "In brackets: the range over drag, which is known only up to a factor."
+BRACKETS_NOTE = "In brackets: the range over drag, which is known only up to a factor."
 """Sentence below the table of numbers. It explains the brackets: no drag coefficient is known exactly."""
-NUMBERS_BEGIN = 18
+VALUE_COLUMN = 18
 """Column, in characters, at which the values of the table start; the names of the numbers stand
 left of it."""
 
@@ -50,13 +50,13 @@ class ArmReport:
             yield folded(sentence), "" if number else "headline"
         yield "", ""
         for name, value, formula, source in self.rows:
-            place = " " * NUMBERS_BEGIN
-            yield f"{name:{NUMBERS_BEGIN}}{value}", ""
+            place = " " * VALUE_COLUMN
+            yield f"{name:{VALUE_COLUMN}}{value}", ""
             yield folded(f"{formula}; {source}", place, place + "  "), ""
-        yield OVER_DRAG, ""
+        yield BRACKETS_NOTE, ""
         yield "", ""
         for check in self.checks:
-            yield folded(check.text), "" if check.fine else "warning"
+            yield folded(check.text), "" if check.is_negligible else "warning"
 
     def _repr_html_(self) -> str:
         warnings = "".join(f"<p>{escape(check.text)}</p>" for check in self.warnings)
@@ -66,10 +66,10 @@ class ArmReport:
         cells = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in self.rows)
         table = f"<table><tr>{head}</tr>{''.join(f'<tr>{row}</tr>' for row in cells)}</table>"
         checks = "".join(f"<li>{escape(check.text)}</li>" for check in self.checks)
-        return f"{warnings}{verdict}{table}<p>{OVER_DRAG}</p><ul>{checks}</ul>"
+        return f"{warnings}{verdict}{table}<p>{BRACKETS_NOTE}</p><ul>{checks}</ul>"
 
 
-def report_on(arm: SlenderArm) -> ArmReport:
+def arm_report(arm: SlenderArm) -> ArmReport:
     """Report on an arm; solves for the thresholds. Raises InputError if the load is given relative to the
     flutter load and the arm does not flutter.
     """

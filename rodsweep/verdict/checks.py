@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 
 MIN_SLENDERNESS = 20.0
 """Smallest ratio of length to radius at which slender-body theory is accurate to about ten percent."""
-LOWERED_BY_INERTIA = 0.64
+THRESHOLD_DECREASE_BY_INERTIA = 0.64
 """Estimated relative decrease of the flutter threshold by inertia, per radian of phase between drag and
 velocity caused by inertia."""
-SAG_OF_BUCKLING = SELF_BUCKLING / 8
+SAG_AT_SELF_BUCKLING = SELF_BUCKLING / 8
 """Sag over length, w L^3/(8 E I), of a horizontal arm whose weight w L just buckles an upright arm."""
-LARGEST_SAG = 0.25
+MAX_STATED_SAG = 0.25
 """Largest sag over length for which a check states the number. Beyond, the linear formula is inaccurate."""
 USUAL_POISSON = (0.3, 0.5)
 """Range of Poisson's ratio of rubbers and gels; a check warns of a ratio outside."""
@@ -45,14 +45,14 @@ class Check:
         return self.of_verdict and self.validity == Validity.doubtful
 
     @property
-    def fine(self) -> bool:
+    def is_negligible(self) -> bool:
         """Whether the effect is small enough to neglect."""
         return self.validity == Validity.applies
 
     @property
     def text(self) -> str:
         """The sentence, with the prefix "warning: " unless the effect is small enough to neglect."""
-        return self.sentence if self.fine else f"warning: {self.sentence}"
+        return self.sentence if self.is_negligible else f"warning: {self.sentence}"
 
 
 def checks_of(assessment: "Assessment") -> list[Check]:
@@ -145,7 +145,7 @@ def inertia(of_arm: Effect, of_fluid: Effect) -> list[Check]:
     if isnan(of_arm.value):
         return []
     validity = max(map(_validity, (of_arm, of_fluid)))
-    lowered = 100 * LOWERED_BY_INERTIA * float(of_arm.value + of_fluid.value)
+    lowered = 100 * THRESHOLD_DECREASE_BY_INERTIA * float(of_arm.value + of_fluid.value)
     ending = (
         "neither matters",
         f"they lower the threshold of flutter by some {lowered:.1g} %",
@@ -206,8 +206,10 @@ def weight(effect: Effect | None, arm: SlenderArm) -> Check:
         return Check(Validity.applies, says)
     share = float(effect.value)
     validity = _validity(effect)
-    sag = SAG_OF_BUCKLING * share
-    level = f"a level arm sags by {sag:.2g} of its length" if sag < LARGEST_SAG else "a level arm hangs down"
+    sag = SAG_AT_SELF_BUCKLING * share
+    level = (
+        f"a level arm sags by {sag:.2g} of its length" if sag < MAX_STATED_SAG else "a level arm hangs down"
+    )
     ending = (
         "left out with reason",
         "it bends the arm a little, which the model leaves out",

@@ -10,11 +10,11 @@ from ..model.arm.drag import Drag
 from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, ThresholdStatus, solve_thresholds
 from ..solve.changes.unstable_modes import ChangeKind, Crossing
 from ..solve.exclusive import solving
-from .relative import ENDS_OF_VARIED, SEARCH_END, rod_with
+from .relative import SEARCH_END, SEARCH_ENDS_OF_VARIED, rod_with
 
 SEARCH_REQUEST = ThresholdsRequest(F_max=SEARCH_END, accuracy=1e-6, certify=True, crossings=1000)
 """Request for all thresholds of an arm, with relative accuracy 1e-6 and a proof that none is missing."""
-BEYOND_FLUTTER = 2.0
+MIN_SEARCH_RATIO = 2.0
 """Least ratio of the end of the search to the first flutter force and to the load, for an arm that is not
 uniform or not of linear material."""
 
@@ -60,12 +60,12 @@ class FlutterForces:
 class Span:
     """Smallest and largest value of a quantity over the drags of an arm.
 
-    always: whether the quantity exists for every drag.
+    for_every_drag: whether the quantity exists for every drag.
     """
 
     low: float
     high: float
-    always: bool = True
+    for_every_drag: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,13 +133,13 @@ def flutter_range(arm: SlenderArm) -> FlutterRange:
 
 def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, FlutterForces]:
     """(end of the search, changes of stability up to the end). The end exceeds the first flutter force and
-    the load by the factor BEYOND_FLUTTER.
+    the load by the factor MIN_SEARCH_RATIO.
     """
     known_load = arm.load is not None and arm.share_of_flutter is None
-    for end in ENDS_OF_VARIED if arm.shape.varies else (SEARCH_END,):
+    for end in SEARCH_ENDS_OF_VARIED if arm.shape.varies else (SEARCH_END,):
         found = flutter_forces(arm, drag, end)
         flutter = found.force(ChangeKind.hopf)
         reached = max(inf if flutter is None else flutter, arm.F if known_load else 0.0)
-        if BEYOND_FLUTTER * reached <= end or found.thresholds.end < end:
+        if MIN_SEARCH_RATIO * reached <= end or found.thresholds.end < end:
             break
     return end, found

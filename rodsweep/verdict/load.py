@@ -7,31 +7,31 @@ from ..model.arm.quantities import UNITS
 from ..model.units import compact, split_quantity, unit_of, written_in
 from .flutter import Span
 
-FLUTTER_ABOUT = 36.0
+TYPICAL_FLUTTER_FORCE = 36.0
 """Typical force of flutter, in k3/L^2. If the user gave no load, it decides between units such as
 Pa and kPa."""
 ROUNDING = 1e-12
 """Relative tolerance when rounding down: without it, the rounding error of 4.7 could print as 4.69."""
-LONGEST_GIVEN = 6
+MAX_TYPED_LENGTH = 6
 """Longest number, in characters, that a report repeats as the user typed it. A longer number is rounded to
 four digits."""
 
 
-def digits(value: float) -> str:
+def three_digits(value: float) -> str:
     """A number as text with three significant digits; no exponent below a million."""
     short = float(f"{value:.3g}")
     return f"{short:.0f}" if 1000 <= abs(short) < 1e6 else f"{short:g}"
 
 
-def rounded(low: float, high: float) -> str:
+def range_text(low: float, high: float) -> str:
     """The range from `low` to `high` as text, with three significant digits; a single number if the digits
     are equal.
     """
-    ends = [digits(low), digits(high)]
+    ends = [three_digits(low), three_digits(high)]
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
-def rounded_percent(low: float, high: float) -> str:
+def percent_range_text(low: float, high: float) -> str:
     """A range of fractions as text in percent, rounded to integers, or to one significant digit below 1
     percent.
     """
@@ -48,22 +48,24 @@ class Load:
         given = getattr(arm, self.name)
         si = UNITS[self.name][0]
         self.unit = (
-            unit_of(given, si) if given is not None else compact(FLUTTER_ABOUT * arm.load_scale, si)[1]
+            unit_of(given, si)
+            if given is not None
+            else compact(TYPICAL_FLUTTER_FORCE * arm.load_scale, si)[1]
         )
         self.given = "" if given is None else _short(given, float(getattr(arm.si, self.name)), si)
-        """Load in the user's notation, rounded to four digits if longer than LONGEST_GIVEN; may be empty."""
+        """The load as the user typed it, as rounded by `_short`; empty without a load."""
         self.scale = written_in(arm.load_scale, self.unit, si)
-        """Load at F = 1, in `unit`."""
+        """The load that corresponds to F = 1, in `unit`."""
 
     def of(self, forces: Span) -> str:
         """A range of forces in k3/L^2, as text in the unit of the load."""
-        return f"{rounded(forces.low * self.scale, forces.high * self.scale)} {self.unit}"
+        return f"{range_text(forces.low * self.scale, forces.high * self.scale)} {self.unit}"
 
     def at_most(self, F: float) -> str:
         """The force F in k3/L^2, as text in the unit of the load, rounded down to three digits."""
         value = F * self.scale
         unit = 10.0 ** (floor(log10(value)) - 2)
-        return f"{digits(floor(value / unit * (1 + ROUNDING)) * unit)} {self.unit}"
+        return f"{three_digits(floor(value / unit * (1 + ROUNDING)) * unit)} {self.unit}"
 
 
 def _short(given: object, value: float, si: str) -> str:
@@ -73,6 +75,6 @@ def _short(given: object, value: float, si: str) -> str:
     if not isinstance(given, str):
         return f"{value:.4g} {si}"
     number = given.split()[0]
-    if len(number) <= LONGEST_GIVEN:
+    if len(number) <= MAX_TYPED_LENGTH:
         return given.strip()
     return f"{split_quantity(given)[0]:.4g} {split_quantity(given)[1]}"

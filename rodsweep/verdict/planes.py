@@ -10,7 +10,7 @@ from ..model.arm.quantities import UNITS
 from ..model.units import compact
 from ..solve.changes.unstable_modes import ChangeKind
 from .flutter import FlutterRange, flutter_range
-from .relative import turned
+from .relative import quarter_turned
 
 A = TypeVar("A", bound=SlenderArm)
 
@@ -42,7 +42,7 @@ class Planes:
     second: PlaneOfMotion | None = None
 
     @property
-    def always(self) -> bool:
+    def always_first(self) -> bool:
         """Whether flutter in the plane `first` needs the smaller load for every drag."""
         if self.second is None:
             return True
@@ -56,7 +56,7 @@ def planes_of(arm: SlenderArm) -> Planes:
     """
     if arm.isotropic:
         return Planes(PlaneOfMotion(arm, flutter_range(arm)))
-    other = turned(arm)
+    other = quarter_turned(arm)
     own = PlaneOfMotion(arm, flutter_range(arm), "the plane of its height")
     across = PlaneOfMotion(other, flutter_range(other), "the plane of its width")
     if across.flutter_loads[0] < own.flutter_loads[0]:

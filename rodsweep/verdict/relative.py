@@ -30,7 +30,7 @@ smaller force is searched up to this smaller force."""
 FIRST_SEARCH_END = 200.0
 """Largest force of the first search, in k3/L^2. It takes half the time of the full search, and most arms
 flutter below."""
-ENDS_OF_VARIED = (3.0, 10.0, 30.0, 100.0, 300.0, SEARCH_END)
+SEARCH_ENDS_OF_VARIED = (3.0, 10.0, 30.0, 100.0, 300.0, SEARCH_END)
 """Largest forces of successive searches, in k3/L^2 at the base, for an arm that is not uniform or not of
 linear material. The first search that finds flutter is the last: far beyond flutter, where many modes are
 unstable, a search takes up to half a minute for each drag."""
@@ -40,13 +40,13 @@ have, and few enough to be equal on all machines: a run resumed on another machi
 """
 
 
-class FlutterUnknown(InputError):
+class FlutterSearchFailed(InputError):
     """Raised if the search for the flutter load behind a relative load fails; the message states
     the reason.
     """
 
 
-def turned(arm: A) -> A:
+def quarter_turned(arm: A) -> A:
     """The arm turned by 90 degrees about its axis: width and height of its rectangular section
     are exchanged.
     """
@@ -63,7 +63,7 @@ def plane_rods(
     """
     planes = [(_in_its_plane(arm, build, taper), 1.0)]
     if not arm.isotropic:
-        other = turned(arm)
+        other = quarter_turned(arm)
         scale = other.cross_section.second_moment / arm.cross_section.second_moment
         planes.append((_in_its_plane(other, build, taper), scale))
     return planes
@@ -85,7 +85,7 @@ def rod_with(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Rod:
 
 def first_flutter(arm: SlenderArm) -> float:
     """Smallest flutter force of an arm over its planes of motion, in its k3/L^2; inf without flutter. Raises
-    FlutterUnknown if the search fails.
+    FlutterSearchFailed if the search fails.
     """
     return min(first_hopf_force(rod) * scale for rod, scale in plane_rods(arm))
 
@@ -94,19 +94,19 @@ def first_flutter(arm: SlenderArm) -> float:
 def first_hopf_force(rod: Rod) -> float:
     """Smallest F at which a pair of modes of `rod` becomes unstable, rounded to REFERENCE_DIGITS digits.
 
-    inf if no pair becomes unstable up to the end of the search. Raises FlutterUnknown if the search
+    inf if no pair becomes unstable up to the end of the search. Raises FlutterSearchFailed if the search
     overflows, or cannot exclude a smaller F.
     """
     path = Path(rod, "F")
     first_up_to = _first_up_to if rod.standard else _first_of_varied
     try:
-        for end in (FIRST_SEARCH_END, SEARCH_END) if rod.standard else ENDS_OF_VARIED:
+        for end in (FIRST_SEARCH_END, SEARCH_END) if rod.standard else SEARCH_ENDS_OF_VARIED:
             first = first_up_to(path, end_below_crushing(rod, end))
             if first < inf:
                 return float(f"{first:.{REFERENCE_DIGITS}g}")
     except (ArithmeticError, MemoryError, np.linalg.LinAlgError) as error:
         why = str(error) or type(error).__name__
-        raise FlutterUnknown(
+        raise FlutterSearchFailed(
             f"the search for the flutter threshold of a relative load fails: {why}"
         ) from error
     return inf
@@ -118,12 +118,12 @@ def _first_up_to(path: Path, end: float) -> float:
     """
     boxes = first_boxes(path, 0.0, end)
     if boxes is None:
-        raise FlutterUnknown("the search for the flutter threshold of a relative load has no a-priori bound")
+        raise FlutterSearchFailed("the search for the flutter of a relative load has no a-priori bound")
     zeros, left, _ = cover(boxes, path.origin, path.direction)
     first = min((zero.p for zero in zeros if _grows(path, zero)), default=inf)
     if any(min(box.p_from, box.p_to) < first for box in left):
-        raise FlutterUnknown(
-            "the search for the flutter threshold of a relative load cannot exclude a smaller one"
+        raise FlutterSearchFailed(
+            "the search for the flutter of a relative load cannot exclude a smaller flutter load"
         )
     return first
 
@@ -138,15 +138,15 @@ def _first_of_varied(path: Path, end: float) -> float:
     try:
         found = pair_crossings(path, 0.0, end)
     except FAILURES as error:
-        raise FlutterUnknown(
+        raise FlutterSearchFailed(
             f"the search for the flutter threshold of a relative load fails: {cause_of(error)}"
         ) from error
     first = min(
         (crossing.at for crossing in found.crossings if crossing.kind == ChangeKind.hopf), default=inf
     )
     if not found.proved or (found.ended_early and first == inf):
-        raise FlutterUnknown(
-            "the search for the flutter threshold of a relative load cannot exclude a smaller one"
+        raise FlutterSearchFailed(
+            "the search for the flutter of a relative load cannot exclude a smaller flutter load"
         )
     return first
 

@@ -12,7 +12,7 @@ from ..model.units import unit_of, written_in
 from .load import Load
 from .validity import Assessment, rounded_down, rounded_up, thickness_factor, viscosity_factor
 
-LEAST_EXCESS = 1.1
+FOUR_DIGIT_EXCESS = 1.1
 """Ratio of an effect to its limit below which the ratio has four digits. Two digits could read 1.0."""
 
 
@@ -49,7 +49,7 @@ def kind_of(effect: Effect) -> str:
 def as_multiple(effect: Effect) -> str:
     """Ratio of an effect to its limit, as text: "2.5 times"."""
     excess = float(effect.excess)
-    return f"{float(f'{excess:.2g}'):g} times" if excess >= LEAST_EXCESS else f"{excess:.4g} times"
+    return f"{float(f'{excess:.2g}'):g} times" if excess >= FOUR_DIGIT_EXCESS else f"{excess:.4g} times"
 
 
 def _one_of_a_kind(effects: list[Effect]) -> list[Effect]:

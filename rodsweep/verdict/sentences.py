@@ -7,7 +7,7 @@ sentences are conditional: "Without inertia it would flutter ...".
 from ..model.arm.neglected import Validity
 from ..solve.changes.unstable_modes import ChangeKind
 from .flutter import FlutterRange, Span
-from .load import Load, rounded, rounded_percent
+from .load import Load, percent_range_text, range_text
 from .planes import PlaneOfMotion, Planes
 from .remedies import effect_kinds_in_words, not_applicable_sentences
 from .validity import Assessment
@@ -42,15 +42,15 @@ def _verdict(plane: PlaneOfMotion) -> list[str]:
             stays = f": whether it beats at {load.given} is not known"
         return [f"The arm does not flutter {_until(plane, load)}{stays}."]
     rate = found.frequency(ChangeKind.hopf)
-    beats = "" if rate is None else f" begins to beat at {rounded(rate.low, rate.high)} Hz"
+    beats = "" if rate is None else f" begins to beat at {range_text(rate.low, rate.high)} Hz"
     if arm.load is None:
         says = [f"The arm flutters at {_where(plane, flutter)}: above, it gives way and{beats}."]
     else:
         says = [_place(plane, flutter, load), f"Above, the straight arm gives way and{beats}."]
-    if not flutter.always:
+    if not flutter.for_every_drag:
         says.append("Part of the range of drag has no flutter at all.")
     if back is not None:
-        some = "" if back.always else ", with part of the range of drag"
+        some = "" if back.for_every_drag else ", with part of the range of drag"
         says.append(f"The straight arm is stable again above {load.of(back)}{some}.")
     else:
         says.append(f"The straight arm does not become stable again {_until(plane, load)}.")
@@ -73,7 +73,7 @@ def _place(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
     if F <= 0:
         return f"Flutter is at {where}; {load.given} does not push, and the arm stays straight."
     if flutter.low > F:
-        percent = rounded_percent(1 - F / flutter.low, 1 - F / flutter.high)
+        percent = percent_range_text(1 - F / flutter.low, 1 - F / flutter.high)
         return f"{load.given} is {percent} % below flutter, at {where}: the arm stays straight."
     if found.end < F:
         end = load.of(Span(found.end, found.end))
@@ -90,7 +90,7 @@ def _place(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
 def _above(F: float, flutter: Span) -> str:
     """How far the force F exceeds the range of flutter, as text: in percent, or as a factor above 2."""
     low, high = (F / edge for edge in (flutter.high, flutter.low))
-    return f"{rounded(low, high)} times" if low > 2 else f"{rounded_percent(low - 1, high - 1)} % above"
+    return f"{range_text(low, high)} times" if low > 2 else f"{percent_range_text(low - 1, high - 1)} % above"
 
 
 def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
@@ -102,12 +102,12 @@ def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
     rate = found.frequency(ChangeKind.hopf)
     if flutter is None:
         return [f"Without {neglected} it would not flutter {_until(plane, load)}."]
-    beats = "" if rate is None else f", where it would begin to beat at {rounded(rate.low, rate.high)} Hz"
+    beats = "" if rate is None else f", where it would begin to beat at {range_text(rate.low, rate.high)} Hz"
     says = [f"Without {neglected} it would flutter at {_where(plane, flutter)}{beats}."]
     if arm.load is None or arm.F <= 0:
         return says
     if flutter.low > arm.F:
-        place = f"{rounded_percent(1 - arm.F / flutter.low, 1 - arm.F / flutter.high)} % below"
+        place = f"{percent_range_text(1 - arm.F / flutter.low, 1 - arm.F / flutter.high)} % below"
     elif flutter.high < arm.F:
         place = _above(arm.F, flutter)
     else:
@@ -125,7 +125,7 @@ def _other_plane(planes: Planes, verb: str) -> list[str]:
     flutter = second.found.force(ChangeKind.hopf)
     if flutter is None:
         return [f"In {second.name} there {verb} no flutter {_until(second, Load(second.arm))}."]
-    decides = "" if planes.always else "; with part of the range of drag this plane goes first"
+    decides = "" if planes.always_first else "; with part of the range of drag this plane goes first"
     return [f"In {second.name} flutter {verb} at {Load(second.arm).of(flutter)}{decides}."]
 
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from ..model.arm.arm import SlenderArm
 from ..model.material.laws import LINEAR
-from .load import rounded
+from .load import range_text
 from .planes import PlaneOfMotion
 from .shape import law_words, station_words
 
@@ -29,9 +29,9 @@ def number_rows(plane: PlaneOfMotion) -> list[NumberRow]:
     return [
         *plane_row(plane),
         *shape_rows(arm),
-        *dimensional(arm),
+        *dimensional_rows(arm),
         *drag_rows(arm),
-        *dimensionless(arm),
+        *dimensionless_rows(arm),
     ]
 
 
@@ -65,7 +65,7 @@ def shape_rows(arm: SlenderArm) -> list[NumberRow]:
     return rows
 
 
-def dimensional(arm: SlenderArm) -> list[NumberRow]:
+def dimensional_rows(arm: SlenderArm) -> list[NumberRow]:
     """Rows with cross-section, stiffness and load of an arm, in SI units."""
     section = arm.cross_section
     kappa = section.shear_coefficient(arm.poisson)
@@ -92,7 +92,7 @@ def with_drag_range(arm: SlenderArm, values: list[float], unit: str = "") -> str
     """values[0] as text, which belongs to the most likely drag, with the range of `values` over all drags in
     brackets.
     """
-    return f"{values[0]:.3g} ({rounded(min(values), max(values))}){unit}"
+    return f"{values[0]:.3g} ({range_text(min(values), max(values))}){unit}"
 
 
 def drag_rows(arm: SlenderArm) -> list[NumberRow]:
@@ -127,7 +127,7 @@ def drag_rows(arm: SlenderArm) -> list[NumberRow]:
     ]
 
 
-def dimensionless(arm: SlenderArm) -> list[NumberRow]:
+def dimensionless_rows(arm: SlenderArm) -> list[NumberRow]:
     """Rows with the dimensionless parameters of an arm, named like the keys of a config."""
     drags = arm.drags
     force = NumberRow("F", f"{arm.F:.5g}", "tip force L^2/k3", "paper, Sec. IV, VI") if arm.load else None

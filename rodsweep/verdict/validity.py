@@ -22,14 +22,14 @@ from ..solve.changes.unstable_modes import ChangeKind, Crossing
 from ..solve.exclusive import solving
 from .flutter import FlutterRange, flutter_forces
 
-DIGITS_OF_FACTORS = 2
+REMEDY_DIGITS = 2
 """Significant digits of the factors in remedies, which are rounded to the safe side."""
-THINNING_STEPS = 20
+MAX_THINNING_ITERATIONS = 20
 """Maximum number of iterations of `thickness_factor`. Ten suffice if inertia of arm and fluid are
 comparable."""
 VISCOSITY_TARGET = 0.995
 """Ratio of required to actual viscosity at which the iteration of `thickness_factor` aims."""
-CLOSE_TO_LIMIT = 0.99
+MIN_VISCOSITY_RATIO = 0.99
 """Stopping criterion of `thickness_factor`: a ratio of required to actual viscosity between this number and
 1. The thickness then has two correct digits."""
 
@@ -121,12 +121,12 @@ def thickness_factor(arm: SlenderArm) -> float:
     if arm.shape.varies:
         return nan
     factor = 1.0
-    for _ in range(THINNING_STEPS):
+    for _ in range(MAX_THINNING_ITERATIONS):
         thinner = _scaled(arm, factor)
         found = FlutterRange((flutter_forces(thinner, thinner.drags[0]),))
         effects = effects_at_flutter(thinner, found)
         excess = viscosity_factor(effects)
-        if CLOSE_TO_LIMIT < excess <= 1.0:
+        if MIN_VISCOSITY_RATIO < excess <= 1.0:
             applies = worst_validity(effects, of_cycles=False) < Validity.does_not_apply
             return factor if applies else nan
         # Mass times rate over drag scales as thickness^6/viscosity^2, hence thickness as viscosity^(1/3).
@@ -142,12 +142,12 @@ def _scaled(arm: SlenderArm, factor: float) -> SlenderArm:
 
 
 def rounded_down(value: float) -> float:
-    """A positive number, rounded down to DIGITS_OF_FACTORS significant digits."""
-    unit = 10.0 ** (floor(log10(value)) - DIGITS_OF_FACTORS + 1)
+    """A positive number, rounded down to REMEDY_DIGITS significant digits."""
+    unit = 10.0 ** (floor(log10(value)) - REMEDY_DIGITS + 1)
     return floor(value / unit) * unit
 
 
 def rounded_up(value: float) -> float:
-    """A positive number, rounded up to DIGITS_OF_FACTORS significant digits."""
-    unit = 10.0 ** (floor(log10(value)) - DIGITS_OF_FACTORS + 1)
+    """A positive number, rounded up to REMEDY_DIGITS significant digits."""
+    unit = 10.0 ** (floor(log10(value)) - REMEDY_DIGITS + 1)
     return ceil(value / unit) * unit
