@@ -1,4 +1,6 @@
-"""Contents of a page: controls, pictures, numbers and texts, and the pictures that each answer fills."""
+"""Contents of a page: controls, pictures, tables and texts, and the pictures that each kind of
+answer fills.
+"""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -24,9 +26,10 @@ from .texts import SolvingSign, show_texts
 
 
 class PageContents:
-    """All Bokeh models of a page.
+    """All Bokeh models of a page: controls, pictures, table, texts and buttons.
 
-    changed: callback of the controls. loaded: callback for a config that the user loads, with its text.
+    changed: callback for a change of a control. loaded: callback for the text of a config file that the user
+    loads.
     """
 
     def __init__(self, changed: Changed, loaded: Callable[[str], None]):
@@ -57,12 +60,14 @@ class PageContents:
 
     @property
     def cards(self) -> list[Card]:
-        """The cards of all pictures."""
+        """Cards of all pictures, each a figure that a sentence can replace."""
         pictures = (self.spectrum, self.mode, self.growth, self.beating, self.branches, self.diagram)
         return [picture.card for picture in pictures]
 
     def connect(self, document: Document, react: Mapping[str, Callable[..., None]]) -> None:
-        """Adds all models to a document. react: callbacks for clicks, by button or picture."""
+        """Adds all models to a Bokeh document. react: callback by button, or by picture that the
+        user clicks.
+        """
         for kind, button in self.buttons.items():
             button.on_click(react[kind])
         for event in (Tap, Pan):
@@ -85,7 +90,9 @@ class PageContents:
         document.template_variables["page_css"] = read("page.css")
 
     def show_point(self, state: PageState, F: float) -> None:
-        """Marks the point of the state in all pictures, and updates address, config and Python lines."""
+        """Marks the values of `state` in all pictures that have the load as an axis, and updates the shared
+        texts. F: force, in k3/L^2.
+        """
         at = F * load_axis(state).factor
         self.growth.move_point(at)
         self.branches.move_point(at)
@@ -99,7 +106,7 @@ class PageContents:
         self.sharing.show(state)
 
     def show(self, kind: str, found: dict[str, Any], state: PageState) -> None:
-        """Fills the pictures of a kind of question with its answer `found`."""
+        """Draws the answer `found` to a question of the kind `kind` in all pictures that depend on it."""
         if kind == "spectrum":
             self.spectrum.show(found)
             self.mode.show(found)
@@ -123,7 +130,7 @@ class PageContents:
         self.numbers.show(kind, found)
 
     def say(self, kind: str, sentence: str) -> None:
-        """Shows a sentence instead of the pictures of a kind of question."""
+        """Shows a sentence in place of the pictures that a question of the kind `kind` fills."""
         self.numbers.show(kind, None)
         if kind == "cycle":
             self.beating.stop()

@@ -1,4 +1,6 @@
-"""Sliders and fields of the page, which report every change as name and text."""
+"""Sliders, text fields and menus of the page. Every change is reported as the name and the new text of a
+value.
+"""
 
 from collections.abc import Callable
 from functools import partial
@@ -12,12 +14,13 @@ from .scales import SCALES, ControlScale
 from .state import ACROSS, LAW_NAMES, TABS, PageState
 
 STEPS = 400
-"""Number of steps of a slider from end to end."""
+"""Number of steps of a slider between its ends."""
 Changed = Callable[..., None]
+"""Callback for a change of a control, with the changed fields of `PageState` as keyword arguments."""
 
 
 class SliderField:
-    """A text field with a slider. A change of either calls `changed(name, text)`."""
+    """Text field and slider for the same value. A change of either calls `changed(name, text)`."""
 
     def __init__(self, scale: ControlScale, changed: Callable[[str, str], None], sheets: list[StyleSheet]):
         self.scale = scale
@@ -38,7 +41,9 @@ class SliderField:
         self._sliding = False
 
     def show(self, text: str) -> None:
-        """Shows a text, and moves the slider unless the user is sliding."""
+        """Shows `text` in the field, and moves the slider to its value unless the user is dragging the
+        slider.
+        """
         self._is_shown = True
         try:
             self.text.value = text
@@ -63,7 +68,11 @@ class SliderField:
 
 
 class Controls:
-    """All controls. changed: callback with fields of `PageState`, or `values`, texts of the tab by name."""
+    """All controls of the page.
+
+    changed: called with the changed fields of `PageState`, or with `values`, the changed texts of the tab by
+    name.
+    """
 
     def __init__(self, changed: Changed, sheet: InlineStyleSheet):
         self._changed = changed
@@ -95,7 +104,7 @@ class Controls:
         )
 
     def show(self, state: PageState) -> None:
-        """Sets all controls to a state."""
+        """Sets all controls to the values of `state`."""
         self._is_shown = True
         try:
             self.tabs.active = list(TABS).index(state.tab)

@@ -1,4 +1,4 @@
-"""Starts the page for a result file, a config, or nothing."""
+"""Start of the page for a result file, for a config, or without a file."""
 
 import asyncio
 from pathlib import Path
@@ -8,10 +8,10 @@ from .solving.forks import prepare
 
 
 def explore(source: Path | None, port: int, is_opened: bool) -> None:
-    """Serves the page until Ctrl-C.
+    """Serves the page until the user presses Ctrl-C.
 
-    source: a result file or a config with the first rod to show. is_opened: whether to open a browser. Raises
-    InputError if bokeh is missing, the source is invalid, or the port is in use.
+    source: result file or config with the first rod to show; None for a default rod. is_opened: whether to
+    open a browser. Raises InputError if bokeh is missing, the file is invalid, or the port is in use.
     """
     try:
         import bokeh  # noqa: F401 - only to check that bokeh is installed

@@ -1,4 +1,4 @@
-"""Answers from a result file, so that nothing is solved again: diagram, cycles and branches."""
+"""Answers read from a result file instead of solved: diagram, cycles and branches."""
 
 import json
 from collections.abc import Collection
@@ -21,21 +21,23 @@ from .solving.diagrams import Dataset, words_of
 from .state import PageState
 
 Found = dict[str, Any]
+"""Variables of an answer, by name."""
 DIGITS = (5, 6)
-"""Significant digits to which controls round values of a file; a rounded value stands for the stored one."""
+"""Numbers of significant digits to which controls round values. A rounded value in a control matches the
+stored value."""
 EQUAL = 1e-12
-"""Relative difference between equal values, as conversion of units leaves it."""
+"""Relative difference up to which two values are equal; conversion of units causes rounding errors."""
 POINT = "number_of_point"
-"""Dimension along which chosen points lie."""
+"""Name of the dimension along which selected points of the file lie."""
 NEAR = 0.25
-"""Distance within which a click means a stored load, as a fraction of the distance between stored loads."""
+"""Distance of a click from a stored load within which the click selects this load, as a fraction of the
+spacing of stored loads."""
 
 
 class StoredResults:
-    """A result file of rods or of arms.
+    """Answers to questions of the page from a result file of rods or arms.
 
-    state: state of the page opened by the file. diagram: answer to the question `diagram` in this state, or
-    None.
+    state: state with which the page opens. diagram: answer to the question "diagram" for this state, or None.
     """
 
     def __init__(self, path: Path, data: Dataset, state: PageState, diagram: Found | None):
@@ -49,7 +51,9 @@ class StoredResults:
         """Whether each point has one cycle."""
 
     def answer(self, kind: str, state: PageState) -> Found | None:
-        """The stored answer to a question about a state; None if the file does not hold it."""
+        """Stored answer to a question of the kind `kind` for a state of the page; None if the
+        file has none.
+        """
         if state.tab != self.state.tab or state.law != self.state.law:
             return None
         if kind == "cycle":
@@ -59,7 +63,9 @@ class StoredResults:
         return None
 
     def cycle_to_film(self, state: PageState) -> Dataset | None:
-        """The stored cycle of a rod, with axes of length 1, if it has enough shapes for a film; else None."""
+        """Stored cycle of the rod of `state`, with axes of length 1; None if there is none, or too few shapes
+        for a film.
+        """
         numbers = self._points(state)
         is_other = state.tab != self.state.tab or state.law != self.state.law
         if is_other or not self.has_cycles or len(numbers) == 0 or "shape_x" not in self.data:
@@ -70,7 +76,9 @@ class StoredResults:
         return point if is_filmed else None
 
     def load_near(self, state: PageState, at: float) -> float:
-        """The stored load, in the unit of its control, that a click at a load means, or the load itself."""
+        """Stored load nearest to `at` if a click there selects it, else `at`; both in the unit of the
+        control.
+        """
         if state.tab != self.state.tab or not self.has_cycles:
             return at
         stored = np.unique(self._values(state.tab, state.load)[self._points(state, (state.load,))])
@@ -81,7 +89,9 @@ class StoredResults:
         return nearest if abs(nearest - at) < NEAR * spacing else at
 
     def _values(self, tab: str, name: str) -> Array:
-        """Values of a parameter or of an arm's quantity at all points, (points,), in the control's unit."""
+        """Values of a parameter or of an arm's quantity at all points of the file, (points,), in the unit of
+        the control.
+        """
         default = PARAMETERS[name].default if name in PARAMETERS else None
         missing = nan if default is None else default
         own = self.data[name] if name in self.data.variables else missing
@@ -90,7 +100,9 @@ class StoredResults:
         return values
 
     def _points(self, state: PageState, free: Collection[str] = ()) -> NDArray[np.integer]:
-        """Numbers of the points of a state with any value of the free parameters."""
+        """Indices of the points of the file whose parameters equal those of `state`, except for the
+        parameters in `free`.
+        """
         same = np.ones(self.data["status"].size, dtype=bool)
         for name, text in state.values.items():
             if name not in free:
@@ -100,13 +112,13 @@ class StoredResults:
         return np.flatnonzero(same)
 
     def _at(self, numbers: NDArray[np.integer]) -> Dataset:
-        """Points by number, along the dimension `POINT`."""
+        """Points of the file with the given indices, along the dimension `POINT`."""
         if not self.dims:
             return self.data.expand_dims(POINT)
         return self.data.stack({POINT: self.dims}, create_index=False).isel({POINT: numbers})
 
     def _cycle(self, state: PageState) -> Found | None:
-        """The stored cycle of a rod, if its shapes are stored too."""
+        """Stored cycle of the rod of `state`; None if the file does not store its shapes."""
         numbers = self._points(state)
         if len(numbers) == 0 or "shape_x" not in self.data:
             return None
@@ -127,7 +139,7 @@ class StoredResults:
         }  # fmt: skip
 
     def _cycles_over_force(self, state: PageState) -> Found | None:
-        """The stored cycles of a rod at all forces, at least two."""
+        """Stored cycles of the rod of `state` at all forces; None if the file has fewer than two forces."""
         numbers = self._points(state, (state.load,))
         if len(numbers) < 2:
             return None
@@ -141,7 +153,7 @@ class StoredResults:
         return {"pieces": [], "special": [], "cycles": cycles, **self._found()}
 
     def _branch(self, state: PageState) -> Found | None:
-        """The stored branches of a rod along the force."""
+        """Stored branches of the rod of `state` along the force; None if the file has none."""
         numbers = self._points(state, (state.load,))
         if len(numbers) == 0 or "branch_F" not in self.data:
             return None
@@ -157,6 +169,6 @@ class StoredResults:
 
 
 def _stands_for(value: float, stored: float) -> bool:
-    """Whether a control's value is a stored one, or the stored one rounded."""
+    """Whether a control's value equals the stored value, or the stored value after rounding to DIGITS."""
     rounded = [float(f"{stored:.{digits}g}") for digits in DIGITS]
     return any(each == value or abs(each - value) <= EQUAL * abs(each) for each in (stored, *rounded))

@@ -1,4 +1,6 @@
-"""The arm: beating, bent by the tip, or moving after the release. The browser animates solved shapes."""
+"""Picture of the arm: its limit cycle, its shape while the user drags the tip, and its motion after the
+release. The browser animates shapes that are already solved.
+"""
 
 from collections.abc import Callable
 from typing import Any
@@ -14,16 +16,16 @@ from ..solving.letting_go import Tip
 from .card import NEUTRAL, POINT, STABLE, Card, columns, empty_source, new_figure, sentence_of, show_range
 
 PERIOD_SECONDS = 2.0
-"""Duration of one period on the screen."""
+"""Duration of one period of a cycle on the screen, in seconds."""
 ENDS = {"cycle": "it beats", "straight": "it comes to rest", "torus": "it beats with two frequencies"}
-"""Words for ends of motions; for all further ends the sentence of the status is shown."""
+"""Words for the state that a released arm reaches, by status; an unlisted status has its own sentence."""
 SHAPE = ("x", "y", "number")
-"""Columns of a source of shapes: coordinates of all nodes of all shapes, and the number of nodes of each
+"""Columns of a Bokeh source of shapes: coordinates of all nodes of all shapes, and the number of nodes of a
 shape."""
 
 
 class BeatingPicture:
-    """The arm over a period, at a slow pace, and the path of its tip."""
+    """Animated picture of the arm over a period, in slow motion, with the path of its tip."""
 
     def __init__(self) -> None:
         figure = new_figure(
@@ -49,14 +51,16 @@ class BeatingPicture:
         self.card.entitle("")
 
     def animation(self) -> CustomJS:
-        """Code that the browser runs once when the page is ready."""
+        """Browser script that animates the arm; it runs once, when the page is ready."""
         names = ("shapes", "motion", "reached", "arm", "bent")
         sources: dict[str, Any] = {name: getattr(self, name) for name in names}
         more = {"period": PERIOD_SECONDS, "figure": self.card.figure, "colour": STABLE}
         return CustomJS(args=sources | more, code=read("beating.js"))
 
     def on_drag(self, drag: Callable[[str, Tip], None]) -> None:
-        """Registers the function called after a drag of the tip: kind of question, place of the tip in L."""
+        """Registers `drag`, which is called with the kind of question and the position of the tip, in L, when
+        the user drags the tip.
+        """
 
         def dragged(attribute: str, old: Any, new: dict[str, list[Any]]) -> None:
             if len(new["x"]) == 1:
@@ -66,7 +70,7 @@ class BeatingPicture:
         self.grip.on_change("data", dragged)
 
     def show(self, found: dict[str, Any], length: PictureAxis) -> None:
-        """Draws an answer of the task limit_cycle; where it has no cycle, the straight arm and a sentence."""
+        """Draws the cycle of a `limit_cycle` answer; without a cycle, the straight arm and a sentence."""
         self.length = length
         self.let_go()
         x, y = (found[name] * length.factor for name in ("shape_x", "shape_y"))
@@ -90,11 +94,11 @@ class BeatingPicture:
             self.card.tell(sentence_of(found))
 
     def show_bent(self, found: dict[str, Any]) -> None:
-        """Draws the arm bent by its tip."""
+        """Draws the equilibrium shape of the arm whose tip the user drags."""
         self.bent.data = {name: found[name] * self.length.factor for name in "xy"}
 
     def show_motion(self, found: dict[str, Any]) -> None:
-        """Begins the motion of a released arm, and names the end of the motion above the picture."""
+        """Starts the animation of a released arm, and writes into the title which state the arm reaches."""
         factor = self.length.factor
         step = found["step"]
         x = found["x"] * factor
@@ -113,18 +117,20 @@ class BeatingPicture:
         self.card.entitle(f"Let go at ({place}) {self.length.label}: {end}{part}")
 
     def let_go(self) -> None:
-        """Forgets a bent arm and its motion."""
+        """Removes the shape of a dragged arm and its motion after the release from the picture."""
         for source in (self.motion, self.reached, self.bent):
             if len(source.data["x"]):
                 source.data = {name: [] for name in source.data}
 
     def stop(self) -> None:
-        """Ends the motion."""
+        """Removes all shapes from the picture, so that the animation stops."""
         self.let_go()
         self.shapes.data = {name: [] for name in SHAPE}
 
     def _fit(self, x: Array, y: Array) -> None:
-        """Ranges of the picture for shapes, (shapes, nodes), in its unit of length."""
+        """Sets the ranges of the axes so that all shapes x, y, (shapes, nodes), fit; in the picture's unit of
+        length.
+        """
         factor = self.length.factor
         reach = 1.15 * max(0.3 * factor, float(np.abs(y).max()))
         show_range(self.card.figure.y_range, -reach, reach)
@@ -132,6 +138,6 @@ class BeatingPicture:
 
 
 def source_of(x: Array, y: Array) -> dict[str, Any]:
-    """Columns `SHAPE` of shapes, (shapes, nodes), in single precision, which is enough for a picture."""
+    """Columns named in `SHAPE` for shapes x, y, (shapes, nodes); single precision is enough for a picture."""
     number = np.full(x.size, x.shape[1], dtype=np.float32)
     return {"x": x.ravel().astype(np.float32), "y": y.ravel().astype(np.float32), "number": number}

@@ -1,4 +1,6 @@
-"""The bifurcation diagram: the largest deflection of cycles along the force, stable or not."""
+"""Picture of the bifurcation diagram: largest deflection of the tip in stable and unstable cycles over the
+load.
+"""
 
 from math import nan
 from typing import Any
@@ -21,15 +23,20 @@ from .card import (
 )
 
 COLOURS = {1: STABLE, 0: UNSTABLE, -1: NEUTRAL}
+"""Colour of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
 NO_CYCLES = {"F": np.zeros(0), "y": np.zeros(0), "stable": np.zeros(0, dtype=int)}
-"""Single cycles of an answer that has branches only."""
+"""Empty columns for an answer that contains branches but no separately solved cycles."""
 SIDE_MARGIN = 0.03
-"""Relative margin beside single cycles, whose dots would be cut at the edge of the figure."""
+"""Margin left and right of separately solved cycles, as a fraction of the range; without it their dots would
+be cut off."""
 DASHES = {1: "solid", 0: "dashed", -1: "dotted"}
+"""Line style of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
 
 
 class BranchPicture:
-    """Branches of cycles and the straight state; filled marks are Hopf points, folds and torus points."""
+    """Branches of cycles and of the straight rod over the load. Filled marks are Hopf points, folds and torus
+    points.
+    """
 
     def __init__(self) -> None:
         figure = new_figure(
@@ -63,7 +70,7 @@ class BranchPicture:
         self.card.entitle("")
 
     def show(self, found: dict[str, Any], load: PictureAxis, length: PictureAxis) -> None:
-        """Draws the branches of an answer."""
+        """Draws the branches of the answer `found`, in the units of the axes `load` and `length`."""
         pieces = found["pieces"]
         self.pieces.data = {
             "F": [at * load.factor for at, _, _ in pieces],
@@ -93,5 +100,5 @@ class BranchPicture:
         self.card.reveal()
 
     def move_point(self, F: float) -> None:
-        """Moves the vertical line that marks the page's force."""
+        """Moves the vertical line that marks the load of the page. F: load, in the unit of the axis."""
         self.point.location = F

@@ -1,4 +1,4 @@
-"""A picture of the page, or a sentence instead of the picture."""
+"""Card of a picture: a figure that a sentence can replace; and the style that all figures share."""
 
 from collections.abc import Sequence
 from html import escape
@@ -11,23 +11,23 @@ from bokeh.plotting import figure
 from ...arrays import Array
 
 STABLE, UNSTABLE, NEUTRAL, POINT = "#2f86c6", "#e0672a", "#8a8a8a", "#c23b8f"
-"""Colours with enough contrast on white and dark pages."""
+"""Colours of lines and marks, with enough contrast on light and on dark pages."""
 FOLD, TORUS = "#8a63d2", "#2a9d5c"
-"""Colours of curves of special points of cycles."""
+"""Colours of curves of folds and of torus points of cycles."""
 TICKS = 5
-"""Approximate number of labels along the lower axis."""
+"""Desired number of tick labels along the lower axis."""
 PLAIN_DIGITS = 7
-"""Largest power of ten that labels show without an exponent."""
+"""Largest power of ten that tick labels show without an exponent."""
 NO_TITLE = "\u00a0"
-"""A title without words: a picture that is drawn with an empty title shows no later one."""
+"""Text of an empty title. A Bokeh figure that is first drawn with the title "" never shows a later title."""
 TITLE_WIDTH = 46
-"""Largest number of characters in a line of a title: the narrowest figure would cut a longer line."""
+"""Largest number of characters in a line of a title; the narrowest figure would cut off a longer line."""
 HEIGHT = 300
-"""Height of a picture in pixels."""
+"""Height of a figure, in pixels."""
 
 
 def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any) -> figure:
-    """An empty figure as wide as the column of the page."""
+    """Empty Bokeh figure with the page's style, as wide as a column of the page."""
     made = figure(
         height=HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
         x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
@@ -44,24 +44,28 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
 
 
 def vertical_line(at: float, colour: str, dash: str = "solid") -> Span:
-    """A vertical line over the full height of a figure; a move paints only the figure's upper canvas."""
+    """Vertical line at x = `at` over the whole height of a figure. Bokeh redraws only the top canvas when it
+    moves.
+    """
     return Span(
         location=at, dimension="height", line_color=colour, line_dash=dash, line_width=1.5, level="overlay"
     )  # fmt: skip
 
 
 def empty_source(names: Sequence[str], name: str | None = None) -> ColumnDataSource:
-    """A data source with empty columns `names`."""
+    """Bokeh data source whose columns `names` are empty."""
     return ColumnDataSource({each: [] for each in names}, name=name)
 
 
 def columns(**arrays: Array) -> dict[str, list[Any]]:
-    """Columns of a data source, converted to lists: a short array would take two messages of its own."""
+    """Columns of a Bokeh data source as lists; an array of a few numbers would be sent in two messages of its
+    own.
+    """
     return {name: array.tolist() for name, array in arrays.items()}
 
 
 def limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
-    """Smallest and largest of values, (n,), with a relative margin; (-1, 1) without values."""
+    """Range of `values`, (n,), widened at both ends by the fraction `margin`; (-1, 1) for an empty array."""
     if len(values) == 0:
         return -1.0, 1.0
     low = float(values.min())
@@ -71,17 +75,17 @@ def limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
 
 
 def show_range(axis: Range1d, start: float, end: float) -> None:
-    """Sets the ends of an axis, and the ends to which the reset button of the figure returns."""
+    """Sets the ends of an axis, now and after a click on the reset button of the figure."""
     axis.update(start=start, end=end, reset_start=start, reset_end=end)
 
 
 def sentence_of(found: dict[str, Any]) -> str:
-    """Meaning of an answer's status, and the solver's message."""
+    """Meaning of the status of the answer `found`, followed by the message of the solver."""
     return "; ".join(filter(None, (found["sentence"], found["message"])))
 
 
 class Card:
-    """A figure that can be replaced by a sentence."""
+    """Figure on the page, with a sentence that can stand above it or replace it."""
 
     def __init__(self, name: str, figure: figure):
         self.figure = figure
@@ -90,22 +94,22 @@ class Card:
         self.root = Column(self.message, figure, name=name, sizing_mode="stretch_width")
 
     def entitle(self, text: str) -> None:
-        """Writes a title, which may be empty, in lines that fit above the figure."""
+        """Sets the title of the figure, broken into lines of TITLE_WIDTH characters; `text` may be empty."""
         self.figure.title.text = fill(text, TITLE_WIDTH) or NO_TITLE
 
     def say(self, sentence: str) -> None:
-        """Shows a sentence instead of the figure."""
+        """Hides the figure and shows a sentence in its place."""
         self.message.text = escape(sentence)
         self.message.visible = True
         self.figure.visible = False
 
     def tell(self, sentence: str) -> None:
-        """Shows a sentence above the picture."""
+        """Shows a sentence above the figure."""
         self.message.text = escape(sentence)
         self.message.visible = True
         self.figure.visible = True
 
     def reveal(self) -> None:
-        """Shows the figure."""
+        """Shows the figure without a sentence."""
         self.message.visible = False
         self.figure.visible = True

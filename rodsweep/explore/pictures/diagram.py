@@ -1,4 +1,6 @@
-"""The diagram over the load and a second parameter, in which a click moves the point."""
+"""Picture of the stability diagram over the load and a second parameter. A click selects other values of
+both.
+"""
 
 from itertools import groupby
 from math import nan
@@ -14,15 +16,15 @@ from ..solving.diagrams import CRUSHED, NOT_KNOWN
 from .card import FOLD, NEUTRAL, POINT, STABLE, TORUS, UNSTABLE, Card, empty_source, new_figure, show_range
 
 BOUNDARIES = {"double": NEUTRAL, "onset": NEUTRAL, "hopf": UNSTABLE}
-"""Colours of boundaries; areas have the colours of stable states."""
+"""Colour of a stability boundary, by kind; an unlisted kind has the colour of stable states."""
 OF_CYCLES = {"fold": ("folds of cycles", FOLD, "solid"), "torus": ("torus points", TORUS, "dashed")}
-"""Words, colour and dash of curves of special points of cycles."""
+"""(legend entry, colour, line style) of the curves of folds and torus points of cycles, by kind."""
 DARKEST_COUNT = 6
-"""Number of unstable modes from which the colour stays the same."""
+"""Number of unstable modes that has the darkest colour; larger numbers have the same colour."""
 
 
 class DiagramCell(NamedTuple):
-    """Neighbouring points of a row with equal numbers of unstable modes."""
+    """Rectangle that covers neighbouring grid points of a row with equal numbers of unstable modes."""
 
     left: float
     right: float
@@ -32,7 +34,7 @@ class DiagramCell(NamedTuple):
 
 
 def edges(values: Array) -> Array:
-    """Edges, (n + 1,), of cells around n increasing positive values, at geometric means."""
+    """Edges, (n + 1,), of cells around n increasing positive values: the geometric means of neighbours."""
     logs = np.log(values)
     if len(logs) == 1:
         return np.exp(logs[0] + np.array([-0.1, 0.1]))
@@ -41,7 +43,9 @@ def edges(values: Array) -> Array:
 
 
 def cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
-    """Cells of a grid; x: (columns,), y: (rows,), counts: (rows, columns)."""
+    """Coloured rectangles of a grid; x: (columns,), y: (rows,), counts: numbers of unstable modes, (rows,
+    columns).
+    """
     sides = np.concatenate(([x[0]], (x[1:] + x[:-1]) / 2, [x[-1]]))
     levels = edges(y)
     found = []
@@ -55,20 +59,22 @@ def cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
 
 
 def shade(count: int) -> tuple[str, float]:
-    """Colour and opacity for a number of unstable modes."""
+    """(colour, opacity) for a number of unstable modes, or for CRUSHED or NOT_KNOWN."""
     if count in (CRUSHED, NOT_KNOWN):
         return NEUTRAL, 0.55 if count == CRUSHED else 0.25
     return (STABLE, 0.18) if count == 0 else (UNSTABLE, 0.2 + 0.5 * min(count, DARKEST_COUNT) / DARKEST_COUNT)
 
 
 def in_words(count: int) -> str:
-    """Words for a number of unstable modes."""
+    """Words for a number of unstable modes, or for CRUSHED or NOT_KNOWN."""
     special = {0: "stable", CRUSHED: "crushed by the load", NOT_KNOWN: "not searched, or not known"}
     return special.get(count, counted(count, "unstable mode"))
 
 
 class DiagramPicture:
-    """Blue: stable; orange: flutter, the deeper the more modes are unstable; grey: crushed or not known."""
+    """Stability of the straight rod over two parameters. Blue: stable. Orange: flutter, darker for more
+    unstable modes. Grey: crushed, or not known.
+    """
 
     def __init__(self) -> None:
         figure = new_figure(
@@ -105,11 +111,13 @@ class DiagramPicture:
 
     @property
     def is_drawn(self) -> bool:
-        """Whether the figure shows a diagram."""
+        """Whether the figure contains a diagram."""
         return len(self.cells.data["left"]) > 0
 
     def show(self, found: dict[str, Any], load: ControlScale, second: ControlScale) -> None:
-        """Draws an answer to the question `diagram`, in the units of the scales."""
+        """Draws the answer `found` to the question `diagram`, in the units of the controls `load` and
+        `second`.
+        """
         x = found["x"] * load.factor
         y = found["y"] * second.factor
         grid = cells(x, y, found["unstable_count"])
@@ -146,12 +154,16 @@ class DiagramPicture:
         self.legend.visible = len(kinds) > 0
 
     def move_point(self, x: float, y: float) -> None:
-        """Moves the mark of the page's rod."""
+        """Moves the mark of the page's rod to the load x and the second parameter y, in the units of the
+        axes.
+        """
         self.point.data = {"x": [x], "y": [y]}
 
 
 def _lines(found: dict[str, Any], name: str) -> tuple[list[Array], list[Array], list[str]]:
-    """x and y of each curve of an answer, (points,), and its kind; name: prefix of the variables."""
+    """(x, y, kind) of every curve in the answer `found`; x and y: (points,). name: prefix of the variables,
+    such as "curve".
+    """
     numbers = np.asarray(found[f"{name}_number"])
     lines = [np.flatnonzero(numbers == number) for number in np.unique(numbers)]
     x, y = ([found[f"{name}_{axis}"][line] for line in lines] for axis in "xy")

@@ -1,4 +1,4 @@
-"""Growth rates along the force, with the forces at which stability changes."""
+"""Picture of the growth rates of the leading modes over the load, with the thresholds of stability."""
 
 from typing import Any
 
@@ -22,21 +22,24 @@ from .card import (
 from .numbers import IN_SI
 
 NAMED_THRESHOLDS = ("F_onset", "F_hopf", "F_restabilization")
-"""Thresholds named above the picture."""
+"""Variables of the thresholds whose values stand in the title."""
 OF_ROD = ("F* = {:.7g}", "F** = {:.7g}", "stable from {:.7g}")
+"""Formats of `NAMED_THRESHOLDS` in the title, for a rod over F."""
 OF_ARM = ("oscillates from {:.5g} kPa", "flutters from {:.5g} kPa", "stable from {:.5g} kPa")
-"""Words for `NAMED_THRESHOLDS`, of a rod over F and of an arm over the pressure."""
+"""Formats of `NAMED_THRESHOLDS` in the title, for an arm over the pressure."""
 KINDS = {
     "onset": ("oscillates from F*", NEUTRAL),
     "hopf": ("flutters, Hopf point F**", UNSTABLE),
     "hopf_reverse": ("a mode becomes stable", STABLE),
     "restabilization": ("stable again", STABLE),
 }
-"""(label, colour) of each kind of threshold in the picture."""
+"""(legend entry, colour) of each kind of threshold in the picture."""
 
 
 class GrowthPicture:
-    """Growth rates of the leading modes over F; vertical lines are thresholds, the thick line the point."""
+    """Growth rates of the leading modes over the load. Thin vertical lines are thresholds; the thick line is
+    the load of the page.
+    """
 
     def __init__(self) -> None:
         figure = new_figure(
@@ -63,7 +66,7 @@ class GrowthPicture:
         self.card.entitle("")
 
     def show_rates(self, found: dict[str, Any], load: PictureAxis) -> None:
-        """Draws the growth rates."""
+        """Draws the growth rates of the answer `found`; `load` is the horizontal axis."""
         rates = found["growth_rate"]
         names = ("first", "second", "third")
         F = found["F"] * load.factor
@@ -76,7 +79,9 @@ class GrowthPicture:
         self.card.reveal()
 
     def show_thresholds(self, found: dict[str, Any], load: PictureAxis) -> None:
-        """Draws the thresholds, and names the first of each kind above the picture."""
+        """Draws the thresholds of the answer `found`, and writes the first threshold of each kind into the
+        title.
+        """
         own = found.get(IN_SI["crossing_frequency"], found["crossing_frequency"])
         rows = [
             (F * load.factor, *KINDS[kind], frequency)
@@ -88,12 +93,12 @@ class GrowthPicture:
         self.card.entitle(named(found, load))
 
     def move_point(self, F: float) -> None:
-        """Moves the thick line that marks the page's force."""
+        """Moves the thick line that marks the load of the page. F: load, in the unit of the axis."""
         self.point.location = F
 
 
 def named(found: dict[str, Any], load: PictureAxis) -> str:
-    """Words for the first threshold of each kind that exists, in units of the load."""
+    """Title with the first threshold of each kind in `found`, in the unit of the axis `load`."""
     words = OF_ARM if IN_SI["F_hopf"] in found else OF_ROD
     parts = [
         word.format(load.factor * float(found[name]))

@@ -1,4 +1,4 @@
-"""The table of solved numbers, to eight digits, with units."""
+"""Table of the numbers in the latest answers, with eight digits and units."""
 
 from html import escape
 from typing import Any
@@ -26,30 +26,33 @@ ROWS = {
         "pressure_hopf": "flutters from", "frequency_hopf_hz": "frequency at flutter",
     },
 }  # fmt: skip
-"""Rows of the table: label by variable, for each kind of question."""
+"""Rows of the table for each kind of question: label by variable."""
 HEADINGS = {"spectrum": "Leading mode", "cycle": "Cycle", "thresholds": "Thresholds"}
+"""Heading above the rows of each kind of question."""
 TABLE_DIGITS = 8
-"""Significant digits of a number."""
+"""Number of significant digits in the table."""
 SHOWN_IN = {"m": ("cm", 1e2), "Pa": ("kPa", 1e-3), "W": ("mW", 1e3)}
-"""(unit of the table, factor) by SI unit."""
+"""(unit shown in the table, conversion factor), by SI unit."""
 IN_SI = {
     "growth_rate": "growth_rate_si", "frequency": "frequency_hz",
     "crossing_frequency": "crossing_frequency_hz", "F_onset": "pressure_onset",
     "F_hopf": "pressure_hopf",
     "F_restabilization": "pressure_restabilization", "hopf_frequency": "frequency_hopf_hz",
 }  # fmt: skip
-"""SI variable by dimensionless variable, unless the SI variable is the same name with `_si`."""
+"""Name of the SI variable, by dimensionless variable; an unlisted variable has the same name with `_si`."""
 
 
 class NumbersTable:
-    """The table of the latest answers."""
+    """Table of the numbers in the latest answer to each kind of question."""
 
     def __init__(self) -> None:
         self.root = PageText(name="numbers")
         self.found: dict[str, dict[str, Any]] = {}
 
     def show(self, kind: str, found: dict[str, Any] | None) -> None:
-        """Fills the rows of a kind of question; None empties the rows."""
+        """Replaces the rows for a kind of question by the numbers of the answer `found`; None removes the
+        rows.
+        """
         if kind not in ROWS:
             return
         if found is None:
@@ -61,7 +64,9 @@ class NumbersTable:
 
 
 def written(value: Any, factor: float = 1.0) -> str:
-    """Text of the first number of an array, times `factor`; "" for a nonfinite number or negative count."""
+    """First number of the array `value` times `factor` as text; "" for a nonfinite number or a negative
+    count.
+    """
     first = np.ravel(value)[0]
     if np.issubdtype(np.asarray(first).dtype, np.integer):
         return str(int(first)) if first >= 0 else ""

@@ -1,4 +1,4 @@
-"""The leading eigenvalues in the complex plane, and the shape of the leading mode."""
+"""Pictures of the leading eigenvalues in the complex plane, and of the leading mode."""
 
 from typing import Any
 
@@ -22,7 +22,9 @@ from .numbers import IN_SI
 
 
 class SpectrumPicture:
-    """Eigenvalues in the complex plane; eigenvalues right of the dashed line are unstable."""
+    """Eigenvalues of the straight rod in the complex plane. Eigenvalues right of the dashed line, the
+    imaginary axis, are unstable.
+    """
 
     def __init__(self) -> None:
         figure = new_figure(
@@ -37,7 +39,7 @@ class SpectrumPicture:
         self.card.entitle("")
 
     def show(self, found: dict[str, Any]) -> None:
-        """Draws an answer of the task spectrum."""
+        """Draws the eigenvalues of an answer of the task `spectrum`."""
         names = [IN_SI[name] if IN_SI[name] in found else name for name in ("growth_rate", "frequency")]
         growth, frequency = (found[name] for name in names)
         known = np.isfinite(growth)
@@ -60,7 +62,9 @@ class SpectrumPicture:
 
 
 def count_of(found: dict[str, Any]) -> str:
-    """Number of unstable modes, and whether the number is certified; the status if it is not known."""
+    """Sentence with the number of unstable modes and whether it is certified; the status if the number is
+    unknown.
+    """
     count = int(found["unstable_count"])
     if count < 0:
         return found["sentence"]
@@ -69,7 +73,7 @@ def count_of(found: dict[str, Any]) -> str:
 
 
 class ModePicture:
-    """Real and imaginary part of the deflection of the leading mode."""
+    """Real and imaginary part of the deflection of the leading mode along the rod."""
 
     def __init__(self) -> None:
         figure = new_figure(
@@ -85,7 +89,7 @@ class ModePicture:
         self.card = Card("mode", figure)
 
     def show(self, found: dict[str, Any]) -> None:
-        """Draws the leading mode of an answer of the task spectrum."""
+        """Draws the leading mode of an answer of the task `spectrum`."""
         real = found["Y_real"][0]
         imaginary = found["Y_imag"][0]
         if not np.isfinite(real).all():

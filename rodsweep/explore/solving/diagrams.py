@@ -1,4 +1,6 @@
-"""The diagram of a page: stability of a rod or an arm over the load and a second parameter."""
+"""Stability diagram of a page: number of unstable modes of the straight rod over the load and a second
+parameter.
+"""
 
 from typing import Any
 
@@ -12,41 +14,41 @@ from ...model.units import in_si
 from ..state import LAWS, PageState, number
 
 Dataset = Any
-"""An xarray.Dataset, or an array in one."""
+"""An xarray.Dataset, or one of its arrays."""
 ROWS = 20
-"""Number of values of the second parameter for uniform rods."""
+"""Number of values of the second parameter, for uniform rods of linear material."""
 SLOW_ROWS = 8
-"""Number of values of the second parameter for other rods, whose thresholds take seconds each."""
+"""Number of values of the second parameter, for other rods, whose thresholds take seconds per value."""
 COLUMNS = 121
-"""Number of values of the load. Columns cost little, because crossings determine a whole row."""
+"""Number of values of the load. They are cheap: the thresholds of a row decide the stability at all its
+loads."""
 ARM_ROWS = 12
-"""Number of values of the second parameter for arms in SI units."""
+"""Number of values of the second quantity, for arms in SI units."""
 ARM_SPAN = 2.0
-"""Ratio of the largest value of an arm's quantity to the present value; small, so that all arms are
-slender."""
+"""Ratio of the largest value of the second quantity of an arm to its present value. It is small, so that all
+arms are slender."""
 CYCLE_ACCURACY = 1e-4
 """Relative error of the cycles between special points, which the diagram does not show. For the first rod of
-the page, up to F = 200, the default of 1e-6 takes three times the processor time for the same curves of folds
-and torus points, whose forces differ by 2e-8 at most.
-"""
+the page, up to F = 200, the default of 1e-6 takes three times as long, and moves the curves of folds and
+torus points by 2e-8 at most."""
 NOT_KNOWN = -1
-"""Value of `unstable_count` where the number is not known."""
+"""Value of `unstable_count` at a point whose number of unstable modes is unknown."""
 CRUSHED = -2
-"""Value of `unstable_count` for a load that crushes the rod."""
+"""Value of `unstable_count` at a point whose load crushes the rod."""
 SPAN_RATIO = 10.0
-"""Ratio of the largest value of the second parameter to the present value, and of the present to the
-smallest."""
+"""Ratio of the largest value of the second parameter to its present value, and of the present to the smallest
+value."""
 TAPERS = (0.4, 1.6)
-"""Range of the taper. Cones with a smaller taper take minutes."""
+"""(smallest, largest) taper of the diagram. Cones with a smaller taper take minutes."""
 
 
 def diagram(state: PageState) -> dict[str, Any]:
-    """The diagram around the point of a state, by name.
+    """Stability diagram around the rod or arm of `state`, as arrays by name.
 
-    x: load, (columns,). y: second parameter, (rows,). unstable_count: (rows, columns), -1 if not known.
-    curve_x, curve_y, curve_number, curve_kind: boundaries, (curve points,), and the same of curves of cycles,
-    cycle_curve_*. crossing_x, crossing_y, crossing_kind: crossings of the rows, (crossings,), empty
-    for uniform rods.
+    x: load, (columns,). y: second parameter, (rows,). unstable_count: (rows, columns), NOT_KNOWN or CRUSHED
+    if negative. curve_x, curve_y, curve_number, curve_kind: stability boundaries, (curve points,).
+    cycle_curve_*: the same for folds and torus points of cycles. crossing_x, crossing_y, crossing_kind:
+    thresholds on the rows, (crossings,), empty for uniform rods.
     """
     state.subject()
     if state.tab == "arm":
@@ -55,7 +57,7 @@ def diagram(state: PageState) -> dict[str, Any]:
 
 
 def cycle_diagram(state: PageState) -> dict[str, Any]:
-    """The diagram with the curves of folds and torus points of cycles, of fewer rows."""
+    """The result of `diagram` with curves of folds and torus points of cycles, and with fewer rows."""
     state.subject()
     if not has_cycle_curves(state):
         raise InputError(
@@ -66,7 +68,7 @@ def cycle_diagram(state: PageState) -> dict[str, Any]:
 
 
 def has_cycle_curves(state: PageState) -> bool:
-    """Whether folds and torus points of cycles can be followed in the diagram of a state."""
+    """Whether `cycle_diagram` can follow folds and torus points of cycles for this state."""
     return state.tab == "rod" and uniform(state)
 
 
@@ -76,7 +78,9 @@ def uniform(state: PageState) -> bool:
 
 
 def span(state: PageState, rows: int = ROWS) -> np.ndarray:
-    """Values of the second parameter, (rows,), around the present value."""
+    """Values of the second parameter, (rows,), around its present value; logarithmically spaced except for
+    the taper.
+    """
     if state.second == "taper":
         return np.linspace(*TAPERS, rows)
     value = number(state.rod[state.second])
@@ -102,7 +106,9 @@ def _of_phases(state: PageState, with_cycles: bool = False) -> dict[str, Any]:
 
 
 def of_phases(data: Dataset, second: str) -> dict[str, Any]:
-    """The diagram from a result of the task phase_diagram or spectrum over F and a second parameter."""
+    """Diagram, as in `diagram`, from a result of the task `phase_diagram` or `spectrum` over F and the
+    parameter `second`.
+    """
     counts = data["unstable_count"].transpose(second, "F").values
     if "class" in data:
         is_crushed = words_of(data["class"].transpose(second, "F")) == "crushed"
@@ -138,9 +144,10 @@ def _of_arm(state: PageState) -> dict[str, Any]:
 
 
 def of_arms(data: Dataset, values: np.ndarray, pressure: float) -> dict[str, Any]:
-    """The diagram from a result of the task thresholds for arms, (rows,), over values of a quantity, (rows,).
+    """Diagram, as in `diagram`, from a result of the task `thresholds` for arms with different values of one
+    quantity, (rows,).
 
-    It reaches to twice the pressure of the page, in Pa, or twice the least pressure of flutter.
+    The load extends to twice the larger of `pressure`, in Pa, and the smallest pressure of flutter.
     """
     flutter = data["pressure_hopf"].values
     known = flutter[np.isfinite(flutter)]
@@ -149,10 +156,10 @@ def of_arms(data: Dataset, values: np.ndarray, pressure: float) -> dict[str, Any
 
 
 def of_rows(data: Dataset, values: np.ndarray, name: str, largest: float) -> dict[str, Any]:
-    """The diagram from a result of the task thresholds over a second parameter.
+    """Diagram, as in `diagram`, from a result of the task `thresholds` over a second parameter.
 
-    values: second parameter, (rows,). name: variable with the load at crossings. largest: largest load of the
-    diagram.
+    values: second parameter, (rows,). name: variable with the loads at the thresholds. largest: largest load
+    of the diagram.
     """
     at = data[name].values
     after = data["unstable_after"].values
@@ -180,7 +187,9 @@ def _no_curves() -> dict[str, Any]:
 
 
 def words_of(array: Dataset) -> Any:
-    """The words of an array of flag values, in the shape of the array."""
+    """Words for an array of integer flags, an array of the same shape. The attributes of the array define the
+    words.
+    """
     words = str(array.attrs["flag_meanings"]).split()
     by_code = dict(zip(map(int, np.atleast_1d(array.attrs["flag_values"])), words, strict=True))
     return np.vectorize(lambda code: by_code.get(int(code), "none"), otypes=[object])(array.values)
