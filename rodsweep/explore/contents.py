@@ -9,8 +9,8 @@ from bokeh.document import Document
 from bokeh.events import DocumentReady, Pan, Tap
 from bokeh.models import Button
 
-from .controls import Changed, Controls
-from .look import colours, read, sheet
+from .controls import ChangeCallback, Controls
+from .look import colour_script, style_sheet, template_text
 from .pictures.beating import BeatingPicture
 from .pictures.branches import BranchPicture
 from .pictures.card import Card
@@ -20,7 +20,7 @@ from .pictures.numbers import NumbersTable
 from .pictures.spectrum import ModePicture, SpectrumPicture
 from .scales import SCALES, length_axis, load_axis
 from .sharing import Sharing
-from .solving.diagrams import has_cycle_curves
+from .solving.diagrams import can_follow_cycle_curves
 from .state import PageState
 from .texts import SolvingSign, show_texts
 
@@ -32,9 +32,9 @@ class PageContents:
     loads.
     """
 
-    def __init__(self, changed: Changed, loaded: Callable[[str], None]):
-        widgets = sheet("widgets.css")
-        texts = sheet("text.css")
+    def __init__(self, changed: ChangeCallback, loaded: Callable[[str], None]):
+        widgets = style_sheet("widgets.css")
+        texts = style_sheet("text.css")
         self.controls = Controls(changed, widgets)
         self.spectrum = SpectrumPicture()
         self.mode = ModePicture()
@@ -83,11 +83,11 @@ class PageContents:
             ):  # fmt: skip
                 document.add_root(root)
             show_texts(document, (self.sign, self.numbers.root))
-        document.js_on_event(DocumentReady, colours([card.figure for card in self.cards]))
+        document.js_on_event(DocumentReady, colour_script([card.figure for card in self.cards]))
         document.js_on_event(DocumentReady, self.beating.animation())
         document.title = "rodsweep explore"
-        document.template = read("page.html")
-        document.template_variables["page_css"] = read("page.css")
+        document.template = template_text("page.html")
+        document.template_variables["page_css"] = template_text("page.css")
 
     def show_point(self, state: PageState, F: float) -> None:
         """Marks the values of `state` in all pictures that have the load as an axis, and updates the shared
@@ -102,7 +102,7 @@ class PageContents:
         y = second.value(state.values[state.second])
         if x is not None and y is not None:
             self.diagram.move_point(x, y)
-        self.buttons["cycles"].visible = has_cycle_curves(state)
+        self.buttons["cycles"].visible = can_follow_cycle_curves(state)
         self.sharing.show(state)
 
     def show(self, kind: str, found: dict[str, Any], state: PageState) -> None:

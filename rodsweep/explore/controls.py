@@ -11,11 +11,11 @@ from bokeh.models.css import StyleSheet
 
 from ..post.summary.arm.arm import word
 from .scales import SCALES, ControlScale
-from .state import ACROSS, LAW_NAMES, TABS, PageState
+from .state import LAW_NAMES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 
-STEPS = 400
+SLIDER_STEP_COUNT = 400
 """Number of steps of a slider between its ends."""
-Changed = Callable[..., None]
+ChangeCallback = Callable[..., None]
 """Callback for a change of a control, with the changed fields of `PageState` as keyword arguments."""
 
 
@@ -30,7 +30,7 @@ class SliderField:
             title=scale.label, name=f"{scale.name}_field", sizing_mode="stretch_width", stylesheets=sheets
         )  # fmt: skip
         self.slider = Slider(
-            start=start, end=end, value=start, step=(end - start) / STEPS, show_value=False,
+            start=start, end=end, value=start, step=(end - start) / SLIDER_STEP_COUNT, show_value=False,
             name=f"{scale.name}_slider", sizing_mode="stretch_width", stylesheets=sheets,
         )  # fmt: skip
         self.text.on_change("value", self._typed)
@@ -74,10 +74,10 @@ class Controls:
     name.
     """
 
-    def __init__(self, changed: Changed, sheet: InlineStyleSheet):
+    def __init__(self, changed: ChangeCallback, style_sheet: InlineStyleSheet):
         self._changed = changed
         self._is_shown = False
-        sheets: list[StyleSheet] = [sheet]
+        sheets: list[StyleSheet] = [style_sheet]
         self.fields = {
             tab: {name: SliderField(scale, self._field_changed, sheets) for name, scale in scales.items()}
             for tab, scales in SCALES.items()
@@ -107,11 +107,11 @@ class Controls:
         """Sets all controls to the values of `state`."""
         self._is_shown = True
         try:
-            self.tabs.active = list(TABS).index(state.tab)
+            self.tabs.active = list(TAB_DEFAULTS).index(state.tab)
             for name, field in self.fields[state.tab].items():
                 field.show(state.values[name])
             self.law.value = state.law
-            self.across.options = [(name, word(name)) for name in ACROSS[state.tab]]
+            self.across.options = [(name, word(name)) for name in SECOND_PARAMETERS[state.tab]]
             self.across.value = state.second
             self.F_max.value = state.F_max
         finally:
@@ -122,7 +122,7 @@ class Controls:
 
     def _tab_changed(self, attribute: str, old: int, new: int) -> None:
         if not self._is_shown:
-            self._changed(tab=list(TABS)[new])
+            self._changed(tab=list(TAB_DEFAULTS)[new])
 
     def _choice_changed(self, key: str, attribute: str, old: Any, new: Any) -> None:
         if not self._is_shown:

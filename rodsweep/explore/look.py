@@ -10,20 +10,20 @@ TEMPLATES = Path(__file__).parent / "templates"
 """Directory of the templates, style sheets and scripts."""
 
 
-def read(name: str) -> str:
+def template_text(name: str) -> str:
     """Text of the file `name` in TEMPLATES."""
     return (TEMPLATES / name).read_text(encoding="utf-8")
 
 
-def sheet(name: str) -> InlineStyleSheet:
+def style_sheet(name: str) -> InlineStyleSheet:
     """Style sheet for Bokeh's widgets from the file `name`. Widgets inherit colours, but no style sheet, from
     the page.
     """
-    return InlineStyleSheet(css=read(name))
+    return InlineStyleSheet(css=template_text(name))
 
 
-def colours(figures: Sequence[figure]) -> CustomJS:
+def colour_script(figures: Sequence[figure]) -> CustomJS:
     """Browser script that colours the figures for the light or dark colour scheme, now and after every change
     of the scheme.
     """
-    return CustomJS(args={"figures": list(figures)}, code=read("colours.js"))
+    return CustomJS(args={"figures": list(figures)}, code=template_text("colours.js"))

@@ -11,11 +11,11 @@ from ..errors import InputError
 from .contents import PageContents
 from .scales import SCALES
 from .sharing import state_of_text
-from .solving.diagrams import Dataset, uniform
+from .solving.diagrams import Dataset, has_uniform_rods
 from .solving.letting_go import Tip
-from .solving.needs import AT_ONCE, OF_TIP, ON_REQUEST, STOPPABLE, WHEN_IDLE, Needs, needs
+from .solving.needs import IDLE_KINDS, INSTANT_KINDS, MANUAL_KINDS, STOPPABLE_KINDS, TIP_KINDS, Needs, needs
 from .solving.questions import Question, Reply
-from .solving.sign import in_words, sign
+from .solving.sign import progress_text, solving_text
 from .solving.solvers import Solvers
 from .state import PageState, from_address, rod_of
 from .stored_results import StoredResults
@@ -42,9 +42,9 @@ class Page:
         self.is_open = True
         self.solving: set[str] = set()
         self.progress: dict[str, str] = {}
-        """Progress of long solves in words, by kind."""
+        """Progress of every long solve, as text, by kind of question."""
         self.asked: dict[str, Needs] = {}
-        """The part of the state, `needs`, that the latest question of each kind depends on."""
+        """Part of the state, see `needs`, on which the latest question of each kind depends."""
         self.contents = PageContents(self.change, self.load)
         self._idle: Callable[[], None] | None = None
         self.contents.connect(document, self._connections())
@@ -88,18 +88,18 @@ class Page:
 
     def stop(self) -> None:
         """Cancels long solves; their pictures say so. A bent arm returns to its motion before the drag."""
-        for kind in STOPPABLE:
+        for kind in STOPPABLE_KINDS:
             if kind in self.solving:
                 self._drop(kind)
-                if kind in OF_TIP:
+                if kind in TIP_KINDS:
                     self.contents.beating.let_go()
-                elif kind not in ON_REQUEST:
+                elif kind not in MANUAL_KINDS:
                     self.contents.say(kind, STOPPED_SENTENCE)
         self._show_solving()
 
     def drag(self, kind: str, tip: Tip) -> None:
-        """Solves for the arm with its tip dragged to `tip`, in L, or released there; kind: see `OF_TIP`."""
-        for other in OF_TIP:
+        """Solves for the arm with its tip dragged to `tip`, in L, or released; kind: see `TIP_KINDS`."""
+        for other in TIP_KINDS:
             if other != kind:
                 self._drop(other)
         self._ask(kind, tip)
@@ -135,9 +135,9 @@ class Page:
         except InputError as error:
             self._refuse(str(error))
             return
-        for kind in (*OF_TIP, *ON_REQUEST):
+        for kind in (*TIP_KINDS, *MANUAL_KINDS):
             self._drop(kind)
-        for kind in AT_ONCE:
+        for kind in INSTANT_KINDS:
             self._ask(kind)
         self.contents.show_point(state, F)
         self._show_solving()
@@ -145,9 +145,9 @@ class Page:
 
     def _refuse(self, sentence: str) -> None:
         """Shows an error message instead of all pictures but a drawn diagram, and cancels all solves."""
-        for kind in (*OF_TIP, *ON_REQUEST):
+        for kind in (*TIP_KINDS, *MANUAL_KINDS):
             self._drop(kind)
-        for kind in (*AT_ONCE, *WHEN_IDLE):
+        for kind in (*INSTANT_KINDS, *IDLE_KINDS):
             if kind != "diagram" or kind in self.solving:
                 self._drop(kind)
             if kind != "diagram" or not self.contents.diagram.is_drawn:
@@ -163,10 +163,10 @@ class Page:
     def _rested(self) -> None:
         self._idle = None
         self.contents.sharing.write()
-        for kind in WHEN_IDLE:
+        for kind in IDLE_KINDS:
             if needs(Question(kind, self.state)) == self.asked.get(kind):
                 continue
-            if self.state.tab == "rod" and not uniform(self.state):
+            if self.state.tab == "rod" and not has_uniform_rods(self.state):
                 self.asked.pop(kind, None)
                 self.contents.say(kind, "This takes a minute for such an arm: press the button below.")
                 continue
@@ -213,12 +213,12 @@ class Page:
         is_newest = newest == needs(question)
         if reply.outcome == "progress":
             if is_newest and kind in self.solving:
-                self.progress[kind] = in_words(**reply.content)
+                self.progress[kind] = progress_text(**reply.content)
                 self._show_solving()
             return
         if is_newest:
             self.solving.discard(kind)
-        elif kind in OF_TIP:
+        elif kind in TIP_KINDS:
             return
         if reply.outcome == "answer":
             if kind == "cycles":
@@ -229,9 +229,9 @@ class Page:
         self._show_solving()
 
     def _show_solving(self) -> None:
-        kinds = [kind for kind in (*AT_ONCE, *WHEN_IDLE, *ON_REQUEST) if kind in self.solving]
-        is_stoppable = any(kind in STOPPABLE for kind in kinds)
-        self.contents.sign.update(text=sign(kinds, self.progress), is_stoppable=is_stoppable)
+        kinds = [kind for kind in (*INSTANT_KINDS, *IDLE_KINDS, *MANUAL_KINDS) if kind in self.solving]
+        is_stoppable = any(kind in STOPPABLE_KINDS for kind in kinds)
+        self.contents.sign.update(text=solving_text(kinds, self.progress), is_stoppable=is_stoppable)
 
     def _move_in_diagram(self, event: Tap | Pan) -> None:
         if event.x is None or event.y is None or event.y <= 0:

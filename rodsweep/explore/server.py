@@ -29,7 +29,7 @@ ADDRESS = "127.0.0.1"
 """IP address on which the server listens."""
 HOSTS = (ADDRESS, "localhost")
 """Host names under which a browser on this machine may open the page."""
-UNUSED_SESSION = 5000
+UNUSED_SESSION_MILLISECONDS = 5000
 """Time after which the session of a closed page ends, in milliseconds."""
 
 
@@ -90,8 +90,8 @@ class ExploreServer:
         tornado = BatchTornado(
             {"/": application},
             extra_websocket_origins=[f"{host}:{self.port}" for host in HOSTS],
-            unused_session_lifetime_milliseconds=UNUSED_SESSION,
-            check_unused_sessions_milliseconds=UNUSED_SESSION,
+            unused_session_lifetime_milliseconds=UNUSED_SESSION_MILLISECONDS,
+            check_unused_sessions_milliseconds=UNUSED_SESSION_MILLISECONDS,
         )
         self.http = UndelayedServer(tornado)
         self.http.add_sockets(sockets)

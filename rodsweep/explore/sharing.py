@@ -12,23 +12,23 @@ from bokeh.models import Button, Column, CustomJS, Div, FileInput, GlyphRenderer
 from ..config.document.parsing import parse
 from ..config.document.reading import validated
 from ..errors import InputError
-from .look import read, sheet
+from .look import style_sheet, template_text
 from .pictures.card import Card
 from .state import PageState
 from .stored import state_of
 
-SHOW_ADDRESS = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
+ADDRESS_SCRIPT = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
 """Browser script that writes the state of the page into the address bar."""
 SAVE_SCRIPT = 'download(new Blob([lines.config], {type: "application/yaml"}), "explore.yaml")'
 """Browser script that saves the config as a file."""
-DOWNLOAD_FILM = """
+FILM_SCRIPT = """
 const bytes = Uint8Array.from(atob(film.tags[0]), (letter) => letter.charCodeAt(0))
 if (bytes.length > 0) download(new Blob([bytes], {type: "image/gif"}), "explore.gif")
 """
 """Browser script that saves a new film as a file."""
 COPY_SCRIPT = "navigator.clipboard.writeText(lines.{})"
 """Browser script that copies a text to the clipboard; format argument: field of `SharedLines`."""
-TASKS = ["limit_cycle", "spectrum", "thresholds", "branch"]
+CONFIG_TASKS = ["limit_cycle", "spectrum", "thresholds", "branch"]
 """Tasks for which the page writes a config; the first is the default."""
 FILM_COMMANDS = """# the film of the arm:
 # rodsweep run explore.yaml --set limit_cycle.shapes=48
@@ -55,19 +55,25 @@ class Sharing:
     def __init__(self, cards: Sequence[Card], arm: GlyphRenderer, loaded: Callable[[str], None]):
         self._loaded = loaded
         self._state = PageState()
-        widgets = sheet("widgets.css")
-        texts = sheet("text.css")
+        widgets = style_sheet("widgets.css")
+        texts = style_sheet("text.css")
         self.address, self.yaml, self.python = (
             Div(name=name, sizing_mode="stretch_width", stylesheets=[texts])
             for name in ("address", "yaml", "python")
         )
         self.lines = SharedLines()
         self.task = Select(
-            title="Config of the task", name="task", options=TASKS, value=TASKS[0], stylesheets=[widgets]
+            title="Config of the task",
+            name="task",
+            options=CONFIG_TASKS,
+            value=CONFIG_TASKS[0],
+            stylesheets=[widgets],
         )
         self.task.on_change("value", self._choose_task)
         save = Button(label="Save the config", name="save_button", stylesheets=[widgets])
-        save.js_on_click(CustomJS(args={"lines": self.lines}, code=read("download.js") + SAVE_SCRIPT))
+        save.js_on_click(
+            CustomJS(args={"lines": self.lines}, code=template_text("download.js") + SAVE_SCRIPT)
+        )
         self.file = FileInput(title="Load a config", name="load", accept=".yaml,.yml", stylesheets=[widgets])
         self.file.on_change("value", self._take)
         copies = [
@@ -78,9 +84,9 @@ class Sharing:
             button.js_on_click(CustomJS(args={"lines": self.lines}, code=COPY_SCRIPT.format(name)))
         self.film = Div(name="film", tags=[""], visible=False)
         self.film.js_on_change(
-            "tags", CustomJS(args={"film": self.film}, code=read("download.js") + DOWNLOAD_FILM)
+            "tags", CustomJS(args={"film": self.film}, code=template_text("download.js") + FILM_SCRIPT)
         )
-        self.address.js_on_change("tags", CustomJS(args={"address": self.address}, code=SHOW_ADDRESS))
+        self.address.js_on_change("tags", CustomJS(args={"address": self.address}, code=ADDRESS_SCRIPT))
         self.root = Column(
             self.address, self.task, self.yaml, Row(copies[0], save), self.file, self.python, copies[1],
             *_picture_buttons(cards, arm), self.film, name="sharing", sizing_mode="stretch_width",
@@ -115,7 +121,7 @@ class Sharing:
     def _config(self) -> str:
         """Config for the task that the user has chosen."""
         text = self._state.yaml(self.task.value)
-        return text + FILM_COMMANDS if self.task.value == TASKS[0] else text
+        return text + FILM_COMMANDS if self.task.value == CONFIG_TASKS[0] else text
 
     def _take(self, attribute: str, old: str, new: str) -> None:
         self._loaded(b64decode(new).decode(errors="replace"))
@@ -125,14 +131,14 @@ def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select |
     """Menu of the pictures, and a button for each file format in which the browser saves the
     chosen picture.
     """
-    widgets = sheet("widgets.css")
+    widgets = style_sheet("widgets.css")
     figures = {card.root.name: card.figure for card in cards}
     names = list(figures)
     choice = Select(title="Picture", name="picture", options=names, value=names[0], stylesheets=[widgets])
     buttons = []
     for kind in ("png", "svg"):
         button = Button(label=kind.upper(), name=f"{kind}_button", stylesheets=[widgets])
-        code = read("download.js") + read("picture.js")
+        code = template_text("download.js") + template_text("picture.js")
         arguments = {"figures": figures, "choice": choice, "type": kind, "animated": arm}
         button.js_on_click(CustomJS(args=arguments, code=code))
         buttons.append(button)

@@ -4,7 +4,7 @@ import asyncio
 from pathlib import Path
 
 from ..errors import InputError
-from .solving.forks import prepare
+from .solving.forks import start_fork_server
 
 
 def explore(source: Path | None, port: int, is_opened: bool) -> None:
@@ -19,10 +19,10 @@ def explore(source: Path | None, port: int, is_opened: bool) -> None:
         raise InputError(
             "the page needs bokeh, which is not installed; pip install 'rodsweep[explore]' brings it"
         ) from None
-    prepare()
+    start_fork_server()
     from .server import serve
     from .state import PageState
-    from .stored import opened
+    from .stored import page_state_of_file
 
-    state, stored = (PageState(), None) if source is None else opened(source)
+    state, stored = (PageState(), None) if source is None else page_state_of_file(source)
     asyncio.run(serve(state, stored, port, is_opened))

@@ -27,13 +27,22 @@ LAW_NAMES = {
     "swelling": "neo-Hookean, swelling section",
 }
 """Words for each choice of the constitutive law on the page."""
-ROD = {"F": "50", "k1": "1e4", "k2": "100", "gamma3": "0.01", "gamma1": "1", "taper": "1"}
+DEFAULT_ROD = {"F": "50", "k1": "1e4", "k2": "100", "gamma3": "0.01", "gamma1": "1", "taper": "1"}
 """Parameters of the rod with which the page opens: the rod of the paper's Fig. 5, which flutters."""
-ARM = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "12 Pa s", "pressure": "4 kPa"}
+DEFAULT_ARM = {
+    "length": "10 cm",
+    "radius": "5 mm",
+    "young": "100 kPa",
+    "viscosity": "12 Pa s",
+    "pressure": "4 kPa",
+}
 """Quantities of the arm with which the page opens: silicone in silicone oil."""
-TABS = {"rod": ROD, "arm": ARM}
+TAB_DEFAULTS = {"rod": DEFAULT_ROD, "arm": DEFAULT_ARM}
 """First values of each tab, as texts by name."""
-ACROSS = {"rod": ("k2", "k1", "gamma3", "taper"), "arm": ("length", "radius", "young", "viscosity")}
+SECOND_PARAMETERS = {
+    "rod": ("k2", "k1", "gamma3", "taper"),
+    "arm": ("length", "radius", "young", "viscosity"),
+}
 """Choices of the diagram's second parameter on each tab; the first is the default."""
 DEFAULT_F_MAX = "200"
 """Largest force with which the page opens, in k3/L^2."""
@@ -45,9 +54,9 @@ class PageState:
 
     tab: str = "rod"
     """The visible tab, whose rod or arm is solved: "rod" or "arm"."""
-    rod: Mapping[str, str] = field(default_factory=lambda: dict(ROD))
+    rod: Mapping[str, str] = field(default_factory=lambda: dict(DEFAULT_ROD))
     """Texts on the tab "rod", by name of the parameter."""
-    arm: Mapping[str, str] = field(default_factory=lambda: dict(ARM))
+    arm: Mapping[str, str] = field(default_factory=lambda: dict(DEFAULT_ARM))
     """Texts on the tab "arm", by name of the quantity."""
     law: str = "linear"
     """Constitutive law, a key of `LAWS`."""
@@ -64,7 +73,7 @@ class PageState:
     @property
     def second(self) -> str:
         """Second parameter of the diagram, on the vertical axis."""
-        return self.across if self.across in ACROSS[self.tab] else ACROSS[self.tab][0]
+        return self.across if self.across in SECOND_PARAMETERS[self.tab] else SECOND_PARAMETERS[self.tab][0]
 
     @property
     def load(self) -> str:
@@ -147,12 +156,12 @@ def from_address(query: str, default: PageState | None = None) -> PageState:
     """
     state = default or PageState()
     given = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))
-    tab = _choice("tab", given.pop("tab", state.tab), TABS)
+    tab = _choice("tab", given.pop("tab", state.tab), TAB_DEFAULTS)
     state = replace(state, tab=tab)
     law = _choice("law", given.pop("law", state.law), LAWS)
-    across = _choice("across", given.pop("across", state.second), ACROSS[tab])
+    across = _choice("across", given.pop("across", state.second), SECOND_PARAMETERS[tab])
     state = replace(state, law=law, across=across, F_max=given.pop("F_max", state.F_max))
-    known = TABS[tab]
+    known = TAB_DEFAULTS[tab]
     for name in given:
         if name not in known:
             raise InputError(f"unknown key {short(name)} in the address; {hint_of(name, list(known))}")

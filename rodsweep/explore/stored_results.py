@@ -22,14 +22,14 @@ from .state import PageState
 
 Found = dict[str, Any]
 """Variables of an answer, by name."""
-DIGITS = (5, 6)
+CONTROL_DIGITS = (5, 6)
 """Numbers of significant digits to which controls round values. A rounded value in a control matches the
 stored value."""
-EQUAL = 1e-12
+EQUALITY_TOLERANCE = 1e-12
 """Relative difference up to which two values are equal; conversion of units causes rounding errors."""
-POINT = "number_of_point"
+POINT_DIMENSION = "number_of_point"
 """Name of the dimension along which selected points of the file lie."""
-NEAR = 0.25
+CLICK_TOLERANCE = 0.25
 """Distance of a click from a stored load within which the click selects this load, as a fraction of the
 spacing of stored loads."""
 
@@ -86,7 +86,7 @@ class StoredResults:
             return at
         nearest = float(stored[np.argmin(np.abs(stored - at))])
         spacing = float(np.min(np.diff(stored)))
-        return nearest if abs(nearest - at) < NEAR * spacing else at
+        return nearest if abs(nearest - at) < CLICK_TOLERANCE * spacing else at
 
     def _values(self, tab: str, name: str) -> Array:
         """Values of a parameter or of an arm's quantity at all points of the file, (points,), in the unit of
@@ -112,17 +112,19 @@ class StoredResults:
         return np.flatnonzero(same)
 
     def _at(self, numbers: NDArray[np.integer]) -> Dataset:
-        """Points of the file with the given indices, along the dimension `POINT`."""
+        """Points of the file with the given indices, along the dimension `POINT_DIMENSION`."""
         if not self.dims:
-            return self.data.expand_dims(POINT)
-        return self.data.stack({POINT: self.dims}, create_index=False).isel({POINT: numbers})
+            return self.data.expand_dims(POINT_DIMENSION)
+        return self.data.stack({POINT_DIMENSION: self.dims}, create_index=False).isel(
+            {POINT_DIMENSION: numbers}
+        )
 
     def _cycle(self, state: PageState) -> Found | None:
         """Stored cycle of the rod of `state`; None if the file does not store its shapes."""
         numbers = self._points(state)
         if len(numbers) == 0 or "shape_x" not in self.data:
             return None
-        point = self._at(numbers[:1]).isel({POINT: 0})
+        point = self._at(numbers[:1]).isel({POINT_DIMENSION: 0})
         status = str(words_of(point["status"]))
         F = float(point["F"])
         k1 = float(point["k1"])
@@ -158,7 +160,7 @@ class StoredResults:
         if len(numbers) == 0 or "branch_F" not in self.data:
             return None
         rod = int(numbers[0])
-        point = self._at(numbers[:1]).isel({POINT: 0})
+        point = self._at(numbers[:1]).isel({POINT_DIMENSION: 0})
         if words_of(point["status"]) == "missing":
             return None
         stop = float(json.loads(self.data.attrs["config_resolved"])["branch"]["stop"])
@@ -169,6 +171,10 @@ class StoredResults:
 
 
 def _stands_for(value: float, stored: float) -> bool:
-    """Whether a control's value equals the stored value, or the stored value after rounding to DIGITS."""
-    rounded = [float(f"{stored:.{digits}g}") for digits in DIGITS]
-    return any(each == value or abs(each - value) <= EQUAL * abs(each) for each in (stored, *rounded))
+    """Whether a control's value equals the stored value, possibly after rounding the stored value to
+    CONTROL_DIGITS.
+    """
+    rounded = [float(f"{stored:.{digits}g}") for digits in CONTROL_DIGITS]
+    return any(
+        each == value or abs(each - value) <= EQUALITY_TOLERANCE * abs(each) for each in (stored, *rounded)
+    )

@@ -10,7 +10,7 @@ from bokeh.events import DocumentReady
 from bokeh.model import DataModel
 from bokeh.models import CustomJS
 
-from .look import read
+from .look import template_text
 
 
 class PageText(DataModel):
@@ -29,7 +29,7 @@ def show_texts(document: Document, texts: Sequence[PageText]) -> None:
     """Adds texts to a Bokeh document, with a browser script that displays every change."""
     for text in texts:
         document.add_root(text)
-        shown = CustomJS(args={"text": text}, code=read("text.js"))
+        shown = CustomJS(args={"text": text}, code=template_text("text.js"))
         for name in text.properties() & {"text", "is_stoppable"}:
             text.js_on_change(name, shown)
         document.js_on_event(DocumentReady, shown)

@@ -10,16 +10,26 @@ from bokeh.events import Pan, PanEnd
 from bokeh.models import CustomJS, Range1d
 
 from ...arrays import Array
-from ..look import read
+from ..look import template_text
 from ..scales import PictureAxis
 from ..solving.letting_go import Tip
-from .card import NEUTRAL, POINT, STABLE, Card, columns, empty_source, new_figure, sentence_of, show_range
+from .card import (
+    NEUTRAL_COLOUR,
+    POINT_COLOUR,
+    STABLE_COLOUR,
+    Card,
+    columns,
+    empty_source,
+    new_figure,
+    sentence_of,
+    show_range,
+)
 
 PERIOD_SECONDS = 2.0
 """Duration of one period of a cycle on the screen, in seconds."""
-ENDS = {"cycle": "it beats", "straight": "it comes to rest", "torus": "it beats with two frequencies"}
+END_WORDS = {"cycle": "it beats", "straight": "it comes to rest", "torus": "it beats with two frequencies"}
 """Words for the state that a released arm reaches, by status; an unlisted status has its own sentence."""
-SHAPE = ("x", "y", "number")
+SHAPE_COLUMNS = ("x", "y", "number")
 """Columns of a Bokeh source of shapes: coordinates of all nodes of all shapes, and the number of nodes of a
 shape."""
 
@@ -32,21 +42,23 @@ class BeatingPicture:
             "x (L)", "y (L)", x_range=Range1d(-0.1, 1.1), y_range=Range1d(-0.7, 0.7), match_aspect=True
         )
         names = ("shapes", "motion", "reached")
-        self.shapes, self.motion, self.reached = (empty_source(SHAPE, f"{name}_source") for name in names)
+        self.shapes, self.motion, self.reached = (
+            empty_source(SHAPE_COLUMNS, f"{name}_source") for name in names
+        )
         names = ("arm", "bent", "path")
         self.arm, self.bent, self.path = (empty_source(("x", "y"), f"{name}_source") for name in names)
         self.grip = empty_source(("x", "y", "phase"), "grip_source")
         self.length = PictureAxis("L", 1.0)
-        figure.line("x", "y", color=NEUTRAL, line_width=1, source=self.path)
+        figure.line("x", "y", color=NEUTRAL_COLOUR, line_width=1, source=self.path)
         for source in (self.shapes, self.motion, self.reached, self.bent, self.grip):
             figure.scatter("x", "y", visible=False, source=source)  # so that the source is on the page
         self.line = figure.line(
-            "x", "y", color=STABLE, line_width=5, line_cap="round", source=self.arm, visible=False
+            "x", "y", color=STABLE_COLOUR, line_width=5, line_cap="round", source=self.arm, visible=False
         )  # fmt: skip
-        figure.scatter([0], [0], marker="square", size=12, color=POINT)
+        figure.scatter([0], [0], marker="square", size=12, color=POINT_COLOUR)
         for event, phase in ((Pan, "bent"), (PanEnd, "let go")):
             arguments = {"figure": figure, "grip": self.grip, "phase": phase}
-            figure.js_on_event(event, CustomJS(args=arguments, code=read("grip.js")))
+            figure.js_on_event(event, CustomJS(args=arguments, code=template_text("grip.js")))
         self.card = Card("beating", figure)
         self.card.entitle("")
 
@@ -54,8 +66,8 @@ class BeatingPicture:
         """Browser script that animates the arm; it runs once, when the page is ready."""
         names = ("shapes", "motion", "reached", "arm", "bent")
         sources: dict[str, Any] = {name: getattr(self, name) for name in names}
-        more = {"period": PERIOD_SECONDS, "figure": self.card.figure, "colour": STABLE}
-        return CustomJS(args=sources | more, code=read("beating.js"))
+        more = {"period": PERIOD_SECONDS, "figure": self.card.figure, "colour": STABLE_COLOUR}
+        return CustomJS(args=sources | more, code=template_text("beating.js"))
 
     def on_drag(self, drag: Callable[[str, Tip], None]) -> None:
         """Registers `drag`, which is called with the kind of question and the position of the tip, in L, when
@@ -112,7 +124,7 @@ class BeatingPicture:
         self.path.data = columns(x=x[:, -1], y=y[:, -1])
         self._fit(np.concatenate([x, shape_x]), np.concatenate([y, shape_y]))
         place = ", ".join(f"{each * factor:.3g}" for each in found["tip"])
-        end = ENDS.get(found["status"], found["sentence"])
+        end = END_WORDS.get(found["status"], found["sentence"])
         part = "" if found["is_whole"] else "; this is the beginning"
         self.card.entitle(f"Let go at ({place}) {self.length.label}: {end}{part}")
 
@@ -125,7 +137,7 @@ class BeatingPicture:
     def stop(self) -> None:
         """Removes all shapes from the picture, so that the animation stops."""
         self.let_go()
-        self.shapes.data = {name: [] for name in SHAPE}
+        self.shapes.data = {name: [] for name in SHAPE_COLUMNS}
 
     def _fit(self, x: Array, y: Array) -> None:
         """Sets the ranges of the axes so that all shapes x, y, (shapes, nodes), fit; in the picture's unit of
@@ -138,6 +150,8 @@ class BeatingPicture:
 
 
 def source_of(x: Array, y: Array) -> dict[str, Any]:
-    """Columns named in `SHAPE` for shapes x, y, (shapes, nodes); single precision is enough for a picture."""
+    """Columns of a Bokeh source, see `SHAPE_COLUMNS`, for shapes x, y, (shapes, nodes). Single precision is
+    enough for a picture.
+    """
     number = np.full(x.size, x.shape[1], dtype=np.float32)
     return {"x": x.ravel().astype(np.float32), "y": y.ravel().astype(np.float32), "number": number}

@@ -10,10 +10,10 @@ from bokeh.models import HoverTool, Legend, LegendItem, Range1d
 
 from ..scales import PictureAxis
 from .card import (
-    NEUTRAL,
-    POINT,
-    STABLE,
-    UNSTABLE,
+    NEUTRAL_COLOUR,
+    POINT_COLOUR,
+    STABLE_COLOUR,
+    UNSTABLE_COLOUR,
     Card,
     empty_source,
     limits,
@@ -22,14 +22,14 @@ from .card import (
     vertical_line,
 )
 
-COLOURS = {1: STABLE, 0: UNSTABLE, -1: NEUTRAL}
+STABILITY_COLOURS = {1: STABLE_COLOUR, 0: UNSTABLE_COLOUR, -1: NEUTRAL_COLOUR}
 """Colour of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
 NO_CYCLES = {"F": np.zeros(0), "y": np.zeros(0), "stable": np.zeros(0, dtype=int)}
 """Empty columns for an answer that contains branches but no separately solved cycles."""
 SIDE_MARGIN = 0.03
 """Margin left and right of separately solved cycles, as a fraction of the range; without it their dots would
 be cut off."""
-DASHES = {1: "solid", 0: "dashed", -1: "dotted"}
+STABILITY_DASHES = {1: "solid", 0: "dashed", -1: "dotted"}
 """Line style of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
 
 
@@ -49,7 +49,9 @@ class BranchPicture:
             "F", "y", line_width=2.5, color="colour", line_dash="dash", source=self.pieces
         )  # fmt: skip
         figure.scatter("F", "y", size=5, color="colour", source=self.cycles)
-        marks = figure.scatter("F", "y", size=9, color=NEUTRAL, line_color=POINT, source=self.special)
+        marks = figure.scatter(
+            "F", "y", size=9, color=NEUTRAL_COLOUR, line_color=POINT_COLOUR, source=self.special
+        )
         figure.add_tools(
             HoverTool(
                 renderers=[marks],
@@ -57,14 +59,17 @@ class BranchPicture:
             )
         )
         keys = [
-            figure.line([nan], [nan], color=COLOURS[k], line_dash=DASHES[k], line_width=2.5) for k in (1, 0)
+            figure.line(
+                [nan], [nan], color=STABILITY_COLOURS[k], line_dash=STABILITY_DASHES[k], line_width=2.5
+            )
+            for k in (1, 0)
         ]
         items = [
             LegendItem(label=text, renderers=[key])
             for text, key in zip(("stable", "unstable"), keys, strict=True)
         ]
         figure.add_layout(Legend(items=items, location="top_left"))
-        self.point = vertical_line(0, POINT)
+        self.point = vertical_line(0, POINT_COLOUR)
         figure.add_layout(self.point)
         self.card = Card("branches", figure)
         self.card.entitle("")
@@ -75,14 +80,14 @@ class BranchPicture:
         self.pieces.data = {
             "F": [at * load.factor for at, _, _ in pieces],
             "y": [y * length.factor for _, y, _ in pieces],
-            "colour": [COLOURS[stable] for _, _, stable in pieces],
-            "dash": [DASHES[stable] for _, _, stable in pieces],
+            "colour": [STABILITY_COLOURS[stable] for _, _, stable in pieces],
+            "dash": [STABILITY_DASHES[stable] for _, _, stable in pieces],
         }
         cycles = found.get("cycles", NO_CYCLES)
         self.cycles.data = {
             "F": cycles["F"] * load.factor,
             "y": cycles["y"] * length.factor,
-            "colour": [COLOURS[stable] for stable in cycles["stable"]],
+            "colour": [STABILITY_COLOURS[stable] for stable in cycles["stable"]],
         }
         if pieces or len(cycles["F"]):
             drawn = [*(piece[:2] for piece in pieces), (cycles["F"], cycles["y"])]

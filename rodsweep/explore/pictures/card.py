@@ -10,11 +10,11 @@ from bokeh.plotting import figure
 
 from ...arrays import Array
 
-STABLE, UNSTABLE, NEUTRAL, POINT = "#2f86c6", "#e0672a", "#8a8a8a", "#c23b8f"
+STABLE_COLOUR, UNSTABLE_COLOUR, NEUTRAL_COLOUR, POINT_COLOUR = "#2f86c6", "#e0672a", "#8a8a8a", "#c23b8f"
 """Colours of lines and marks, with enough contrast on light and on dark pages."""
-FOLD, TORUS = "#8a63d2", "#2a9d5c"
+FOLD_COLOUR, TORUS_COLOUR = "#8a63d2", "#2a9d5c"
 """Colours of curves of folds and of torus points of cycles."""
-TICKS = 5
+TICK_COUNT = 5
 """Desired number of tick labels along the lower axis."""
 PLAIN_DIGITS = 7
 """Largest power of ten that tick labels show without an exponent."""
@@ -22,14 +22,14 @@ NO_TITLE = "\u00a0"
 """Text of an empty title. A Bokeh figure that is first drawn with the title "" never shows a later title."""
 TITLE_WIDTH = 46
 """Largest number of characters in a line of a title; the narrowest figure would cut off a longer line."""
-HEIGHT = 300
+FIGURE_HEIGHT = 300
 """Height of a figure, in pixels."""
 
 
 def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any) -> figure:
     """Empty Bokeh figure with the page's style, as wide as a column of the page."""
     made = figure(
-        height=HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
+        height=FIGURE_HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
         x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
     )  # fmt: skip
     made.toolbar.autohide = True  # beside the frame, so that no button covers a place to click
@@ -38,7 +38,7 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
     made.min_border_right = 10
     # The outermost half pixel of a canvas is white even on a dark page, so clip it.
     made.stylesheets = [InlineStyleSheet(css=":host { clip-path: inset(1px); }")]
-    made.xaxis.ticker.desired_num_ticks = TICKS
+    made.xaxis.ticker.desired_num_ticks = TICK_COUNT
     made.xaxis.formatter.power_limit_high = PLAIN_DIGITS
     return made
 

@@ -13,11 +13,25 @@ from ...arrays import Array
 from ...wording import counted
 from ..scales import ControlScale
 from ..solving.diagrams import CRUSHED, NOT_KNOWN
-from .card import FOLD, NEUTRAL, POINT, STABLE, TORUS, UNSTABLE, Card, empty_source, new_figure, show_range
+from .card import (
+    FOLD_COLOUR,
+    NEUTRAL_COLOUR,
+    POINT_COLOUR,
+    STABLE_COLOUR,
+    TORUS_COLOUR,
+    UNSTABLE_COLOUR,
+    Card,
+    empty_source,
+    new_figure,
+    show_range,
+)
 
-BOUNDARIES = {"double": NEUTRAL, "onset": NEUTRAL, "hopf": UNSTABLE}
+BOUNDARY_COLOURS = {"double": NEUTRAL_COLOUR, "onset": NEUTRAL_COLOUR, "hopf": UNSTABLE_COLOUR}
 """Colour of a stability boundary, by kind; an unlisted kind has the colour of stable states."""
-OF_CYCLES = {"fold": ("folds of cycles", FOLD, "solid"), "torus": ("torus points", TORUS, "dashed")}
+CYCLE_CURVE_LOOKS = {
+    "fold": ("folds of cycles", FOLD_COLOUR, "solid"),
+    "torus": ("torus points", TORUS_COLOUR, "dashed"),
+}
 """(legend entry, colour, line style) of the curves of folds and torus points of cycles, by kind."""
 DARKEST_COUNT = 6
 """Number of unstable modes that has the darkest colour; larger numbers have the same colour."""
@@ -33,7 +47,7 @@ class DiagramCell(NamedTuple):
     unstable: int
 
 
-def edges(values: Array) -> Array:
+def cell_edges(values: Array) -> Array:
     """Edges, (n + 1,), of cells around n increasing positive values: the geometric means of neighbours."""
     logs = np.log(values)
     if len(logs) == 1:
@@ -47,7 +61,7 @@ def cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
     columns).
     """
     sides = np.concatenate(([x[0]], (x[1:] + x[:-1]) / 2, [x[-1]]))
-    levels = edges(y)
+    levels = cell_edges(y)
     found = []
     for row, line in enumerate(counts):
         start = 0
@@ -58,14 +72,18 @@ def cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
     return found
 
 
-def shade(count: int) -> tuple[str, float]:
+def stability_colour(count: int) -> tuple[str, float]:
     """(colour, opacity) for a number of unstable modes, or for CRUSHED or NOT_KNOWN."""
     if count in (CRUSHED, NOT_KNOWN):
-        return NEUTRAL, 0.55 if count == CRUSHED else 0.25
-    return (STABLE, 0.18) if count == 0 else (UNSTABLE, 0.2 + 0.5 * min(count, DARKEST_COUNT) / DARKEST_COUNT)
+        return NEUTRAL_COLOUR, 0.55 if count == CRUSHED else 0.25
+    return (
+        (STABLE_COLOUR, 0.18)
+        if count == 0
+        else (UNSTABLE_COLOUR, 0.2 + 0.5 * min(count, DARKEST_COUNT) / DARKEST_COUNT)
+    )
 
 
-def in_words(count: int) -> str:
+def unstable_count_words(count: int) -> str:
     """Words for a number of unstable modes, or for CRUSHED or NOT_KNOWN."""
     special = {0: "stable", CRUSHED: "crushed by the load", NOT_KNOWN: "not searched, or not known"}
     return special.get(count, counted(count, "unstable mode"))
@@ -99,14 +117,21 @@ class DiagramPicture:
         )  # fmt: skip
         keys = [
             LegendItem(label=text, renderers=[figure.line([nan], [nan], color=c, line_dash=d, line_width=3)])
-            for text, c, d in OF_CYCLES.values()
+            for text, c, d in CYCLE_CURVE_LOOKS.values()
         ]
         self.legend = Legend(items=keys, location="top_left", visible=False)
         figure.add_layout(self.legend)
         figure.scatter("x", "y", size=6, color="colour", source=self.crossings)
         figure.scatter(
-            "x", "y", marker="cross", size=22, line_width=3, color=POINT, source=self.point, level="overlay"
-        )  # fmt: skip
+            "x",
+            "y",
+            marker="cross",
+            size=22,
+            line_width=3,
+            color=POINT_COLOUR,
+            source=self.point,
+            level="overlay",
+        )
         self.card = Card("diagram", figure)
 
     @property
@@ -122,8 +147,8 @@ class DiagramPicture:
         y = found["y"] * second.factor
         grid = cells(x, y, found["unstable_count"])
         data = {name: [getattr(cell, name) for cell in grid] for name in DiagramCell._fields}
-        shades = [shade(cell.unstable) for cell in grid]
-        data["words"] = [in_words(cell.unstable) for cell in grid]
+        shades = [stability_colour(cell.unstable) for cell in grid]
+        data["words"] = [unstable_count_words(cell.unstable) for cell in grid]
         data |= {"colour": [colour for colour, _ in shades], "alpha": [alpha for _, alpha in shades]}
         self.cells.data = data
         self._show_curves(found)
@@ -131,7 +156,7 @@ class DiagramPicture:
         self.crossings.data = {
             "x": found["crossing_x"] * load.factor,
             "y": found["crossing_y"] * second.factor,
-            "colour": [BOUNDARIES.get(kind, STABLE) for kind in kinds],
+            "colour": [BOUNDARY_COLOURS.get(kind, STABLE_COLOUR) for kind in kinds],
         }
         figure = self.card.figure
         show_range(figure.x_range, float(x[0]), float(x[-1]))
@@ -142,9 +167,13 @@ class DiagramPicture:
 
     def _show_curves(self, found: dict[str, Any]) -> None:
         x, y, kinds = _lines(found, "curve")
-        self.curves.data = {"x": x, "y": y, "colour": [BOUNDARIES.get(kind, STABLE) for kind in kinds]}
+        self.curves.data = {
+            "x": x,
+            "y": y,
+            "colour": [BOUNDARY_COLOURS.get(kind, STABLE_COLOUR) for kind in kinds],
+        }
         x, y, kinds = _lines(found, "cycle_curve")
-        looks = [OF_CYCLES[kind] for kind in kinds]
+        looks = [CYCLE_CURVE_LOOKS[kind] for kind in kinds]
         self.of_cycles.data = {
             "x": x,
             "y": y,

@@ -31,9 +31,9 @@ HEADINGS = {"spectrum": "Leading mode", "cycle": "Cycle", "thresholds": "Thresho
 """Heading above the rows of each kind of question."""
 TABLE_DIGITS = 8
 """Number of significant digits in the table."""
-SHOWN_IN = {"m": ("cm", 1e2), "Pa": ("kPa", 1e-3), "W": ("mW", 1e3)}
+TABLE_UNITS = {"m": ("cm", 1e2), "Pa": ("kPa", 1e-3), "W": ("mW", 1e3)}
 """(unit shown in the table, conversion factor), by SI unit."""
-IN_SI = {
+SI_NAMES = {
     "growth_rate": "growth_rate_si", "frequency": "frequency_hz",
     "crossing_frequency": "crossing_frequency_hz", "F_onset": "pressure_onset",
     "F_hopf": "pressure_hopf",
@@ -63,7 +63,7 @@ class NumbersTable:
         self.root.text = f"<table>{''.join(parts)}</table>"
 
 
-def written(value: Any, factor: float = 1.0) -> str:
+def number_text(value: Any, factor: float = 1.0) -> str:
     """First number of the array `value` times `factor` as text; "" for a nonfinite number or a negative
     count.
     """
@@ -76,10 +76,10 @@ def written(value: Any, factor: float = 1.0) -> str:
 def _rows(kind: str, found: dict[str, Any]) -> str:
     rows = []
     for name, meaning in ROWS[kind].items():
-        if name not in found or IN_SI.get(name, f"{name}_si") in found:
+        if name not in found or SI_NAMES.get(name, f"{name}_si") in found:
             continue
-        unit, factor = SHOWN_IN.get(found["units"][name], (found["units"][name], 1.0))
-        if text := written(found[name], factor):
+        unit, factor = TABLE_UNITS.get(found["units"][name], (found["units"][name], 1.0))
+        if text := number_text(found[name], factor):
             shown = "" if unit == "1" else escape(unit)
             rows.append(
                 f'<tr data-name="{name}"><td>{escape(meaning)}</td><td>{text}</td><td>{shown}</td></tr>'

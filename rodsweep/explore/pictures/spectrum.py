@@ -6,9 +6,9 @@ import numpy as np
 from bokeh.models import Range1d
 
 from .card import (
-    NEUTRAL,
-    STABLE,
-    UNSTABLE,
+    NEUTRAL_COLOUR,
+    STABLE_COLOUR,
+    UNSTABLE_COLOUR,
     Card,
     columns,
     empty_source,
@@ -18,7 +18,7 @@ from .card import (
     show_range,
     vertical_line,
 )
-from .numbers import IN_SI
+from .numbers import SI_NAMES
 
 
 class SpectrumPicture:
@@ -33,14 +33,14 @@ class SpectrumPicture:
             x_range=Range1d(-1, 1), y_range=Range1d(-1, 1),
         )  # fmt: skip
         self.source = empty_source(("growth", "frequency", "colour"), "spectrum_source")
-        figure.add_layout(vertical_line(0, NEUTRAL, "dashed"))
+        figure.add_layout(vertical_line(0, NEUTRAL_COLOUR, "dashed"))
         figure.scatter("growth", "frequency", size=11, color="colour", source=self.source)
         self.card = Card("spectrum", figure)
         self.card.entitle("")
 
     def show(self, found: dict[str, Any]) -> None:
         """Draws the eigenvalues of an answer of the task `spectrum`."""
-        names = [IN_SI[name] if IN_SI[name] in found else name for name in ("growth_rate", "frequency")]
+        names = [SI_NAMES[name] if SI_NAMES[name] in found else name for name in ("growth_rate", "frequency")]
         growth, frequency = (found[name] for name in names)
         known = np.isfinite(growth)
         if not known.any():
@@ -48,8 +48,8 @@ class SpectrumPicture:
             return
         growth = growth[known]
         frequency = frequency[known]
-        colours = np.where(growth > 0, UNSTABLE, STABLE)
-        self.source.data = columns(growth=growth, frequency=frequency, colour=colours)
+        colour_script = np.where(growth > 0, UNSTABLE_COLOUR, STABLE_COLOUR)
+        self.source.data = columns(growth=growth, frequency=frequency, colour=colour_script)
         figure = self.card.figure
         show_range(figure.x_range, *limits(np.append(growth, 0.0)))
         show_range(figure.y_range, *limits(frequency))
@@ -57,11 +57,11 @@ class SpectrumPicture:
             f"{word} ({found['units'][name]})"
             for word, name in zip(("growth rate", "frequency"), names, strict=True)
         )
-        self.card.entitle(count_of(found))
+        self.card.entitle(unstable_count_sentence(found))
         self.card.reveal()
 
 
-def count_of(found: dict[str, Any]) -> str:
+def unstable_count_sentence(found: dict[str, Any]) -> str:
     """Sentence with the number of unstable modes and whether it is certified; the status if the number is
     unknown.
     """
@@ -80,9 +80,11 @@ class ModePicture:
             "u along the arm", "deflection Y, Y(1) = 1", x_range=Range1d(0, 1), y_range=Range1d(-1, 1)
         )
         self.source = empty_source(("u", "real", "imaginary"), "mode_source")
-        figure.line("u", "real", line_width=2.5, color=STABLE, legend_label="real part", source=self.source)
         figure.line(
-            "u", "imaginary", line_width=2.5, color=UNSTABLE, line_dash="dashed",
+            "u", "real", line_width=2.5, color=STABLE_COLOUR, legend_label="real part", source=self.source
+        )
+        figure.line(
+            "u", "imaginary", line_width=2.5, color=UNSTABLE_COLOUR, line_dash="dashed",
             legend_label="imaginary part", source=self.source,
         )  # fmt: skip
         figure.legend.location = "top_left"

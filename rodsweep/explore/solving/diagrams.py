@@ -15,16 +15,16 @@ from ..state import LAWS, PageState, number
 
 Dataset = Any
 """An xarray.Dataset, or one of its arrays."""
-ROWS = 20
+ROW_COUNT = 20
 """Number of values of the second parameter, for uniform rods of linear material."""
-SLOW_ROWS = 8
+SLOW_ROW_COUNT = 8
 """Number of values of the second parameter, for other rods, whose thresholds take seconds per value."""
-COLUMNS = 121
+LOAD_COUNT = 121
 """Number of values of the load. They are cheap: the thresholds of a row decide the stability at all its
 loads."""
-ARM_ROWS = 12
+ARM_ROW_COUNT = 12
 """Number of values of the second quantity, for arms in SI units."""
-ARM_SPAN = 2.0
+ARM_SPAN_RATIO = 2.0
 """Ratio of the largest value of the second quantity of an arm to its present value. It is small, so that all
 arms are slender."""
 CYCLE_ACCURACY = 1e-4
@@ -38,7 +38,7 @@ CRUSHED = -2
 SPAN_RATIO = 10.0
 """Ratio of the largest value of the second parameter to its present value, and of the present to the smallest
 value."""
-TAPERS = (0.4, 1.6)
+TAPER_RANGE = (0.4, 1.6)
 """(smallest, largest) taper of the diagram. Cones with a smaller taper take minutes."""
 
 
@@ -53,13 +53,13 @@ def diagram(state: PageState) -> dict[str, Any]:
     state.subject()
     if state.tab == "arm":
         return _of_arm(state)
-    return _of_phases(state) if uniform(state) else _of_thresholds(state)
+    return _of_phases(state) if has_uniform_rods(state) else _of_thresholds(state)
 
 
 def cycle_diagram(state: PageState) -> dict[str, Any]:
     """The result of `diagram` with curves of folds and torus points of cycles, and with fewer rows."""
     state.subject()
-    if not has_cycle_curves(state):
+    if not can_follow_cycle_curves(state):
         raise InputError(
             "folds and torus points of cycles are followed for uniform rods of linear material only, "
             "on the tab Rod"
@@ -67,22 +67,22 @@ def cycle_diagram(state: PageState) -> dict[str, Any]:
     return _of_phases(state, with_cycles=True)
 
 
-def has_cycle_curves(state: PageState) -> bool:
+def can_follow_cycle_curves(state: PageState) -> bool:
     """Whether `cycle_diagram` can follow folds and torus points of cycles for this state."""
-    return state.tab == "rod" and uniform(state)
+    return state.tab == "rod" and has_uniform_rods(state)
 
 
-def uniform(state: PageState) -> bool:
+def has_uniform_rods(state: PageState) -> bool:
     """Whether all rods of the diagram are uniform and of linear material."""
     return state.law == "linear" and state.second != "taper" and "taper" not in state.parameters()
 
 
-def span(state: PageState, rows: int = ROWS) -> np.ndarray:
+def second_parameter_values(state: PageState, rows: int = ROW_COUNT) -> np.ndarray:
     """Values of the second parameter, (rows,), around its present value; logarithmically spaced except for
     the taper.
     """
     if state.second == "taper":
-        return np.linspace(*TAPERS, rows)
+        return np.linspace(*TAPER_RANGE, rows)
     value = number(state.rod[state.second])
     if not (0 < value < np.inf):
         raise InputError(f"{state.second} = {value:g} has no diagram; it must be finite and above 0")
@@ -94,8 +94,8 @@ def _fixed(state: PageState) -> dict[str, Any]:
 
 
 def _of_phases(state: PageState, with_cycles: bool = False) -> dict[str, Any]:
-    F = np.linspace(0, state.largest_force(), COLUMNS)
-    rows = span(state, SLOW_ROWS if with_cycles else ROWS)
+    F = np.linspace(0, state.largest_force(), LOAD_COUNT)
+    rows = second_parameter_values(state, SLOW_ROW_COUNT if with_cycles else ROW_COUNT)
     keywords: dict[str, Any] = {"F": F, state.second: rows, **_fixed(state)}
     if with_cycles:
         keywords |= {
@@ -123,18 +123,18 @@ def of_phases(data: Dataset, second: str) -> dict[str, Any]:
 
 
 def _of_thresholds(state: PageState) -> dict[str, Any]:
-    keywords: dict[str, Any] = {**_fixed(state), state.second: span(state, SLOW_ROWS)}
+    keywords: dict[str, Any] = {**_fixed(state), state.second: second_parameter_values(state, SLOW_ROW_COUNT)}
     keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
     data = sweep("thresholds", **keywords, F_max=state.largest_force(), progress=False)
     data = data.squeeze([n for n in ("k1", "k2", "gamma3", "taper") if n in data.dims and n != state.second])
-    return of_rows(data, span(state, SLOW_ROWS), "crossing_F", state.largest_force())
+    return of_rows(data, second_parameter_values(state, SLOW_ROW_COUNT), "crossing_F", state.largest_force())
 
 
 def _of_arm(state: PageState) -> dict[str, Any]:
     given = {name: text for name, text in state.arm.items() if name != "pressure"} | LAWS[state.law]
     quantity = QUANTITIES[state.second]
     middle = in_si(state.second, state.arm[state.second], quantity.unit, quantity.example)
-    values = np.geomspace(middle / ARM_SPAN, middle * ARM_SPAN, ARM_ROWS)
+    values = np.geomspace(middle / ARM_SPAN_RATIO, middle * ARM_SPAN_RATIO, ARM_ROW_COUNT)
     subject = state.subject()
     assert isinstance(subject, Arm)
     arms = given | {state.second: list(map(float, values))}
@@ -164,8 +164,8 @@ def of_rows(data: Dataset, values: np.ndarray, name: str, largest: float) -> dic
     at = data[name].values
     after = data["unstable_after"].values
     kind = words_of(data["crossing_kind"])
-    x = np.linspace(0, largest, COLUMNS)
-    counts = np.zeros((len(values), COLUMNS), dtype=int)
+    x = np.linspace(0, largest, LOAD_COUNT)
+    counts = np.zeros((len(values), LOAD_COUNT), dtype=int)
     ends = data[name.replace("crossing_", "") + "_end"].values
     for row in range(len(values)):
         for load, count in zip(at[row], after[row], strict=True):

@@ -4,11 +4,11 @@ PETSc.
 
 from multiprocessing import forkserver, get_context
 
-FORKS = get_context("forkserver")
+FORK_SERVER = get_context("forkserver")
 """Multiprocessing context that forks solver processes from the fork server."""
 
 
-def prepare() -> None:
+def start_fork_server() -> None:
     """Starts the fork server, so that it imports all modules while the page imports its own."""
-    FORKS.set_forkserver_preload([f"{__package__}.worker"])
+    FORK_SERVER.set_forkserver_preload([f"{__package__}.worker"])
     forkserver.ensure_running()

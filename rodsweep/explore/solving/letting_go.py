@@ -42,7 +42,7 @@ def motion(state: PageState, tip: Tip) -> dict[str, Any]:
     return vars(found) | _shapes(found) | own
 
 
-def film_of_motion(state: PageState, tip: Tip) -> dict[str, Any]:
+def motion_film_answer(state: PageState, tip: Tip) -> dict[str, Any]:
     """Film of the motion after the release of the tip at `tip`: the content of a GIF file, under the name
     `gif`.
     """

@@ -11,17 +11,17 @@ from .questions import Question
 
 Needs = tuple[PageState, Tip | None]
 """Part of the page's state, and position of the dragged tip, that an answer depends on."""
-AT_ONCE = ("spectrum", "cycle", "thresholds", "growth")
+INSTANT_KINDS = ("spectrum", "cycle", "thresholds", "growth")
 """Kinds of questions that are sent after every change of the controls."""
-WHEN_IDLE = ("branch", "diagram")
+IDLE_KINDS = ("branch", "diagram")
 """Kinds of questions that take seconds; they are sent once the controls have not changed for
 IDLE_MILLISECONDS."""
-ON_REQUEST = ("motion", "film", "cycles")
+MANUAL_KINDS = ("motion", "film", "cycles")
 """Kinds of questions that are sent only when the user asks, by a button or a drag. A change of the rod
 cancels them."""
-STOPPABLE = ("cycle", *WHEN_IDLE, *ON_REQUEST)
+STOPPABLE_KINDS = ("cycle", *IDLE_KINDS, *MANUAL_KINDS)
 """Kinds of questions that the button "Stop" cancels."""
-OF_TIP = ("bent", "motion")
+TIP_KINDS = ("bent", "motion")
 """Kinds of questions about a dragged tip. An answer for an earlier position of the tip is not shown."""
 
 
@@ -31,7 +31,7 @@ def needs(question: Question) -> Needs:
     """
     kind = question.kind
     state = question.state
-    if kind in ("spectrum", "cycle", "film", *OF_TIP):
+    if kind in ("spectrum", "cycle", "film", *TIP_KINDS):
         return replace(state, across="", F_max=""), question.tip
     blank = {state.load: ""}
     if kind in ("diagram", "cycles"):

@@ -21,17 +21,17 @@ from ...post.branch_curves import RodBranches
 from ..state import LAWS, PageState, rod_of
 from .branches import drawn_branches
 from .diagrams import Dataset, cycle_diagram, diagram, words_of
-from .letting_go import Tip, bent, film_of_motion, motion
+from .letting_go import Tip, bent, motion, motion_film_answer
 
 Found = dict[str, Any]
 """Variables of an answer, by name: arrays; text for `status`, `sentence` and `message`."""
-MODES = 6
+MODE_COUNT = 6
 """Number of eigenvalues in the picture of the spectrum."""
-SHAPES = 48
+SHAPE_COUNT = 48
 """Number of shapes of the arm per period of a cycle; the browser interpolates between them."""
-GROWTH_FORCES = 121
+GROWTH_FORCE_COUNT = 121
 """Number of forces at which growth rates are computed."""
-BELOW_CRUSHING = 0.98
+MAX_CRUSHING_FRACTION = 0.98
 """Largest force of the growth rates, as a fraction of the force that crushes the rod."""
 
 
@@ -78,7 +78,7 @@ def spectrum(state: PageState) -> Found:
     """Leading eigenvalues of the straight rod with the number of unstable modes, and the shapes
     of the modes.
     """
-    return variables(state.subject().spectrum(modes=MODES, vectors=True, progress=False))
+    return variables(state.subject().spectrum(modes=MODE_COUNT, vectors=True, progress=False))
 
 
 def thresholds(state: PageState) -> Found:
@@ -94,9 +94,11 @@ def growth(state: PageState) -> Found:
     rod = rod_of(subject)
     keywords: dict[str, Any] = {n: rod[n] for n in ("k1", "k2", "gamma3", "taper") if n in rod}
     keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
-    F = np.linspace(0, min(state.largest_force(), BELOW_CRUSHING * crushing_force(rod)), GROWTH_FORCES)
+    F = np.linspace(
+        0, min(state.largest_force(), MAX_CRUSHING_FRACTION * crushing_force(rod)), GROWTH_FORCE_COUNT
+    )
     data = sweep("spectrum", F=F, **keywords, certify=False, progress=False)
-    rates = data["growth_rate"].values.reshape(GROWTH_FORCES, -1) / tau2
+    rates = data["growth_rate"].values.reshape(GROWTH_FORCE_COUNT, -1) / tau2
     unit = "1/s" if isinstance(subject, Arm) else "1/tau2"
     count = data["unstable_count"].values.reshape(-1)
     return {"F": F, "growth_rate": rates, "unit": unit, "unstable_count": count}
@@ -104,14 +106,14 @@ def growth(state: PageState) -> Found:
 
 def cycle(state: PageState) -> Found:
     """Limit cycle with shapes of the arm over a period; x, y: shape of the straight arm."""
-    return variables(state.subject().cycle(shapes=SHAPES, progress=False)) | bent(state, None)
+    return variables(state.subject().cycle(shapes=SHAPE_COUNT, progress=False)) | bent(state, None)
 
 
 def film(state: PageState) -> Found:
     """Film of the limit cycle, as made by `rodsweep plot`: the content of a GIF file, under the name `gif`.
     Raises InputError for a rod without a cycle.
     """
-    answer = state.subject().cycle(shapes=SHAPES, progress=False)
+    answer = state.subject().cycle(shapes=SHAPE_COUNT, progress=False)
     if not np.isfinite(answer.data["shape_x"].values).all():
         raise InputError(f"there is no cycle to film: {answer.sentence}")
     return film_of(answer)
@@ -155,7 +157,7 @@ ANSWERS: dict[str, Callable[[PageState], Found]] = {
 ANSWERS_TO_TIP: dict[str, Callable[[PageState, Tip], Found]] = {
     "bent": bent,
     "motion": motion,
-    "film": film_of_motion,
+    "film": motion_film_answer,
 }
 """Function that answers each kind of question about a dragged tip."""
 

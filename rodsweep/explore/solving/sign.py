@@ -3,19 +3,19 @@
 from collections.abc import Mapping, Sequence
 from html import escape
 
-NAMES = {"cycles": "folds and torus points", "growth": "growth rates", "branch": "branches"}
+KIND_WORDS = {"cycles": "folds and torus points", "growth": "growth rates", "branch": "branches"}
 """Words for a kind of question in the text "solving ..."; an unlisted kind stands for itself."""
 
 
-def sign(kinds: Sequence[str], progress: Mapping[str, str]) -> str:
+def solving_text(kinds: Sequence[str], progress: Mapping[str, str]) -> str:
     """Text "solving ..." for the given kinds of questions; empty without any. progress: progress as text, by
     kind.
     """
-    names = [NAMES.get(kind, kind) + progress.get(kind, "") for kind in kinds]
+    names = [KIND_WORDS.get(kind, kind) + progress.get(kind, "") for kind in kinds]
     return f"solving {', '.join(names)} ..." if names else ""
 
 
-def in_words(words: str, share: float | None) -> str:
+def progress_text(words: str, share: float | None) -> str:
     """Progress of a solve as text in parentheses. share: fraction of the work that is done; None
     if unknown.
     """

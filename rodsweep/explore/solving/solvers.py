@@ -15,31 +15,31 @@ from tornado.ioloop import IOLoop
 
 from ..state import PageState
 from . import worker
-from .forks import FORKS, prepare
+from .forks import FORK_SERVER, start_fork_server
 from .questions import Question, Reply
 
 Key = tuple[str, str]
 """(session, kind) of a question. A new question replaces an older question with an equal key."""
-Done = Callable[[Reply], None]
+ReplyCallback = Callable[[Reply], None]
 """Callback for the reply to a question, or for a progress message."""
 
 
-def not_shown(reply: Reply) -> None:
+def ignore_progress(reply: Reply) -> None:
     """Ignores progress messages; used for questions whose progress is not shown."""
 
 
-GROUPS = {
+PROCESS_GROUPS = {
     "spectrum": "spectrum", "thresholds": "thresholds", "growth": "thresholds", "cycle": "cycle",
     "branch": "branch", "diagram": "diagram", "bent": "spectrum", "motion": "cycle", "film": "film",
     "cycles": "diagram",
 }  # fmt: skip
 """Process group of each kind of question. Fast questions never wait for slow questions in the same group."""
-NICENESS = {"spectrum": 0, "cycle": 10, "thresholds": 12, "branch": 15, "diagram": 15, "film": 15}
+GROUP_NICENESS = {"spectrum": 0, "cycle": 10, "thresholds": 12, "branch": 15, "diagram": 15, "film": 15}
 """Unix niceness of the solver process of each group. Only the spectrum has the priority of the page and the
 browser, so its picture is drawn while other processes solve."""
 INTERRUPT_RETRY = 0.1
 """Time after which a cancellation is repeated if the process was not ready for it, in seconds."""
-WARMED_UP = ("spectrum", "cycle", "thresholds")
+WARM_UP_KINDS = ("spectrum", "cycle", "thresholds")
 """Kinds of questions that are solved once at the start, which starts their processes and loads
 compiled code."""
 
@@ -63,8 +63,8 @@ class SolverProcess:
     def __init__(self, patience: SolverTimeLimits | None = None, niceness: int = 0):
         self.patience = patience or SolverTimeLimits()
         self.niceness = niceness
-        self.waiting: dict[Key, tuple[Question, Done, Done]] = {}
-        self.asked: tuple[Key, Done, Done] | None = None
+        self.waiting: dict[Key, tuple[Question, ReplyCallback, ReplyCallback]] = {}
+        self.asked: tuple[Key, ReplyCallback, ReplyCallback] | None = None
         self.number = 0
         """Number of questions sent so far. A timer compares this number, to act only on the question for
         which the timer was set."""
@@ -81,7 +81,9 @@ class SolverProcess:
         """Id of the operating system's process; None if none runs."""
         return None if self._process is None else self._process.pid
 
-    def ask(self, key: Key, question: Question, done: Done, progress: Done = not_shown) -> None:
+    def ask(
+        self, key: Key, question: Question, done: ReplyCallback, progress: ReplyCallback = ignore_progress
+    ) -> None:
         """Queues a question. An older question with the same key leaves the queue, or is cancelled if it is
         being solved.
         """
@@ -118,10 +120,12 @@ class SolverProcess:
         """Starts the process unless it runs already."""
         if self._process is not None:
             return
-        prepare()
-        self._connection, theirs = FORKS.Pipe()
-        watched, self._life = FORKS.Pipe(duplex=False)
-        self._process = FORKS.Process(target=worker.run, args=(theirs, watched, self.niceness), daemon=True)
+        start_fork_server()
+        self._connection, theirs = FORK_SERVER.Pipe()
+        watched, self._life = FORK_SERVER.Pipe(duplex=False)
+        self._process = FORK_SERVER.Process(
+            target=worker.run, args=(theirs, watched, self.niceness), daemon=True
+        )
         self._process.start()
         self.starts += 1
         self.is_ready = False
@@ -203,22 +207,24 @@ class Solvers:
     """Solver processes of all groups, shared by all pages of a server."""
 
     def __init__(self, patience: SolverTimeLimits | None = None):
-        self.groups = {group: SolverProcess(patience, niceness) for group, niceness in NICENESS.items()}
+        self.groups = {group: SolverProcess(patience, niceness) for group, niceness in GROUP_NICENESS.items()}
 
     def warm_up(self) -> None:
-        """Starts the processes of WARMED_UP with one question each, which loads compiled code."""
-        for kind in WARMED_UP:
+        """Starts the processes of WARM_UP_KINDS with one question each, which loads compiled code."""
+        for kind in WARM_UP_KINDS:
             self.ask("warm up", Question(kind, PageState()), lambda reply: None)
 
-    def ask(self, session: str, question: Question, done: Done, progress: Done = not_shown) -> None:
+    def ask(
+        self, session: str, question: Question, done: ReplyCallback, progress: ReplyCallback = ignore_progress
+    ) -> None:
         """Queues a question of a session. done: callback for the reply. progress: callback for progress
         messages.
         """
-        self.groups[GROUPS[question.kind]].ask((session, question.kind), question, done, progress)
+        self.groups[PROCESS_GROUPS[question.kind]].ask((session, question.kind), question, done, progress)
 
     def drop(self, session: str, kind: str) -> None:
         """Cancels the question of the given kind in a session."""
-        self.groups[GROUPS[kind]].drop((session, kind))
+        self.groups[PROCESS_GROUPS[kind]].drop((session, kind))
 
     def forget(self, session: str) -> None:
         """Cancels all questions of a session."""

@@ -19,7 +19,7 @@ from ...sweep.stop import NoClaims, RankListener, StopRequest
 from ...watch import SolvePosition, reporting_to
 from .questions import Question, Reply, answer_to
 
-RETRY = 0.05
+CANCELLATION_RETRY = 0.05
 """Time, in seconds, after which a cancellation is repeated that arrived during an import, or while a progress
 message was sent."""
 
@@ -42,7 +42,7 @@ class Cancellation:
             return
         self.is_due = True
         if self.is_sending or is_importing(frame):
-            signal.setitimer(signal.ITIMER_REAL, RETRY)
+            signal.setitimer(signal.ITIMER_REAL, CANCELLATION_RETRY)
             return
         self.is_solving = False
         raise KeyboardInterrupt
