@@ -1,4 +1,6 @@
-"""The portrait of a rod in words: thresholds, criticality, branches, coexistence, cycles, missing results."""
+"""Portrait of a rod in words: thresholds, criticality, branches, coexisting states, cycles,
+missing results.
+"""
 
 from collections.abc import Iterator, Sequence
 from math import isfinite
@@ -18,7 +20,7 @@ from ..summary.thresholds import ENDED_EARLY
 from .results import RodResults
 
 SAME_FORCE = 1e-6
-"""Largest relative distance of a Hopf point of one task from the same Hopf point of another."""
+"""Largest relative difference between the forces that two tasks find for the same Hopf point."""
 EVENTS = {
     "onset": "it starts to oscillate at {F}",
     "hopf": "a pair of modes becomes unstable at {F}",
@@ -28,15 +30,15 @@ EVENTS = {
     "real_leads": "a real eigenvalue takes the lead at {F}",
     "pair_leads": "a complex pair takes the lead at {F}",
 }
-"""Clauses on the straight rod at a threshold, by kind."""
+"""Clause on the straight rod at a threshold, by kind of threshold."""
 SEARCHES = ("thresholds", "criticality", "branch")
-"""Tasks whose statuses are stated where they are not `SUCCEEDED`."""
+"""Tasks whose status the paragraph states unless it is `SUCCEEDED`."""
 SUCCEEDED = "ok"
-"""Status of thresholds, criticality and branches without reservation."""
+"""Status of a search for thresholds, criticality or branches that is complete."""
 
 
 def paragraph(results: RodResults) -> str:
-    """Everything about the rod, in one paragraph."""
+    """All results about the rod, as one paragraph of text."""
     sentences = [
         *_rod(results),
         *_thresholds(results),
@@ -48,7 +50,7 @@ def paragraph(results: RodResults) -> str:
 
 
 def _rod(results: RodResults) -> Iterator[str]:
-    """Yields sentences on the rod, its units in SI and the searched range."""
+    """Yields sentences on the parameters of the rod, and the searched range of the force."""
     end = float(results.views["thresholds"].of_point(0)["F_end"])
     units = results.units
     reached = units.force_at(end)
@@ -67,7 +69,7 @@ def _rod(results: RodResults) -> Iterator[str]:
 
 
 def _arm(results: RodResults) -> Iterator[str]:
-    """Yields sentences on an arm: its units, whether the model applies, and the plane of its motion."""
+    """Yields sentences on an arm: its units, whether the model applies, and the plane in which it moves."""
     view = results.views["thresholds"]
     quantities = {name: float(values.ravel()[0]) for name, values in view.quantities.items()}
     yield (
@@ -81,7 +83,7 @@ def _arm(results: RodResults) -> Iterator[str]:
 
 
 def _thresholds(results: RodResults) -> Iterator[str]:
-    """Yields sentences on the thresholds of the straight rod, with the criticality of Hopf points."""
+    """Yields sentences on the thresholds of the straight rod, with the criticality of its Hopf points."""
     view = results.views["thresholds"]
     v = view.of_point(0)
     places = np.flatnonzero(v["crossing_kind"] > 0)
@@ -106,7 +108,7 @@ def _thresholds(results: RodResults) -> Iterator[str]:
 
 
 def _side(results: RodResults, F: float) -> str:
-    """Clause on the criticality of the Hopf point at a force; empty for another threshold."""
+    """Clause on the criticality of the Hopf point at the force F; empty if there is no Hopf point at F."""
     view = results.views.get("criticality")
     if view is None:
         return ""
@@ -120,7 +122,9 @@ def _side(results: RodResults, F: float) -> str:
 
 
 def _branches(results: RodResults) -> Iterator[str]:
-    """Yields sentences on the branches of cycles, their special points and ranges of stability."""
+    """Yields sentences on the branches of cycles, their special points, and the ranges in which cycles are
+    stable.
+    """
     rod = results.branches
     if rod is None:
         return
@@ -157,10 +161,11 @@ def _branches(results: RodResults) -> Iterator[str]:
 
 
 def _beside(ranges: str, is_decided: bool, kind: str) -> str:
-    """Sentence on loads with both a stable cycle and a stable straight rod, or on their absence.
+    """Sentence on the loads at which a stable cycle and the stable straight rod coexist, or that there are
+    none.
 
-    ranges: the loads as text, empty if none are known. is_decided: whether all stabilities are known. kind:
-    rod or arm.
+    ranges: the loads as text; empty if none are found. is_decided: whether the stability of all states is
+    known. kind: "rod" or "arm".
     """
     if ranges:
         return f"A stable cycle exists beside the stable straight {kind} at {ranges}."
@@ -170,7 +175,7 @@ def _beside(ranges: str, is_decided: bool, kind: str) -> str:
 
 
 def _special(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[str]:
-    """Loads at the special points of a kind, each point once. factor: the load at F = 1."""
+    """Distinct loads, as text, at the special points of the given kind. factor: the load at F = 1."""
     found = {
         rounded(factor * special.at, factor * special.error): None
         for curve in curves
@@ -181,7 +186,7 @@ def _special(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[s
 
 
 def _cycles(results: RodResults) -> Iterator[str]:
-    """Yields a sentence on the cycles that are drawn, and on forces at which none was found."""
+    """Yields a sentence on the drawn cycles, and a sentence on the forces at which no cycle was found."""
     units = results.units
     clauses = []
     for F, view in results.cycles:
@@ -206,7 +211,7 @@ def _cycles(results: RodResults) -> Iterator[str]:
 
 
 def _missing(results: RodResults) -> Iterator[str]:
-    """Yields sentences on results that are missing or have a reservation."""
+    """Yields sentences on missing results, and on results whose status is not `SUCCEEDED`."""
     for task, reason in results.missing.items():
         yield f"Not solved, {task.replace('_', ' ')}: {reason}."
     for task in SEARCHES:

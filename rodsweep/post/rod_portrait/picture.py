@@ -1,4 +1,6 @@
-"""The portrait of a rod as a figure: thresholds along F, branches of cycles, modes at onset, three cycles."""
+"""Portrait of a rod as a figure: thresholds along F, branches of cycles, modes at the thresholds, three
+cycles.
+"""
 
 import textwrap
 from collections.abc import Sequence
@@ -21,29 +23,33 @@ from .results import RodResults
 from .units import rescale_panel
 
 SIZE = (10.0, 10.4)
-"""Width and height of the picture, in inches."""
+"""Width and height of the figure, in inches."""
 HEIGHTS = (0.4, 2.4, 1.5, 2.2)
-"""Relative heights of the thresholds, the largest y, the periods, and the modes with the cycles."""
+"""Relative heights of the rows of panels: thresholds, largest y of the tip, periods, and modes
+with cycles."""
 MODE_WIDTH = 0.65
-"""Width of the panel of a mode, in units of the width of that of a cycle."""
+"""Width of the panel of a mode, in units of the width of the panel of a cycle."""
 LINE_WIDTH = 162
-"""Characters in a line of the paragraph."""
+"""Largest length of a line of the paragraph, in characters."""
 PANEL_WIDTH = 26
-"""Characters in a line of the sentence that replaces the panel of a missing mode or cycle."""
+"""Largest length of a line, in characters, of the sentence in a panel whose mode or cycle is missing."""
 CYCLES = 3
-"""Number of cycles of a portrait."""
+"""Number of cycles in the figure."""
 BESIDE_STRAIGHT = ("#009E73", "stable cycle beside a stable straight rod")
+"""Colour and legend entry of ranges of F in which a stable cycle and the stable straight rod coexist."""
 TWO_CYCLES = ("#CC79A7", "two stable cycles")
+"""Colour and legend entry of ranges of F in which two stable cycles coexist."""
 CYCLE_WORD = "cycle drawn below"
+"""Legend entry of the marks at cycles whose shapes are drawn."""
 FAINT_PART = 1e-3
-"""Fraction of a mode below which its imaginary part is not drawn: at a double eigenvalue half of the digits
-are rounding errors."""
+"""Size of the imaginary part of a mode, as a fraction of the mode, below which it is not drawn. At a double
+eigenvalue half of the digits are rounding errors."""
 
 
 def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
-    """The portrait; with_words: whether the paragraph stands above the panels.
+    """Figure of the portrait; with_words: whether the paragraph stands above the panels.
 
-    A result that is missing has its reason in its place.
+    The panel of a missing result shows the reason in a sentence.
     """
     with matplotlib.rc_context(style.STYLE):
         figure = Figure(figsize=SIZE, layout="constrained")
@@ -68,7 +74,7 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
 
 
 def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
-    """Draws the panels of the thresholds, the largest y and the period, which share their loads, in units."""
+    """Converts the panels of the thresholds, the largest y and the period to the units of the portrait."""
     units = results.units
     end = panels[0].get_xlim()[1]
     for axes, y in zip(panels, (1.0, units.length.factor, units.time.factor), strict=True):
@@ -78,7 +84,7 @@ def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
 
 
 def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
-    """Draws the behaviour of the straight rod along F, with its thresholds; returns legend entries."""
+    """Draws the stability of the straight rod along F, with its thresholds; returns legend entries."""
     view = results.views["thresholds"]
     v = view.of_point(0)
     axes.set(ylim=(-0.6, 0.6), yticks=[])
@@ -95,7 +101,7 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
 
 
 def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist]:
-    """Draws the branches and ranges with two stable states; returns legend entries."""
+    """Draws the branches of cycles, and the ranges with two stable states; returns legend entries."""
     rod = results.branches
     if rod is None or not rod.curves:
         lower.set_axis_off()
@@ -120,7 +126,7 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
 
 
 def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
-    """Marks the cycles whose shapes are drawn; returns a legend entry."""
+    """Marks the cycles whose shapes are drawn in the panels of the branches; returns a legend entry."""
     beating = [(F, view.of_point(0)) for F, view in results.cycles if view.with_status(*CYCLE_WORDS).all()]
     handles: list[Line2D] = []
     for axes, name in ((upper, "tip_y_max"), (lower, "period")):
@@ -132,7 +138,7 @@ def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
 
 
 def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
-    """Draws the deflection of the leading mode at a threshold."""
+    """Draws the deflection of the leading mode at the first threshold of the given kind."""
     if kind not in results.modes:
         _say(axes, f"no mode: {results.missing['modes']}", PANEL_WIDTH)
         return
@@ -152,7 +158,7 @@ def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
 
 
 def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
-    """Draws the shapes of three cycles, later ones darker, on the same scale."""
+    """Draws the shapes of up to three cycles on the same scale; later shapes of a period are darker."""
     if not results.cycles:
         for axes in panels[1:]:
             axes.set_axis_off()
@@ -183,13 +189,13 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
 
 
 def _outcome(view: View) -> str:
-    """The meaning of the status of the single point of a view."""
+    """Meaning of the status of the only point in `view`."""
     word = str(view.outcomes[0])
     return view.sentences.get(word, word)
 
 
 def _say(axes: Axes, sentence: str, width: int) -> None:
-    """Writes a sentence in the place of a drawing."""
+    """Writes a sentence into an empty panel, in lines of `width` characters."""
     axes.set_axis_off()
     text = style.plain(textwrap.fill(f"{sentence[:1].upper()}{sentence[1:]}.", width))
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=8)

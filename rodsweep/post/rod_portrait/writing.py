@@ -1,4 +1,4 @@
-"""The portrait of a rod as a file: an image with its paragraph, or a page with tables."""
+"""Portrait of a rod as a file: an image with the paragraph, or an HTML page with tables."""
 
 from pathlib import Path
 
@@ -13,19 +13,24 @@ from .picture import portrait_figure
 from .results import RodResults
 
 IMAGES = (".png", ".pdf", ".svg")
+"""Suffixes of image files for a portrait."""
 PAGE = ".html"
+"""Suffix of an HTML page."""
 CAPTION = "thresholds, branches of cycles, modes at the thresholds and three cycles"
+"""Description of the picture on an HTML page."""
 HIDDEN = ("mode_shapes", "shapes", "harmonics", "multipliers", "samples")
-"""Tables that the picture shows better."""
+"""Tables left out of an HTML page, because the picture shows their content better."""
 
 
 def require_portrait(output: Path) -> None:
-    """Raises InputError unless a portrait can be written under this name."""
+    """Raises InputError unless a portrait can be written to the file `output`."""
     require_name(output, (*IMAGES, PAGE), "page" if output.suffix == PAGE else "picture")
 
 
 def write_portrait(results: RodResults, output: Path) -> str:
-    """Writes the portrait and returns a sentence; InputError for a name that does not fit a portrait."""
+    """Writes the portrait to the file `output` and returns a sentence. Raises InputError for an unsuitable
+    file name.
+    """
     require_portrait(output)
     if output.suffix == PAGE:
         with written_whole(output) as stream:
@@ -36,7 +41,7 @@ def write_portrait(results: RodResults, output: Path) -> str:
 
 
 def portrait_page(results: RodResults) -> str:
-    """The portrait as a page of HTML that needs no network."""
+    """Portrait as the text of an HTML page, readable without a network."""
     picture = vector_picture(portrait_figure(results, with_words=False), 1, CAPTION)
     views = [*results.views.items()]
     at = results.units.force_at
