@@ -1,4 +1,4 @@
-"""Branches of cycles in `rodsweep show`: their ends and special points, and ranges with two stable states."""
+"""Branches of cycles in `rodsweep show`: ends, special points, and ranges with two stable states."""
 
 from collections.abc import Iterator, Sequence
 
@@ -14,16 +14,19 @@ from .summary_lines import SummaryLines, at_point, completeness, first_lines
 from .thresholds import not_known
 
 LIST_TOO_SHORT = "they have more special points than the list holds; raise branch.special"
-"""Cause and remedy of branches not shown."""
+"""Reason why branches are not shown, and remedy."""
 BESIDE_STRAIGHT = "stable cycles beside a stable straight rod"
+"""Words for a range in which a stable cycle and the stable straight rod coexist."""
 TWO_CYCLES = "stable cycles of two branches"
+"""Words for a range in which stable cycles of two branches coexist."""
 SPECIAL_WORDS = {
     "fold": "fold",
     "torus": "torus point",
     "symmetry_breaking": "symmetry breaking",
     "period_doubling": "period doubling",
 }
-"""Words for special points at which a branch changes; Hopf points and ends have separate sentences."""
+"""Words for special points between the ends of a branch, by kind. Hopf points and ends have sentences of
+their own."""
 ENDS = {
     "left_the_model": "a cycle with h1 = 0",
     "range_end": "the end of the range",
@@ -36,7 +39,7 @@ ENDS = {
 
 
 def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the points in `done`, a mask of the points' shape."""
+    """Lines of the summary of branches. done: mask of the computed points."""
     if done.size == 1:
         return SummaryLines(list(_one_rod(RodBranches(view))), [_searched(view, done)])
     v = view.variables
@@ -51,7 +54,7 @@ def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def _one_rod(rod: RodBranches) -> Iterator[str]:
-    """Yields lines about every branch of the single rod of a file, with the errors of its special points."""
+    """Yields lines about every branch of the only rod in a file, with the errors of its special points."""
     along = followed_parameter(rod.view)
     v = rod.view.variables
     if rod.hidden:
@@ -79,7 +82,9 @@ def _one_rod(rod: RodBranches) -> Iterator[str]:
 
 
 def _extent(curve: StoredBranch, errors: Array, along: str) -> str:
-    """Number of cycles of a branch with their ranges; errors: relative, of the largest tip y, (cycles,)."""
+    """Number of cycles on a branch, and ranges of their parameter and largest y. errors: relative errors of
+    y, (cycles,).
+    """
     cycles = curve.cycles
     if not cycles.any():
         return "no cycle is stored"
@@ -104,7 +109,7 @@ def _special_of_branch(curve: StoredBranch, along: str) -> Iterator[str]:
 
 
 def _ends(curve: StoredBranch, along: str) -> str:
-    """Start and end of a branch, as text."""
+    """Clause on the start and the end of a branch."""
     first = curve.special[0]
     last = curve.special[-1]
     start = f"from the Hopf point at {along} = {to_error(first.at, first.error)}"
@@ -122,7 +127,7 @@ def _ends(curve: StoredBranch, along: str) -> str:
 
 
 def _sizes(view: View, done: np.ndarray) -> str:
-    """Clause on the period and the amplitude of all cycles of the points in `done`; may be empty."""
+    """Clause on the periods and amplitudes of all cycles at the points in the mask `done`; may be empty."""
     v = view.variables
     if not np.isfinite(v["period"][done]).any():
         return ""
@@ -131,7 +136,7 @@ def _sizes(view: View, done: np.ndarray) -> str:
 
 
 def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
-    """Yields lines about the special points of each kind, and about ends of branches."""
+    """Yields lines about the special points of each kind, and about the ends of branches, over all rods."""
     found: dict[str, list[tuple[float, float]]] = {word: [] for word in (*SPECIAL_WORDS, *ENDS)}
     curves = [(rod, number, curve) for rod in rods for number, curve in enumerate(rod.curves, 1)]
     for _, number, curve in curves:
@@ -158,7 +163,7 @@ def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
 
 
 def _coexistence(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
-    """Yields lines about rods with two stable states, some with parameters."""
+    """Yields lines about rods with two stable states, with the ranges of some of them."""
     complete = [rod for rod in rods if not rod.hidden]
     if len(complete) < len(rods):
         yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {LIST_TOO_SHORT}"
@@ -172,7 +177,9 @@ def _coexistence(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
 def _rods_with(
     rods: Sequence[RodBranches], along: str, words: str, ranges: Sequence[list[Range]]
 ) -> Iterator[str]:
-    """Yields the number of rods with a property in ranges of the parameter, and the ranges of some rods."""
+    """Yields the number of rods that have `ranges`, and the ranges of the first few. words: property of the
+    rods in the ranges.
+    """
     unknown = sum(not (own or rod.coexistence_is_decided) for rod, own in zip(rods, ranges, strict=True))
     having = [
         ": ".join(filter(None, (at_point(rod.view, rod.rod), f"{along} = {listed(own, rod.errors)}")))
@@ -184,7 +191,7 @@ def _rods_with(
 
 
 def _searched(view: View, done: np.ndarray) -> str:
-    """Line on the followed range and the completeness of the branches."""
+    """Line on the followed range of the parameter, and on the completeness of the branches."""
     start, stop = ends_of(view)
     along = followed_parameter(view)
     proved = some_of(view.variables["certified"][done].sum(), done.sum(), "rod")

@@ -1,4 +1,4 @@
-"""Hopf points in `rodsweep show`: criticality, coefficients of the normal form, and their errors."""
+"""Hopf points in `rodsweep show`: criticality, coefficients of the normal form, and errors."""
 
 from collections.abc import Iterator, Mapping
 
@@ -15,9 +15,9 @@ from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, r
 from .thresholds import ENDED_EARLY, not_known, not_known_beyond, not_stored
 
 SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
-"""Words for the criticality of a Hopf point."""
+"""Word for the criticality of a Hopf point, by sign of Re c."""
 NAMED_RODS = 8
-"""Largest number of rods with subcritical Hopf points that are listed."""
+"""Largest number of rods with subcritical Hopf points that are listed one by one."""
 NUMBERS = {
     "crossing_F": "F, k3/L^2",
     "crossing_frequency": f"frequency, {ANGULAR_UNIT}",
@@ -32,7 +32,7 @@ NUMBERS = {
 
 
 def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the points in `done`, a mask of the points' shape."""
+    """Lines of the summary of Hopf points. done: mask of the computed points."""
     v = view.variables
     if done.size == 1:
         none = "its Hopf points are not known"
@@ -72,7 +72,7 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
-    """Yields a line about every Hopf point of the single rod of a file; v: its variables."""
+    """Yields a line about every Hopf point of the only rod in a file. v: its variables."""
     for i in np.flatnonzero(v["crossing_kind"] > 0):
         F = rounded(v["crossing_F"][i], v["crossing_error"][i])
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
@@ -85,7 +85,9 @@ def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
 
 
 def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
-    """Table of the Hopf points of a single rod, a column for each; None without any. v: its variables."""
+    """Table of the Hopf points of the only rod in a file, one column each; None without a Hopf point. v: its
+    variables.
+    """
     at = np.flatnonzero(v["crossing_kind"] > 0)
     kinds = (CROSSING_KINDS[int(v["crossing_kind"][i])] for i in at)
     rows = []
@@ -97,7 +99,9 @@ def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
 
 
 def _words(v: Mapping[str, np.ndarray], i: int) -> str:
-    """Clause on the cycles at the i-th Hopf point of the single rod: their side and their stability."""
+    """Clause on the cycles near the i-th Hopf point of the only rod: at larger or smaller F, stable or
+    unstable. v: its variables.
+    """
     side = int(v["criticality"][i])
     if side == 0:
         return "the sign of Re c is within its error"
@@ -113,7 +117,9 @@ def _words(v: Mapping[str, np.ndarray], i: int) -> str:
 
 
 def _subcritical_lines(view: View) -> Iterator[str]:
-    """Yields lines about rods with subcritical Hopf points; rods whose first is subcritical come first."""
+    """Yields lines about rods with subcritical Hopf points, first rods whose first Hopf point is
+    subcritical.
+    """
     side = view.by_point("criticality")
     rods = np.flatnonzero((side == 1).any(axis=-1))
     rods = rods[np.argsort(side[rods, 0] != 1, kind="stable")]
@@ -133,13 +139,15 @@ def _subcritical_lines(view: View) -> Iterator[str]:
 
 
 def _counts(side: np.ndarray) -> str:
-    """Number of Hopf points of each criticality, as text."""
+    """Numbers of supercritical, subcritical and undecided Hopf points, as text. side: sign of Re c, of any
+    shape.
+    """
     counts = {word: int((side == value).sum()) for value, word in SIDES.items()}
     return ", ".join(f"{count} {word}" for word, count in counts.items() if count) or "none known"
 
 
 def _searched(view: View, done: np.ndarray) -> str:
-    """Line on the searched range and the completeness of the Hopf points."""
+    """Line on the searched range of F, and on the completeness of the Hopf points."""
     v = view.variables
     certified = int(v["certified"][done].sum())
     rods = int(done.sum())
@@ -151,6 +159,6 @@ def _searched(view: View, done: np.ndarray) -> str:
 
 
 def _worst(values: np.ndarray) -> str:
-    """Largest known value, as text."""
+    """Largest finite value, as text."""
     known = values[~np.isnan(values)]
     return f"{known.max():.1e}" if known.size else "not known"

@@ -1,4 +1,4 @@
-"""Limit cycles in `rodsweep show`: where the rod beats, the cycles, and their reliability."""
+"""Limit cycles in `rodsweep show`: which rods beat, numbers of their cycles, and reliability."""
 
 from collections.abc import Callable, Mapping
 
@@ -17,18 +17,18 @@ from .stability import stability_lines
 from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, region, varied
 
 OUTCOMES = {"cycle": "beats", "straight": "stays straight"}
-"""Words for outcomes; unlisted statuses are words already."""
+"""Words for the outcome at a point, by status; an unlisted status is a word itself."""
 CYCLE_NUMBERS = (
     ("period", "period", "tau2"),
     ("frequency", "frequency", ANGULAR_UNIT),
     ("largest y of the tip", "tip_y_max", "L"),
     ("largest Floquet multiplier", "multiplier", ""),
 )
-"""(words, variable, unit) of the numbers of a single cycle."""
+"""(words, variable, unit) of the numbers printed for a single cycle."""
 
 
 def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the points in `done`, a mask of the points' shape."""
+    """Lines of the summary of limit cycles. done: mask of the computed points."""
     v = view.variables
     beats = done & view.with_status("cycle")
     orbit = done & view.with_status(*CYCLE_WORDS)
@@ -55,9 +55,10 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarray], str]) -> str:
-    """Line on the number of points with each outcome, and on their regions.
+    """Line on the number of points with each outcome, and on the region in which they lie.
 
-    done: a mask of the points' shape. region: function that describes the points of a mask.
+    done: mask of the computed points. region: function of the view and a mask that describes the points in
+    the mask.
     """
     status = view.variables["status"]
     whole = counted(int(done.sum()), "point")
@@ -73,7 +74,9 @@ def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarra
 
 
 def _stability(view: View) -> tuple[list[str], list[str]]:
-    """(changes of the straight rod along F, the same in an arm's units), or along another axis without F."""
+    """(lines about changes of stability of the straight rod along F, the same in an arm's units); along
+    another parameter if F is no axis.
+    """
     names = [name for name in LINEAR_PARAMETERS if name in varied(view)]
     lines = list[str]()
     of_arm = list[str]()
@@ -85,7 +88,9 @@ def _stability(view: View) -> tuple[list[str], list[str]]:
 
 
 def _proof_lines(view: View) -> list[str]:
-    """Line on the completeness of the Hopf points; empty if no line was searched."""
+    """Line on whether the list of Hopf points is proved complete; an empty list if no line of points was
+    searched.
+    """
     v = view.variables
     lines = int(v["hopf_lines"]) if "hopf_lines" in v else 0
     if not lines:
@@ -95,7 +100,7 @@ def _proof_lines(view: View) -> list[str]:
 
 
 def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:
-    """Line on the stability of the single cycle of a file; v: the variables of the file, of any shape."""
+    """Line on the stability of the only cycle in a file. v: variables of the file."""
     if np.isnan(v["multiplier"]).all():
         return "the motion in time settles on the cycle; no Floquet multiplier is computed"
     if stable:
@@ -104,7 +109,7 @@ def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:
 
 
 def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
-    """Table of the single cycle of a file, with errors; v: the variables of the file, of any shape."""
+    """Table of the numbers of the only cycle in a file, with errors. v: variables of the file."""
     rows = []
     for words, name, unit in CYCLE_NUMBERS:
         value = float(np.nanmax(v[name], initial=-np.inf))
@@ -114,7 +119,9 @@ def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
 
 
 def _second_state_lines(v: Mapping[str, np.ndarray], done: np.ndarray) -> list[str]:
-    """Lines about the points in `done` with a second stable state, certain or possible."""
+    """Lines about computed points with a second stable state, certain or possible. v: variables of the file.
+    done: mask.
+    """
     numbers = {word: number for number, word in SECOND_STATES}
     lines = []
     straight, cycle = (done & (v["second_state"] == numbers[word]) for word in ("straight", "cycle_possible"))
@@ -130,12 +137,16 @@ def _second_state_lines(v: Mapping[str, np.ndarray], done: np.ndarray) -> list[s
 
 
 def _at(some: np.ndarray, done: np.ndarray) -> str:
-    """Clause on the number of chosen points among the points in `done`, masks of equal shape, or empty."""
+    """Clause on how many of the points in the mask `done` are in the mask `some`; empty if there is a single
+    point.
+    """
     return "" if done.sum() == 1 else f" at {some_of(some.sum(), done.sum(), 'point')}"
 
 
 def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
-    """Lines about further properties of the cycles."""
+    """Lines about further properties of the cycles. v: variables of the file. beats: mask of the points with
+    a cycle.
+    """
     ratio = v["frequency"][beats] / v["linear_frequency"][beats]
     times = span(ratio, ratio * v["period_error"][beats])
     tips = (
@@ -158,7 +169,9 @@ def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
 
 
 def _error_line(v: Mapping[str, np.ndarray], beats: np.ndarray) -> str:
-    """Line on the largest errors of the cycles."""
+    """Line on the largest errors of the cycles. v: variables of the file. beats: mask of the points with a
+    cycle.
+    """
     names = {
         "period": "period_error",
         "amplitude": "amplitude_error",

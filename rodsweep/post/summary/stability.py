@@ -1,4 +1,4 @@
-"""Stability of the straight rod along a parameter in `rodsweep show`: its thresholds."""
+"""Thresholds of stability of the straight rod along a parameter, in `rodsweep show`."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -12,7 +12,8 @@ from .arm.arm import thresholds_of_arm
 from .ranges import error_text, stated_error
 
 FEW_LINES = 3
-"""Largest number of lines with individually listed thresholds."""
+"""Largest number of lines of points whose thresholds are listed one by one; of more lines the
+range is given."""
 OVER_FORCE = {
     "onset": "F* (straight rod starts to oscillate)",
     "hopf": "F** (straight rod starts to beat)",
@@ -23,18 +24,19 @@ OVER_OTHERS = {
     "hopf": "the straight rod starts to beat, as {name} grows, at {name}",
     "restabilization": "the straight rod is stable again, as {name} grows, at {name}",
 }
-"""Words for a change of stability along another parameter, by kind."""
+"""Words for a threshold along any other parameter, by kind."""
 Threshold = LocatedChange | BracketedChange
-"""A threshold: located, or bracketed by two points."""
+"""Change of stability of the straight rod: located, or bracketed by two points of the file."""
 
 
 def stability_lines(
     view: View, name: str, found_on: Callable[[ParameterLine], Sequence[Threshold]]
 ) -> tuple[list[str], list[str]]:
-    """(line for each kind of threshold along a parameter, the same along F in an arm's own units).
+    """(line for each kind of threshold along the parameter `name`, the same in an arm's units if the
+    parameter is F).
 
-    Empty if the parameter is no axis. found_on: function that finds the thresholds on a line over the
-    parameter.
+    Both are empty if the parameter is no axis. found_on: function that returns the thresholds on a line of
+    points.
     """
     column = view.point_columns[name]
     if len(np.unique(column[np.isfinite(column)])) < 2:
@@ -56,7 +58,9 @@ def stability_lines(
 
 
 def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: str) -> str:
-    """Thresholds on named lines: individually for a few lines, else as a range."""
+    """Positions of the thresholds as text: one by one for a few lines of points, else as a range. found:
+    thresholds by number of the line.
+    """
     points = [point for line in found.values() for point in line]
     located = [point for point in points if isinstance(point, LocatedChange)]
     stated = [stated_error(point.position, point.error)[1] for point in located]
@@ -82,7 +86,7 @@ def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: st
 
 
 def _text(threshold: Threshold) -> str:
-    """Position of a threshold to the first digit reached by the error, or the two bracketing points."""
+    """Position of a threshold as text, to the digits that its error allows; both ends of a bracket."""
     if isinstance(threshold, BracketedChange):
         return f"between {threshold.low:.6g} and {threshold.high:.6g}"
     return stated_error(threshold.position, threshold.error)[0]
