@@ -1,4 +1,6 @@
-"""Criticality of a rod's Hopf points and amplitude of the cycles near them: a map, or lines."""
+"""Criticality of the Hopf points of rods, and predicted amplitudes of the cycles near them: a
+map, or lines.
+"""
 
 from math import floor, log10
 
@@ -19,19 +21,22 @@ from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
 
 FARTHEST_DRAWN = 0.1
-"""Largest |F/F_H - 1| of a drawn prediction; farther away cycles depart from the leading-order law."""
+"""Largest |F/F_H - 1| at which a predicted amplitude is drawn. Farther away cycles deviate from the
+leading-order law."""
 LINES = {-1: ("-", "supercritical"), 1: ("--", "subcritical"), 0: (":", "side undecided")}
-"""Line style and word of the cycles of a Hopf point, by criticality."""
+"""(line style, legend entry) of the predicted cycles, by sign of Re c: -1 supercritical, 1 subcritical, 0
+undecided."""
 COLOURS = (style.FIRST, style.SECOND, style.THIRD, "#CC79A7", "#56B4E9", "#000000")
 """Colours of the rods, in order."""
 PREDICTION_POINTS = 60
-"""Number of points of a drawn prediction, dense near the Hopf point, where the curve is steep."""
+"""Number of points of a predicted curve. They are dense near the Hopf point, where the curve is steep."""
 MARKS = {
     -1: ("supercritical", style.FIRST, "o"),
     1: ("subcritical", style.SECOND, "s"),
     0: ("undecided", "0.3", "x"),
 }
-"""Word, colour and marker of a Hopf point, by criticality."""
+"""(legend entry, colour, marker) of a Hopf point, by sign of Re c: -1 supercritical, 1 subcritical, 0
+undecided."""
 CLASSES = (
     ("no Hopf point with a normal form", "#DDDDDD"),
     ("supercritical", "#9CC3E4"),
@@ -39,13 +44,16 @@ CLASSES = (
     ("subcritical", style.SECOND),
     ("undecided", "0.4"),
 )
-"""Words and colours for a rod's first Hopf point; the colours differ for colour-blind readers and in grey."""
+"""(legend entry, colour) of a rod on a map, by the criticality of its Hopf points. Colour-blind readers and
+grey prints distinguish the colours."""
 LINEAR_FRACTION = 0.1
-"""Fraction of the Hopf points whose |Re c| lies on the linear part of the symmetric logarithmic axis."""
+"""Fraction of the Hopf points whose |Re c| lies in the linear range of the symmetric logarithmic axis."""
 
 
 def draw_criticality(request: FigureRequest) -> str:
-    """Maps the first Hopf points over two parameters; draws a and Re c over one; else predicted cycles."""
+    """Draws a map of the first Hopf points over two parameters; a and Re c over one parameter; else predicted
+    amplitudes. Returns a sentence.
+    """
     view = request.only_view()
     style.require(view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form")
     varied = varied_parameters(view)
@@ -59,7 +67,9 @@ def draw_criticality(request: FigureRequest) -> str:
 
 
 def _along(view: View, name: str) -> Figure:
-    """Figure of a above Re c over a parameter, each Hopf point marked by criticality."""
+    """Figure of the amplitude coefficient a, above Re c, over the parameter `name`. Markers show the
+    criticality.
+    """
     x = view.point_columns[name]
     keep = np.isfinite(x)
     figure = Figure(figsize=(5.6, 5.4), layout="constrained")
@@ -80,7 +90,9 @@ def _along(view: View, name: str) -> Figure:
 
 
 def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
-    """Marks Hopf points, x of shape (rods,), values and side (rods, crossings); returns legend entries."""
+    """Marks Hopf points by criticality; returns legend entries. x: (rods,). values, side: (rods, crossings);
+    side: sign of Re c.
+    """
     across = np.broadcast_to(x[:, None], values.shape)
     handles = []
     for number, (word, colour, marker) in MARKS.items():
@@ -92,7 +104,9 @@ def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
 
 
 def _map(view: View, points: PointMap, narrow: bool) -> Figure:
-    """Maps of the criticality of first Hopf points and of |a|; narrow: whether the maps are stacked."""
+    """Figure with two maps, criticality of the first Hopf points and |a|; narrow: whether the maps are
+    stacked.
+    """
     side = view.by_point("criticality")[points.at]
     a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.at])
     style.require(view, np.isfinite(a).any(), "first Hopf point with a normal form")
@@ -112,8 +126,8 @@ def _map(view: View, points: PointMap, narrow: bool) -> Figure:
 
 
 def _classes(side: Array) -> Array:
-    """Index in CLASSES of every rod, (ny, nx). side: -1 for a supercritical Hopf point, 1 for a subcritical
-    one, (ny, nx, crossings).
+    """Index in CLASSES for every rod, (ny, nx). side: sign of Re c at its Hopf points, (ny, nx, crossings),
+    NaN for none.
     """
     first = side[..., 0]
     later = (side[..., 1:] == 1).any(axis=-1)
@@ -123,7 +137,7 @@ def _classes(side: Array) -> Array:
 
 
 def draw_predictions(view: View) -> tuple[Figure, str]:
-    """Figure of the predicted amplitudes near every Hopf point, for the first rods; and a description."""
+    """(figure of the predicted amplitudes near all Hopf points of the first rods, description)."""
     kinds, F, a = map(view.by_point, ("criticality", "crossing_F", "amplitude_coefficient"))
     having = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))
     style.require(view, having.size, "Hopf point with a normal form")

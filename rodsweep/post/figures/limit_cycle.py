@@ -1,4 +1,4 @@
-"""Figures of limit cycles: the figure named by the user, or suited to the content of the file."""
+"""Figures of the task `limit_cycle`: the kind named by the user, or the kind that suits the file."""
 
 import numpy as np
 
@@ -17,15 +17,17 @@ from .layout.fitting import MAP_ASPECT, STRIP_ASPECT
 from .request import KINDS_OF_TASK, FigureRequest
 
 ALL_POINTS = {"amplitude": "amplitudes", "maps": "maps"}
-"""Figures that show every point of a file, with names in a sentence."""
+"""Kinds of figures that show all points of a file, with their names in a sentence."""
 NEEDS = {"cycle": SHAPES, "animation": SHAPES, "energy": ENERGIES}
-"""Variables of a cycle that a figure needs."""
+"""Variables of a cycle without which a kind of figure cannot be drawn."""
 FEW_POINT_FIGURES = {"cycle": draw_portrait, "energy": draw_energy, "transient": draw_transients}
-"""Functions of the figures of a few points, chosen by the user or the first points."""
+"""Function of each kind of figure that shows a few points."""
 
 
 def draw_limit_cycle(request: FigureRequest) -> str:
-    """Draws one file, or the amplitudes of several files; raises InputError if the choices do not fit."""
+    """Draws the figure of one file, or the amplitudes of several files; returns a sentence. Raises InputError
+    for unsuitable choices.
+    """
     points = request.points
     name = figure_name(request)
     view = _with_needs(request, name)
@@ -43,7 +45,9 @@ def draw_limit_cycle(request: FigureRequest) -> str:
 
 
 def _with_needs(request: FigureRequest, name: str) -> View:
-    """The file with the variables needed by the figure; missing variables are solved if possible."""
+    """The file with the variables that the figure `name` needs; `request.shapes` solves for missing ones, if
+    given.
+    """
     view = request.views[0]
     if request.shapes is None or all(variable in view.variables for variable in NEEDS.get(name, ())):
         return view
@@ -53,7 +57,9 @@ def _with_needs(request: FigureRequest, name: str) -> View:
 
 
 def figure_name(request: FigureRequest) -> str:
-    """Name of the figure from --what or the files; raises InputError if the choices do not fit."""
+    """Kind of figure that the user chose by --what, or that suits the files. Raises InputError for unsuitable
+    choices.
+    """
     first, *others = request.views
     for view in others:
         if view.task != first.task:
@@ -69,9 +75,10 @@ def figure_name(request: FigureRequest) -> str:
 
 
 def _suggested(request: FigureRequest) -> str:
-    """Name of the figure that suits the request.
+    """Kind of figure that suits the request.
 
-    An animation for its suffix; shapes or transients of few points; maps of many lines; otherwise amplitudes.
+    An animation for an output with its suffix; shapes or transients for a few points; maps for many lines;
+    else amplitudes.
     """
     first, *others = request.views
     if request.output.suffix in FILMS:
@@ -95,7 +102,7 @@ def _suggested(request: FigureRequest) -> str:
 
 
 def _has_many_lines(view: View) -> bool:
-    """Whether the points form a map with more lines than the figure of amplitudes can show."""
+    """Whether the points form a map with more lines than a figure of amplitudes can show."""
     if not is_map(view):
         return False
     across = next(name for name in point_map(view).names if name != abscissa(view))

@@ -1,4 +1,6 @@
-"""Lists of points in figures: as a grid if possible, else point after point."""
+"""Figures of a list of points: as a grid if the points form one, else with the number of the point on an
+axis.
+"""
 
 from dataclasses import replace
 
@@ -13,15 +15,15 @@ from ...results.file.view import View
 from ..summary.arm.arm import word
 
 BESIDE_POINTS = ("mode", "u", "crossing")
-"""Coordinates of further dimensions, possibly as long as the list."""
+"""Dimensions other than the points, which may have the same length as the list."""
 FEW_POINTS = 12
-"""Largest number of points of a list that are all labelled on an axis."""
+"""Largest number of points for which every point has a tick label."""
 
 
 def as_grid(view: View) -> View:
-    """The grid formed by the points of a list in any order; the view itself without such a grid.
+    """View of the grid that the points of a list form, in any order; the view itself if they form none.
 
-    The grid has at most two varied parameters, with each combination once.
+    The grid has at most two varied parameters, and each combination of their values once.
     """
     if view.is_grid:
         return view
@@ -43,15 +45,16 @@ def as_grid(view: View) -> View:
 
 
 def shared_parameters(view: View) -> dict[str, float]:
-    """Common parameters of all points, with values."""
+    """Parameters that are equal at all points, by name."""
     columns = view.point_columns
     return {name: float(column[0]) for name, column in columns.items() if len(np.unique(column)) == 1}
 
 
 def number_points(axes: Axes, view: View, count: int) -> None:
-    """Labels an axis with the numbers of the points of a list, from 1, with margins at both ends.
+    """Labels an axis with the numbers of the points of a list, from 1; leaves a margin at both ends.
 
-    For an arm the label has the varied quantities, in SI units; a short list has them for each point.
+    For an arm the label names the varied quantities, in SI units. A short list has their values at each
+    point.
     """
     axes.set_xlim(0.5, count + 0.5)
     axes.xaxis.set_major_locator(MaxNLocator(min(count, FEW_POINTS), integer=True, min_n_ticks=1))
@@ -66,13 +69,15 @@ def number_points(axes: Axes, view: View, count: int) -> None:
 
 
 def _varied_quantities(view: View) -> list[tuple[str, list[str]]]:
-    """(name with unit, value at each point) of an arm's quantities with several values."""
+    """(name with unit, value at each point as text) of each quantity of an arm that varies."""
     own = {name: values for name, values in view.quantities.items() if name not in ARM_UNITS}
     return [_described(name, values) for name, values in own.items() if len(np.unique(values)) > 1]
 
 
 def _described(name: str, values: np.ndarray) -> tuple[str, list[str]]:
-    """(name with unit, texts of (points,) values in this unit); a drag is stored as an index in DRAGS."""
+    """(name with unit, values as text) of a quantity; values: (points,). A drag is stored as an index in
+    DRAGS.
+    """
     if name == "drag":
         return word(name), [DRAGS[int(value)].replace("_", " ") for value in values]
     unit = ALL_QUANTITIES[name].unit

@@ -1,4 +1,4 @@
-"""The leading mode, the deformations and the adjoint, as in the paper's Figs. 7 to 9."""
+"""Leading mode of the straight rod, its deformations and its adjoint, as in the paper's Figs. 7 to 9."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,17 +10,19 @@ from .request import FigureRequest
 from .style import FIRST, SECOND, heading, legend_below, number, parameter_text, require
 
 MAX_RODS = 4
-"""Largest number of points in a single figure; a narrow figure shows one point."""
+"""Largest number of points in one figure; a narrow figure shows one point."""
 PANELS = (
     ("mode", (("Y", r"$Y_1$"), ("Theta", r"$\Theta_1$"))),
     ("deformations", (("h2", r"$h_2$"), ("Pi", r"$\Pi$"))),
     ("adjoint mode", (("adjoint_Y", r"$Y_1^\dagger$"), ("adjoint_Theta", r"$\Theta_1^\dagger$"))),
 )
-"""(title, ((field, label), (field, label))) of each panel of a point."""
+"""(title, two pairs of field and label) of each panel in the row of a point."""
 
 
 def draw_modes(request: FigureRequest) -> str:
-    """Draws a row of panels for each point: the leading mode, the deformations and the adjoint."""
+    """Draws a row of panels for each point: leading mode, its deformations and its adjoint; returns a
+    sentence.
+    """
     view = request.only_view()
     growth = view.variables["growth_rate"][..., 0].ravel()
     points = np.flatnonzero(np.isfinite(growth))
@@ -49,14 +51,18 @@ def draw_modes(request: FigureRequest) -> str:
 
 
 def _parts(view: View, points: np.ndarray) -> list[Line2D]:
-    """Legend entries for solid and dotted lines; points: indices of the drawn points, shape (n,)."""
+    """Legend entries for real part (solid) and imaginary part (dotted). points: indices of the drawn points,
+    (n,).
+    """
     oscillates = view.by_point("frequency")[points, 0].any()
     looks = (("real part", "-"), ("imaginary part", ":"))[: 1 + bool(oscillates)]
     return [Line2D([], [], color="0.3", lw=1.5, ls=style, label=word) for word, style in looks]
 
 
 def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], ...]) -> None:
-    """Draws two fields of a point's leading mode over u, each with its own axis and a common zero."""
+    """Draws two fields of the leading mode over u, each with its own vertical axis. Both axes have 0 at the
+    same height.
+    """
     u = view.variables["u"]
     both = panel, panel.twinx()
     spans = []
@@ -79,7 +85,7 @@ def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], .
 
 
 def _where(view: View, point: int) -> tuple[str, str]:
-    """(parameters of a point, its leading eigenvalue), as text."""
+    """(parameters of the point with index `point`, its leading eigenvalue) as text."""
     at = {name: values[point] for name, values in view.point_columns.items()}
     w = [float(view.by_point(name)[point, 0]) for name in ("growth_rate", "frequency")]
     imaginary = rf" + {number(w[1])}\,\mathrm{{i}}" if w[1] else ""

@@ -1,4 +1,4 @@
-"""Sections of a grid or a list: the points with chosen values of some parameters."""
+"""Sections of a grid or a list: the points at which some parameters have chosen values."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -16,16 +16,17 @@ from ...results.file.view import View
 from .lists import BESIDE_POINTS
 
 TYPED_TOLERANCE = 1e-6
-"""Largest relative difference between a typed value and the value in the file, which has all digits."""
+"""Largest relative difference between a value that the user types and the equal value in the file, which has
+all digits."""
 MAX_NAMED = 8
-"""Largest number of values that a refusal lists."""
+"""Largest number of values that an error message lists."""
 
 
 def section(view: View, at: Mapping[str, float | str]) -> View:
-    """Points of a file with these values of parameters, or of an arm's quantities.
+    """View of the points at which parameters, or an arm's quantities, have the values in `at`, by name.
 
-    Quantities are numbers in SI units, or text with a unit. Raises InputError, with the values in the file,
-    if no point has the chosen value.
+    A quantity is a number in SI units, or text with a unit. Raises InputError, which lists the values in the
+    file, if no point has the value.
     """
     for name, value in at.items():
         view = _cut(view, name, _number(name, value))
@@ -33,7 +34,9 @@ def section(view: View, at: Mapping[str, float | str]) -> View:
 
 
 def _number(name: str, value: float | str) -> float:
-    """A value as a number, in SI units for a quantity; raises InputError for anything else."""
+    """The value of the parameter or quantity `name` as a number; a quantity in SI units. Raises InputError
+    for other text.
+    """
     if name == "drag" and value in DRAGS:
         return float(DRAGS.index(str(value)))
     try:
@@ -47,7 +50,7 @@ def _number(name: str, value: float | str) -> float:
 
 
 def _cut(view: View, name: str, value: float) -> View:
-    """Points at a value of a parameter or quantity; raises InputError if no point has the value."""
+    """View of the points at which `name` has the given value. Raises InputError if there is none."""
     listed = {} if view.is_grid else {n: v for n, v in view.quantities.items() if np.ndim(v)}
     axes = view.over or (*view.parameters, *listed)
     if name not in axes:
@@ -76,7 +79,7 @@ def _cut(view: View, name: str, value: float) -> View:
 
 
 def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
-    """A grid restricted to the chosen places of an axis, a mask of the axis."""
+    """View of a grid restricted along the axis `name`. chosen: mask of its values."""
     names = view.over or view.parameters
     shape = view.variables["status"].shape
     axis = names.index(name)
@@ -93,7 +96,7 @@ def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
 
 
 def without_infinite(view: View) -> View:
-    """A grid without infinite values of its axes, which have no place in a figure."""
+    """View of a grid without the infinite values of its axes, which a figure cannot show."""
     for name, values in view.axes.items():
         finite = np.isfinite(values)
         if len(values) > 1 and not finite.all():
@@ -102,7 +105,9 @@ def without_infinite(view: View) -> View:
 
 
 def choices_of(given: Mapping[str, float | str]) -> dict[str, float | str]:
-    """Values by parameter, given in Python; raises InputError for a value that is neither number nor text."""
+    """Copy of the values by name that a Python caller gives. Raises InputError for a value that is neither a
+    number nor text.
+    """
     try:
         return {str(n): value if isinstance(value, str) else float(value) for n, value in given.items()}
     except (AttributeError, TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""A drawn branch: a curve through the stored cycles, smooth between corners."""
+"""Smooth curve through the stored cycles of a branch, with corners where the branch has corners."""
 
 from itertools import pairwise
 
@@ -11,37 +11,41 @@ from ...arrays import Array
 from ..branch_curves import StoredBranch
 
 MIRRORED = 3
-"""Cycles beside a Hopf point whose mirror images continue the branch beyond the point."""
+"""Number of cycles next to a Hopf point whose mirror images (y to -y) extend the branch beyond the point."""
 IMAGE = np.array([1.0, -1.0, 1.0])
-"""Factors of (parameter, y, log period) that make the mirror image of a cycle."""
+"""Factors of (parameter, y, log period) that turn a cycle into its mirror image."""
 SHARES = np.array([0.5, 1.0, 1.0])
-"""Weights of parameter, y and log period in the length of a chord, each in units of the branch's extent."""
+"""Weights of parameter, y and log period in the length of a chord; each is scaled by its range on
+the branch."""
 WITHOUT_Y = np.array([1.0, 0.0, 1.0])
-"""Factors that leave y out of the length of a chord."""
+"""Weights of parameter, y and log period in the length of a chord that ignores y."""
 VARIABLES = ((SHARES, 1.0), (SHARES, 0.5), (np.array([0.1, 1.0, 0.1]), 1.0))
-"""Weights and powers of chords whose sums are tried as variable of the curve. The length is best on most
-branches, the sum of roots where the steps grow at a bend. A length close to y is best on a branch that ends
-next to its Hopf point, where parameter and period go with the square of y."""
+"""(weights, power) of the chords whose sum is tried as the variable of the interpolation. The length (power
+1) is best on most branches, the sum of square roots where steps grow at a bend. A length close to y is best
+on a branch that ends next to its Hopf point, where parameter and period are quadratic in y."""
 SLOPE_CYCLES = 5
-"""Number of cycles in the polynomial for the slope of the curve at the middle cycle."""
+"""Number of neighbouring cycles through which the polynomial for the slope at the middle cycle passes."""
 CORNER_CYCLES = 4
-"""Number of cycles on each side of a corner whose cubics locate the corner; fewer at an end of the branch."""
+"""Number of cycles on each side of a corner; cubics through them locate it. Fewer at an end of the branch."""
 MIN_ANGLE = 0.25
-"""Smallest jump of slope drawn as a corner, in units of the steepest chord beside the corner. A smaller jump
-moves the curve by a few per cent of the chord at most."""
+"""Least jump of the slope that is drawn as a corner, in units of the steepest chord near the corner. A
+smaller jump moves the curve by a few per cent of the chord at most."""
 ANGLE_RATIO = 3.0
-"""Smallest ratio of the jump of slope in y to the jumps in parameter and period, which are smooth at a
-corner. At a sharp bend that the cycles do not resolve all three jumps are alike."""
+"""Least ratio of the jump of slope in y to the jumps in parameter and period, which are smooth at a corner.
+At a sharp bend that the cycles do not resolve, all three jumps are similar."""
 COINCIDENT = 1e-9
-"""Rounding, in units of the branch's extent (of distances) and of a step (of imaginary parts of roots)."""
+"""Rounding tolerance: of distances, as a fraction of the branch's range; of imaginary parts of roots, in
+units of a step."""
 PIECES = 12
-"""Number of straight pieces drawn between two cycles."""
+"""Number of straight segments that are drawn between two cycles."""
 
 
 def through_cycles(curve: StoredBranch) -> tuple[Array, Array, Array, NDArray[np.integer]]:
-    """(parameter, y, period, stable) of the drawn branch, (n,), the last (n - 1,): smooth between corners.
+    """(parameter, y, period, stable) of the smooth curve through the cycles of a branch; (n,), the last (n -
+    1,).
 
-    A branch has a corner where another maximum of y(t) becomes the largest.
+    The branch has a corner where another maximum of y(t) becomes the largest; the curve is smooth between
+    corners.
     """
     places = np.column_stack([curve.at, curve.y, np.log(curve.period)])
     extent = np.ptp(places, axis=0)
@@ -63,10 +67,11 @@ def through_cycles(curve: StoredBranch) -> tuple[Array, Array, Array, NDArray[np
 
 
 def _smooth(own: Array, extent: Array) -> Array:
-    """Vertices of a smooth curve through cycles, both (n, 3), with PIECES pieces between two cycles.
+    """Vertices of a smooth curve through the cycles `own`, both (n, 3), with PIECES segments between two
+    cycles.
 
-    At a Hopf point a branch is symmetric under the change from y to -y. The cycles are therefore mirrored
-    beyond the point, which gives the curve the square root.
+    At a Hopf point the branch is symmetric under y to -y. Mirror images of cycles beyond the point therefore
+    give the curve its square-root shape.
     """
     before = own[MIRRORED:0:-1] * IMAGE
     behind = own[-2 : -MIRRORED - 2 : -1] * IMAGE
@@ -82,12 +87,14 @@ def _smooth(own: Array, extent: Array) -> Array:
 
 
 def corners_of(own: Array, extent: Array) -> dict[int, Array]:
-    """Corners of a branch through cycles, (n, 3), by index of the cycle before: (at, y, log period), (3,).
+    """Corners of a branch through the cycles `own`, (n, 3): (parameter, y, log period), (3,), by index of the
+    cycle before.
 
-    At a corner two polynomials for y meet, through the cycles before and through the cycles behind. The
-    second polynomial rises more steeply, because y is the larger of two maxima of y(t). The variable is the
-    length along the curve of parameter and period, which has no corner. Polynomials that reach beyond a
-    corner meet elsewhere at a smaller angle: of neighbouring intervals the largest angle has the corner.
+    A corner is the intersection of two polynomials for y, through the cycles before and through the cycles
+    behind. The second rises more steeply, because y is the larger of two maxima of y(t). Their variable is
+    the length of the curve of parameter and period, which has no corner. Polynomials that reach across a
+    corner intersect elsewhere at a smaller angle, so of neighbouring intervals that with the largest angle
+    has the corner.
     """
     lengths = _lengths(own * WITHOUT_Y, extent)
     found: dict[int, tuple[float, Array]] = {}
@@ -114,7 +121,9 @@ def corners_of(own: Array, extent: Array) -> dict[int, Array]:
 
 
 def _rise(x: Array, values: Array) -> Polynomial:
-    """Polynomial through values at x > 0.5 minus polynomial through the rest, over the steepest chord."""
+    """Polynomial through the values at x > 0.5 minus the polynomial through all others, divided by the slope
+    of the steepest chord.
+    """
     before, behind = (
         Polynomial.fit(x[side], values[side], side.sum() - 1).convert() for side in (x < 0.5, x > 0.5)
     )
@@ -122,16 +131,18 @@ def _rise(x: Array, values: Array) -> Polynomial:
 
 
 def _lengths(places: Array, extent: Array, shares: Array = SHARES, power: float = 1.0) -> Array:
-    """Sums of powers of the chords from the first place to each, (n,).
+    """Sum of the chords, each to the given power, from the first point to each point, (n,).
 
-    places: shape (n, 3). shares: weights in a chord, (3,).
+    places: points, (n, 3). extent: range of the branch, (3,). shares: weights in a chord, (3,).
     """
     chords = np.linalg.norm(np.diff(places / extent * shares, axis=0), axis=1)
     return np.append(0.0, np.cumsum(chords**power))
 
 
 def _roughness(s: Array, places: Array) -> float:
-    """Largest distance of a place from the cubic through two places on each side; places: (n, columns)."""
+    """Largest distance of a point from the cubic through two neighbours on each side. s: variable, (n,).
+    places: points, (n, columns).
+    """
     beside = (-2, -1, 1, 2)
     off = [
         places[i]
@@ -144,7 +155,9 @@ def _roughness(s: Array, places: Array) -> float:
 
 
 def slopes_at_cycles(s: Array, places: Array) -> Array:
-    """Derivatives of places by s, both (n, columns), from polynomials through SLOPE_CYCLES neighbours."""
+    """Derivatives of the points by s, (n, columns), from polynomials through SLOPE_CYCLES neighbours. s:
+    (n,). places: points, (n, columns).
+    """
     count = min(SLOPE_CYCLES, len(s))
     slopes = np.empty_like(places)
     for i, start in enumerate(np.clip(np.arange(len(s)) - count // 2, 0, len(s) - count)):

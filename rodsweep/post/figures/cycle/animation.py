@@ -1,4 +1,4 @@
-"""Animation of the beating arm: a GIF, or an MP4 if ffmpeg is installed."""
+"""Animation of the beating arm as a GIF, or as an MP4 if ffmpeg is installed."""
 
 from collections.abc import Sequence
 from math import floor, log10
@@ -18,23 +18,25 @@ from .portrait import draw_clamp, draw_tip_path, force_arrow, set_frame
 from .selection import SHAPES, CycleSelection, StoredCycle, chosen_cycles
 
 FILMS = (".gif", ".mp4")
-"""Suffixes of animations."""
+"""Suffixes of animation files."""
 PERIOD_SECONDS = 2.4
-"""Duration of one period on the screen, in s."""
+"""Duration of one period of the cycle on the screen, in s."""
 MIN_SHAPES = 8
-"""Least number of frames in a period; with fewer the motion is not recognisable."""
+"""Least number of stored shapes per period; with fewer, the motion is not recognisable."""
 GHOSTS = 6
-"""Number of earlier shapes that fade behind the arm."""
+"""Number of earlier shapes drawn in fading colours behind the arm."""
 TIME_DIGITS = 3
-"""Number of digits of the period; the running time has the same decimals."""
+"""Number of significant digits of the period; the running time has equally many decimals."""
 TIME_HEIGHT = 0.08
-"""Height reserved for the running time, as a fraction of the panel, below the arm and its force."""
+"""Height of the line with the running time, as a fraction of the panel's height."""
 OLDEST_GHOST = 0.2
-"""Age of the oldest ghost, in periods."""
+"""Age of the oldest earlier shape that is drawn, in periods."""
 
 
 def write_animation(view: View, points: Sequence[int], output: Path) -> str:
-    """Writes one period of up to three cycles side by side, each in its own time; returns a description."""
+    """Writes one period of up to three cycles side by side, each scaled to the same duration; returns a
+    description. Raises InputError for too few shapes.
+    """
     selection = chosen_cycles(view, points, SHAPES)
     frames = len(selection.cycles[0].values["shape_x"])
     if frames < MIN_SHAPES:
@@ -53,7 +55,7 @@ def write_animation(view: View, points: Sequence[int], output: Path) -> str:
 
 
 def first_frame(selection: CycleSelection) -> tuple[Figure, list["MovingArm"]]:
-    """Figure of an animation in its final layout, with the arms at the start of their periods."""
+    """(figure in its final layout, arms at the starts of their periods)."""
     cycles = selection.cycles
     figure = Figure(figsize=(2.7 * len(cycles) + 0.9, 4.4), layout="constrained")
     panels = figure.subplots(1, len(cycles), squeeze=False, sharey=True)[0]
@@ -71,7 +73,9 @@ def first_frame(selection: CycleSelection) -> tuple[Figure, list["MovingArm"]]:
 
 
 def _writer(output: Path, rate: int) -> AbstractMovieWriter:
-    """Writer for the suffix of the file; raises EnvironmentIncomplete if ffmpeg is needed and missing."""
+    """Matplotlib writer for the suffix of `output`, with `rate` frames per second. Raises
+    EnvironmentIncomplete for an MP4 without ffmpeg.
+    """
     if output.suffix == ".gif":
         return PillowWriter(fps=rate)
     if not matplotlib.animation.writers.is_available("ffmpeg"):
@@ -82,7 +86,7 @@ def _writer(output: Path, rate: int) -> AbstractMovieWriter:
 
 
 class MovingArm:
-    """An arm in its panel."""
+    """Animated arm in one panel, with its tip, force and earlier shapes."""
 
     def __init__(self, axes: Axes, cycle: StoredCycle) -> None:
         self.axes = axes
@@ -99,7 +103,7 @@ class MovingArm:
         axes.set_title(cycle.heading(cycle.period_text))
 
     def show(self, k: int) -> None:
-        """Moves the arm to its k-th shape."""
+        """Moves the arm to its shape number `k`, from 0."""
         shapes = [self.cycle.values[name] for name in SHAPES]
         back = np.linspace(OLDEST_GHOST * self.frames, 0, GHOSTS, endpoint=False).round().astype(int)
         for ghost, steps in zip(self.ghosts, back, strict=True):

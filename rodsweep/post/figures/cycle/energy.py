@@ -1,4 +1,4 @@
-"""Energy of the beating arm over a cycle: power of the force, dissipation and stored elastic energy."""
+"""Energy of the beating arm over a period: injected power, dissipated power, and elastic energy."""
 
 from collections.abc import Sequence
 
@@ -15,14 +15,15 @@ from ..style import FIRST, SECOND, THIRD, legend_below
 from .selection import ENERGIES, StoredCycle, chosen_cycles, in_tex
 
 RATE_MARK_COUNT = 24
-"""Number of times at which dU/dt is marked on the curve of injection minus dissipation."""
+"""Number of times at which marks of dU/dt are drawn over the curve of injection minus dissipation."""
 
 
 def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
-    """Draws a column for each cycle: the energy U, injection and dissipation, their difference and dU/dt.
+    """(figure with a column for each cycle: energy U, injection and dissipation, their difference with dU/dt,
+    description).
 
-    The marks are derivatives of the stored U. They are independent of the curve and must lie on it. narrow:
-    whether the columns have little room.
+    The marks of dU/dt are derivatives of the stored energy U, computed independently of the curve on which
+    they must lie. narrow: whether the page is narrow.
     """
     selection = chosen_cycles(view, points, ENERGIES)
     cycles = selection.cycles
@@ -44,7 +45,7 @@ def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tupl
 
 
 def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
-    """(mean power of the force with the digits of its error, energy imbalance), in units of the panels."""
+    """(mean power of the force with its error, energy imbalance) as text, in the units of the panels."""
     v = {name: float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance")}
     error = power_error(cycle.values)
     mean = in_tex(rounded(v["injection_mean"], abs(v["injection_mean"]) * float(error)))
@@ -54,7 +55,7 @@ def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
 
 
 def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
-    """Draws the three panels of a cycle."""
+    """Draws the three panels of a cycle: energy, powers, and their difference with dU/dt."""
     from ....discretization.elements.periodic import resampled, time_derivative  # compiled code
 
     top, middle, bottom = column
