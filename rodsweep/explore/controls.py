@@ -9,7 +9,7 @@ from typing import Any
 from bokeh.models import Column, InlineStyleSheet, Select, Slider, TabPanel, Tabs, TextInput
 from bokeh.models.css import StyleSheet
 
-from ..post.summary.arm.arm import word
+from ..post.summary.arm.arm import quantity_words
 from .scales import SCALES, ControlScale
 from .state import LAW_NAMES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 
@@ -111,7 +111,7 @@ class Controls:
             for name, field in self.fields[state.tab].items():
                 field.show(state.values[name])
             self.law.value = state.law
-            self.across.options = [(name, word(name)) for name in SECOND_PARAMETERS[state.tab]]
+            self.across.options = [(name, quantity_words(name)) for name in SECOND_PARAMETERS[state.tab]]
             self.across.value = state.second
             self.F_max.value = state.F_max
         finally:

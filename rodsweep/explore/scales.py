@@ -8,7 +8,7 @@ from ..errors import InputError
 from ..model.arm.quantities import QUANTITIES
 from ..model.parameters import PARAMETERS
 from ..model.units import in_si
-from ..post.summary.arm.arm import word
+from ..post.summary.arm.arm import quantity_words
 from .state import PageState, number, rod_of
 
 
@@ -113,7 +113,7 @@ def _of_rod(
 def _of_arm(
     name: str, low: float, high: float, unit: str, factor: float, logarithmic: bool = True
 ) -> ControlScale:
-    label = f"{word(name)} ({unit})"
+    label = f"{quantity_words(name)} ({unit})"
     return ControlScale(
         name=name, label=label, low=low, high=high, unit=unit, factor=factor, logarithmic=logarithmic
     )

@@ -21,7 +21,7 @@ from ..results.layouts.branch import END_REASONS, SPECIAL_KINDS
 
 HOPF, FOLD, END = (SPECIAL_KINDS.index(kind) for kind in ("hopf", "fold", "end"))
 """Codes of the kinds of special points in a result file."""
-STOPPED = ("no_cycle_found", "list_full")
+STOP_REASONS = ("no_cycle_found", "list_full")
 """Reasons why following a branch stopped before the branch ended."""
 RANGE_GAP_TOLERANCE = 1e-9
 """Largest relative gap between two ranges that are joined to one."""
@@ -76,7 +76,7 @@ class StoredBranch:
     @property
     def is_decided(self) -> bool:
         """Whether the branch was followed to its end and the stability of all its cycles is known."""
-        return self.special[-1].reason not in STOPPED and bool((self.stable >= 0).all())
+        return self.special[-1].reason not in STOP_REASONS and bool((self.stable >= 0).all())
 
     def near_hopf_points(self) -> list[tuple[Array, Array, NDArray[np.integer]]]:
         """For each Hopf point at an end: (|at/at_H - 1|, y/|a|, stability) up to the first fold.

@@ -14,7 +14,7 @@ from .whole_file import written_whole
 
 SEPARATORS = {".csv": ",", ".tsv": "\t"}
 """Character between two columns, by the suffix of the output file."""
-ROWS_AT_ONCE = 4096
+EXPORT_BATCH_ROWS = 4096
 """Number of rows converted to text at a time, which bounds the memory."""
 
 
@@ -48,11 +48,11 @@ def export(view: View, output: Path, request: ExportRequest) -> str:
 
 
 def _write(table: Table, separator: str, units: bool, stream: TextIO) -> None:
-    """Writes a table to `stream`, ROWS_AT_ONCE rows at a time."""
+    """Writes a table to `stream`, EXPORT_BATCH_ROWS rows at a time."""
     lines = csv.writer(stream, delimiter=separator, lineterminator="\n")
     lines.writerow(f"{c.name} [{c.unit}]" if units and c.unit != "1" else c.name for c in table.columns)
-    for start in range(0, table.rows, ROWS_AT_ONCE):
-        texts = [column.rows(slice(start, start + ROWS_AT_ONCE)).text() for column in table.columns]
+    for start in range(0, table.rows, EXPORT_BATCH_ROWS):
+        texts = [column.rows(slice(start, start + EXPORT_BATCH_ROWS)).text() for column in table.columns]
         lines.writerows(zip(*texts, strict=True))
 
 

@@ -17,7 +17,7 @@ from ..results.layouts.limit_cycle import HOPF_ALONG
 from ..results.layouts.thresholds import CROSSING_KINDS
 from ..sweep.points.points import ParameterLine
 
-ON_A_HOPF_POINT = 1e-9
+HOPF_POINT_TOLERANCE = 1e-9
 """Relative distance of a point of the file from a Hopf point below which the growth rate at the point is
 rounding error."""
 STABILITY_CHANGES = {("hopf", 2), ("restabilization", 0)}
@@ -144,5 +144,5 @@ class StoredChanges:
 
 def _within(point: LocatedChange, low: float, high: float) -> bool:
     """Whether a located change lies between `low` and `high`, up to rounding error."""
-    margin = max(point.error, ON_A_HOPF_POINT * abs(point.position))
+    margin = max(point.error, HOPF_POINT_TOLERANCE * abs(point.position))
     return bool(low - margin <= point.position <= high + margin)

@@ -12,13 +12,13 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from ..errors import EnvironmentIncomplete
 from ..results.file.measurements import Table
-from .figures.style import FIRST, SECOND, STYLE, THIRD
+from .figures.style import BLUE, FIGURE_STYLE, GREEN, VERMILION
 
-GROUP_COLOURS = (FIRST, SECOND, THIRD, "black", "0.55")
+GROUP_COLOURS = (BLUE, VERMILION, GREEN, "black", "0.55")
 """Colours of the groups of methods, in order of appearance. The first group has thicker lines."""
 METHOD_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 """Markers that distinguish the methods within one group."""
-WIDE_RATIO = 1e3
+WIDE_TIME_RATIO = 1e3
 """Ratio of the longest to the shortest time above which only powers of ten have tick labels."""
 MIN_DRAWN_ERROR = 1e-17
 """Relative error at which smaller errors are drawn; an error of zero has no logarithm."""
@@ -40,10 +40,10 @@ def draw_work_precision(measured: Table, xlabel: str, target: float | None, outp
     )
     looks = _looks(dict(zip(methods.tolist(), groups.tolist(), strict=True)))
     titles = list(dict.fromkeys(cases.tolist()))
-    wide = np.nanmax(seconds) > WIDE_RATIO * np.nanmin(seconds)
+    wide = np.nanmax(seconds) > WIDE_TIME_RATIO * np.nanmin(seconds)
     across = ceil(sqrt(len(titles)))
     down = ceil(len(titles) / across)
-    with matplotlib.rc_context(STYLE):
+    with matplotlib.rc_context(FIGURE_STYLE):
         figure = Figure(figsize=(PANEL_SIZE * across + 3.0, PANEL_SIZE * down + 0.5), layout="constrained")
         grid = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False)
         for axes, title in zip(grid.flat, titles, strict=False):

@@ -22,7 +22,7 @@ from .modes import draw_modes
 from .phase_diagram import draw_phase_diagram
 from .request import FigureLook, FigureRequest, Shapes
 from .spectrum import draw_spectrum
-from .style import PRINT_STYLE, STYLE
+from .style import FIGURE_STYLE, PRINT_STYLE
 from .thresholds import draw_thresholds
 
 FIGURES: dict[str, Callable[[FigureRequest], str]] = {
@@ -45,7 +45,7 @@ def _styled(look: FigureLook) -> AbstractContextManager[None]:
     """Context in which matplotlib has the settings of all figures and of the user's style. Raises InputError
     for an unknown style.
     """
-    ours = STYLE if look.width is None else PRINT_STYLE
+    ours = FIGURE_STYLE if look.width is None else PRINT_STYLE
     if look.style is None:
         return matplotlib.rc_context(ours)
     try:

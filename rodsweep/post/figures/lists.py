@@ -12,11 +12,11 @@ from ...model.arm.drag import DRAGS
 from ...model.arm.quantities import ALL_QUANTITIES, ARM_UNITS
 from ...model.units import compact
 from ...results.file.view import View
-from ..summary.arm.arm import word
+from ..summary.arm.arm import quantity_words
 
-BESIDE_POINTS = ("mode", "u", "crossing")
+OTHER_DIMENSIONS = ("mode", "u", "crossing")
 """Dimensions other than the points, which may have the same length as the list."""
-FEW_POINTS = 12
+MAX_LABELLED_POINTS = 12
 """Largest number of points for which every point has a tick label."""
 
 
@@ -38,7 +38,7 @@ def as_grid(view: View) -> View:
     order = np.argsort(places)
     variables = {name: data for name, data in view.variables.items() if name != "point"}
     for name, data in variables.items():
-        if data.shape[:1] == (count,) and name not in BESIDE_POINTS:
+        if data.shape[:1] == (count,) and name not in OTHER_DIMENSIONS:
             variables[name] = data[order].reshape(*sizes, *data.shape[1:])
     variables |= {name: unique for name, (unique, _) in values.items()}
     return replace(view, variables=variables)
@@ -57,9 +57,9 @@ def number_points(axes: Axes, view: View, count: int) -> None:
     point.
     """
     axes.set_xlim(0.5, count + 0.5)
-    axes.xaxis.set_major_locator(MaxNLocator(min(count, FEW_POINTS), integer=True, min_n_ticks=1))
+    axes.xaxis.set_major_locator(MaxNLocator(min(count, MAX_LABELLED_POINTS), integer=True, min_n_ticks=1))
     varied = _varied_quantities(view)
-    if varied and count <= FEW_POINTS:
+    if varied and count <= MAX_LABELLED_POINTS:
         columns = zip(*(numbers for _, numbers in varied), strict=True)
         axes.set_xticks(np.arange(1, count + 1), ["\n".join(numbers) for numbers in columns])
         axes.set_xlabel("\n".join(name for name, _ in varied))
@@ -79,9 +79,9 @@ def _described(name: str, values: np.ndarray) -> tuple[str, list[str]]:
     DRAGS.
     """
     if name == "drag":
-        return word(name), [DRAGS[int(value)].replace("_", " ") for value in values]
+        return quantity_words(name), [DRAGS[int(value)].replace("_", " ") for value in values]
     unit = ALL_QUANTITIES[name].unit
     if unit == "1":
-        return word(name), [f"{value:.4g}" for value in values]
+        return quantity_words(name), [f"{value:.4g}" for value in values]
     factor, unit = compact(float(np.abs(values).max()), unit)
-    return f"{word(name)} ({unit})", [f"{factor * value:.4g}" for value in values]
+    return f"{quantity_words(name)} ({unit})", [f"{factor * value:.4g}" for value in values]

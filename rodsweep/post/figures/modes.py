@@ -7,11 +7,11 @@ from matplotlib.lines import Line2D
 
 from ...results.file.view import View
 from .request import FigureRequest
-from .style import FIRST, SECOND, heading, legend_below, number, parameter_text, require
+from .style import BLUE, VERMILION, heading, legend_below, number, parameter_text, require
 
 MAX_RODS = 4
 """Largest number of points in one figure; a narrow figure shows one point."""
-PANELS = (
+MODE_PANELS = (
     ("mode", (("Y", r"$Y_1$"), ("Theta", r"$\Theta_1$"))),
     ("deformations", (("h2", r"$h_2$"), ("Pi", r"$\Pi$"))),
     ("adjoint mode", (("adjoint_Y", r"$Y_1^\dagger$"), ("adjoint_Theta", r"$\Theta_1^\dagger$"))),
@@ -29,16 +29,16 @@ def draw_modes(request: FigureRequest) -> str:
     require(view, points.size, "computed point")
     narrow = request.look.narrow
     drawn = points[: 1 if narrow else MAX_RODS]
-    rows, columns = (len(drawn) * len(PANELS), 1) if narrow else (len(drawn), len(PANELS))
+    rows, columns = (len(drawn) * len(MODE_PANELS), 1) if narrow else (len(drawn), len(MODE_PANELS))
     size = (4.6, 2.4 * rows + 0.4) if narrow else (10.0, 2.8 * rows + 0.4)
     figure = Figure(figsize=size, layout="constrained")
     panels = figure.subplots(rows, columns, squeeze=False)
-    for row, point in zip(panels.reshape(len(drawn), len(PANELS)), drawn, strict=True):
-        for panel, (word, fields) in zip(row, PANELS, strict=True):
+    for row, point in zip(panels.reshape(len(drawn), len(MODE_PANELS)), drawn, strict=True):
+        for panel, (word, fields) in zip(row, MODE_PANELS, strict=True):
             _panel(panel, view, int(point), fields)
             panel.set_title(word)
         if len(drawn) > 1:
-            row[1].set_title(f"{': '.join(_where(view, int(point)))}\n{PANELS[1][0]}")
+            row[1].set_title(f"{': '.join(_where(view, int(point)))}\n{MODE_PANELS[1][0]}")
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
     figure.suptitle(heading(view, *(_where(view, int(drawn[0])) if len(drawn) == 1 else ())))
@@ -66,7 +66,7 @@ def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], .
     u = view.variables["u"]
     both = panel, panel.twinx()
     spans = []
-    for axes, (name, label), colour in zip(both, fields, (FIRST, SECOND), strict=True):
+    for axes, (name, label), colour in zip(both, fields, (BLUE, VERMILION), strict=True):
         shape = (-1, *view.variables[f"{name}_real"].shape[-2:])
         real, imag = (view.variables[f"{name}_{part}"].reshape(shape)[point, 0] for part in ("real", "imag"))
         axes.plot(u, real, color=colour, lw=1.5)

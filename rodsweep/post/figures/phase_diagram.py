@@ -22,7 +22,7 @@ from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, class_along_row, classes_between_crossings
 from .stability.diagram_curves import draw_curves, draw_cycle_curves, mark_cycles_on_rows
-from .stability.regions import PIXELS, ClassifiedPoints, DrawnPlane, coloured
+from .stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
 from .style import LABELS, SYMBOLS, heading, is_logarithmic, legend_below, parameter_text, require, scale
 from .style import number as number_text
 
@@ -37,7 +37,7 @@ STATE_COLOURS = {
 }
 """Colours of the words of `stable_states`. If two states are stable, the colour lies between the colours of
 both."""
-LEGEND = {
+STATE_LEGEND = {
     "straight": "straight rod stable",
     "cycle": "cycle stable",
     "both": "both stable",
@@ -67,7 +67,7 @@ class Palette:
         """Legend entries for the words of the integers in `table`, (rows, columns)."""
         shown = (word for number, word in self.words if (table == number).any())
         return [
-            Patch(facecolor=self.colours[word], edgecolor="0.5", lw=0.5, label=LEGEND.get(word, word))
+            Patch(facecolor=self.colours[word], edgecolor="0.5", lw=0.5, label=STATE_LEGEND.get(word, word))
             for word in shown
         ]
 
@@ -76,7 +76,7 @@ CLASS_PALETTE = Palette("class", CLASSES, CLASS_COLOURS)
 """Palette of the stability class of the straight rod."""
 STATE_PALETTE = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
 """Palette of the stable states: straight rod, cycle, or both."""
-BESIDE_CRUSHING = 1 - np.linspace(0, 3e-3, 7)
+BARRIER_RATIOS = 1 - np.linspace(0, 3e-3, 7)
 """Values of F/k1 of barriers between colours. Curves of cycles end where F is within 1e-3 of k1; the barriers
 close the gaps between these ends."""
 
@@ -159,7 +159,7 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     y = view.axes[row]
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
     axes = figure.subplots()
-    share = np.linspace(0, 1, PIXELS + 1)
+    share = np.linspace(0, 1, PIXEL_COUNT + 1)
     edges = x[0] * (x[-1] / x[0]) ** share if is_logarithmic(x) else x[0] + (x[-1] - x[0]) * share
     table = np.array([class_along_row(view, palette.variable, line, row, n, edges) for n in range(len(y))])
     looks: dict[str, Any] = {"rasterized": True} | palette.colours_of_numbers
@@ -199,5 +199,5 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: A
         curves += [plane.unit(v[f"{kind}_{line}"][one], v[f"{kind}_{row}"][one]) for one in ones]
     if _crushed_at_k1(view, line, row):
         edge = np.linspace(plane.y[0], plane.y[-1], 1000)
-        curves += [plane.unit(share * edge, edge) for share in BESIDE_CRUSHING]
-    return coloured(computed, further, curves)
+        curves += [plane.unit(share * edge, edge) for share in BARRIER_RATIOS]
+    return pixel_classes(computed, further, curves)

@@ -32,13 +32,13 @@ KINDS = tuple(kind for kinds in KINDS_OF_TASK.values() for kind in kinds)
 """Names of the kinds of figures of all tasks."""
 HEIGHT_POWER = 0.5
 """The height of a figure scales as its width to this power. It is below 1, because the size of text stays."""
-INCH = 0.0254
+METRES_PER_INCH = 0.0254
 """Length of an inch, in metres."""
-NARROW = 5.0
+NARROW_WIDTH = 5.0
 """Width of a figure, in inches, below which its panels are stacked."""
-NARROWEST = 2.5
+MIN_WIDTH = 2.5
 """Least width of a figure, in inches. In a narrower figure labels are wider than panels."""
-WIDEST = 20.0
+MAX_WIDTH = 20.0
 """Largest width of a figure, in inches."""
 
 
@@ -62,7 +62,7 @@ class FigureLook:
     @property
     def narrow(self) -> bool:
         """Whether the figure is so narrow that its panels are stacked."""
-        return self.inches is not None and self.inches < NARROW
+        return self.inches is not None and self.inches < NARROW_WIDTH
 
     def fit(self, figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
         """Scales a figure to the width, and lays it out."""
@@ -80,11 +80,12 @@ def _inches(width: str) -> float:
         return WIDTHS[width]
     refusal = f"width = {width!r} is not allowed; choose {', '.join(WIDTHS)}, or a length as '89 mm'"
     try:
-        inches = in_si("width", width, "m", "89 mm") / INCH
+        inches = in_si("width", width, "m", "89 mm") / METRES_PER_INCH
     except InputError:
         raise InputError(refusal) from None
-    if not NARROWEST <= inches <= WIDEST:
-        raise InputError(f"{refusal}, from {NARROWEST * INCH * 1e3:.0f} to {WIDEST * INCH * 1e3:.0f} mm")
+    if not MIN_WIDTH <= inches <= MAX_WIDTH:
+        low, high = (1e3 * METRES_PER_INCH * limit for limit in (MIN_WIDTH, MAX_WIDTH))
+        raise InputError(f"{refusal}, from {low:.0f} to {high:.0f} mm")
     return inches
 
 

@@ -13,12 +13,12 @@ from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.units import in_si
 from ...results.file.view import View
-from .lists import BESIDE_POINTS
+from .lists import OTHER_DIMENSIONS
 
 TYPED_TOLERANCE = 1e-6
 """Largest relative difference between a value that the user types and the equal value in the file, which has
 all digits."""
-MAX_NAMED = 8
+MAX_LISTED_VALUES = 8
 """Largest number of values that an error message lists."""
 
 
@@ -63,8 +63,8 @@ def _cut(view: View, name: str, value: float) -> View:
     chosen = np.isclose(values, value, rtol=TYPED_TOLERANCE, atol=0.0)
     if not chosen.any():
         unique = np.unique(values)
-        named = [f"{one:.15g}" for one in unique[:MAX_NAMED]]
-        more = f", ... {unique[-1]:.15g}" if len(unique) > MAX_NAMED else ""
+        named = [f"{one:.15g}" for one in unique[:MAX_LISTED_VALUES]]
+        more = f", ... {unique[-1]:.15g}" if len(unique) > MAX_LISTED_VALUES else ""
         raise InputError(
             f"--at {name}={value:.15g}: {view.path} has no point there; it has {name} = "
             f"{', '.join(named)}{more}"
@@ -72,7 +72,7 @@ def _cut(view: View, name: str, value: float) -> View:
     if view.is_grid or view.over:
         return _grid_at(view, name, chosen)
     variables = {
-        key: data[chosen] if data.shape[:1] == chosen.shape and key not in BESIDE_POINTS else data
+        key: data[chosen] if data.shape[:1] == chosen.shape and key not in OTHER_DIMENSIONS else data
         for key, data in view.variables.items()
     }
     return replace(view, variables=variables)
@@ -88,7 +88,7 @@ def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
     for key, data in view.variables.items():
         if key in along and np.ndim(data):
             variables[key] = data[chosen]
-        elif data.shape[: len(shape)] == shape and key not in (*names, *BESIDE_POINTS):
+        elif data.shape[: len(shape)] == shape and key not in (*names, *OTHER_DIMENSIONS):
             variables[key] = np.compress(chosen, data, axis=axis)
         else:
             variables[key] = data

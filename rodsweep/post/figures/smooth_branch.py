@@ -10,33 +10,33 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ..branch_curves import StoredBranch
 
-MIRRORED = 3
+MIRRORED_CYCLE_COUNT = 3
 """Number of cycles next to a Hopf point whose mirror images (y to -y) extend the branch beyond the point."""
-IMAGE = np.array([1.0, -1.0, 1.0])
+MIRROR_FACTORS = np.array([1.0, -1.0, 1.0])
 """Factors of (parameter, y, log period) that turn a cycle into its mirror image."""
-SHARES = np.array([0.5, 1.0, 1.0])
+CHORD_WEIGHTS = np.array([0.5, 1.0, 1.0])
 """Weights of parameter, y and log period in the length of a chord; each is scaled by its range on
 the branch."""
-WITHOUT_Y = np.array([1.0, 0.0, 1.0])
+WEIGHTS_WITHOUT_Y = np.array([1.0, 0.0, 1.0])
 """Weights of parameter, y and log period in the length of a chord that ignores y."""
-VARIABLES = ((SHARES, 1.0), (SHARES, 0.5), (np.array([0.1, 1.0, 0.1]), 1.0))
+CHORD_VARIABLES = ((CHORD_WEIGHTS, 1.0), (CHORD_WEIGHTS, 0.5), (np.array([0.1, 1.0, 0.1]), 1.0))
 """(weights, power) of the chords whose sum is tried as the variable of the interpolation. The length (power
 1) is best on most branches, the sum of square roots where steps grow at a bend. A length close to y is best
 on a branch that ends next to its Hopf point, where parameter and period are quadratic in y."""
-SLOPE_CYCLES = 5
+SLOPE_CYCLE_COUNT = 5
 """Number of neighbouring cycles through which the polynomial for the slope at the middle cycle passes."""
-CORNER_CYCLES = 4
+CORNER_CYCLE_COUNT = 4
 """Number of cycles on each side of a corner; cubics through them locate it. Fewer at an end of the branch."""
 MIN_ANGLE = 0.25
 """Least jump of the slope that is drawn as a corner, in units of the steepest chord near the corner. A
 smaller jump moves the curve by a few per cent of the chord at most."""
-ANGLE_RATIO = 3.0
+MIN_ANGLE_RATIO = 3.0
 """Least ratio of the jump of slope in y to the jumps in parameter and period, which are smooth at a corner.
 At a sharp bend that the cycles do not resolve, all three jumps are similar."""
-COINCIDENT = 1e-9
+COINCIDENCE_TOLERANCE = 1e-9
 """Rounding tolerance: of distances, as a fraction of the branch's range; of imaginary parts of roots, in
 units of a step."""
-PIECES = 12
+SEGMENT_COUNT = 12
 """Number of straight segments that are drawn between two cycles."""
 
 
@@ -51,10 +51,10 @@ def through_cycles(curve: StoredBranch) -> tuple[Array, Array, Array, NDArray[np
     extent = np.ptp(places, axis=0)
     extent[extent == 0] = 1.0
     # The end of the range is stored as a cycle and as a special point.
-    moves = (np.abs(np.diff(places, axis=0)) > COINCIDENT * extent).any(axis=1)
+    moves = (np.abs(np.diff(places, axis=0)) > COINCIDENCE_TOLERANCE * extent).any(axis=1)
     own = places[np.append(True, moves)]
     stable = curve.stable[moves]
-    if len(own) <= MIRRORED:
+    if len(own) <= MIRRORED_CYCLE_COUNT:
         return curve.at, curve.y, curve.period, curve.stable
     corners = corners_of(own, extent)
     for i in sorted(corners, reverse=True):
@@ -63,25 +63,27 @@ def through_cycles(curve: StoredBranch) -> tuple[Array, Array, Array, NDArray[np
     inner = [i + 1 + k for k, i in enumerate(sorted(corners))]
     parts = [_smooth(own[low : high + 1], extent) for low, high in pairwise([0, *inner, len(own) - 1])]
     at, y, log_period = np.concatenate([*(part[:-1] for part in parts), parts[-1][-1:]]).T
-    return at, y, np.exp(log_period), np.repeat(stable, PIECES)
+    return at, y, np.exp(log_period), np.repeat(stable, SEGMENT_COUNT)
 
 
 def _smooth(own: Array, extent: Array) -> Array:
-    """Vertices of a smooth curve through the cycles `own`, both (n, 3), with PIECES segments between two
+    """Vertices of a smooth curve through the cycles `own`, both (n, 3); SEGMENT_COUNT segments between two
     cycles.
 
     At a Hopf point the branch is symmetric under y to -y. Mirror images of cycles beyond the point therefore
     give the curve its square-root shape.
     """
-    before = own[MIRRORED:0:-1] * IMAGE
-    behind = own[-2 : -MIRRORED - 2 : -1] * IMAGE
+    before = own[MIRRORED_CYCLE_COUNT:0:-1] * MIRROR_FACTORS
+    behind = own[-2 : -MIRRORED_CYCLE_COUNT - 2 : -1] * MIRROR_FACTORS
     first = len(before) if own[0, 1] == 0 else 0
     last = len(behind) if own[-1, 1] == 0 else 0
     whole = np.concatenate([before[:first], own, behind[:last]])
-    variables = [_lengths(whole, extent, shares, power) for shares, power in VARIABLES]
+    variables = [_lengths(whole, extent, shares, power) for shares, power in CHORD_VARIABLES]
     s = min(variables, key=lambda variable: _roughness(variable, whole / extent))
     ends = s[first : first + len(own)]
-    finer = np.append(np.linspace(ends[:-1], ends[1:], PIECES, endpoint=False, axis=1).ravel(), ends[-1])
+    finer = np.append(
+        np.linspace(ends[:-1], ends[1:], SEGMENT_COUNT, endpoint=False, axis=1).ravel(), ends[-1]
+    )
     places: Array = scipy.interpolate.CubicHermiteSpline(s, whole, slopes_at_cycles(s, whole))(finer)
     return places
 
@@ -96,18 +98,22 @@ def corners_of(own: Array, extent: Array) -> dict[int, Array]:
     corner intersect elsewhere at a smaller angle, so of neighbouring intervals that with the largest angle
     has the corner.
     """
-    lengths = _lengths(own * WITHOUT_Y, extent)
+    lengths = _lengths(own * WEIGHTS_WITHOUT_Y, extent)
     found: dict[int, tuple[float, Array]] = {}
     for i in range(1, len(own) - 2):
-        window = slice(max(0, i + 1 - CORNER_CYCLES), i + 1 + CORNER_CYCLES)
+        window = slice(max(0, i + 1 - CORNER_CYCLE_COUNT), i + 1 + CORNER_CYCLE_COUNT)
         if (np.diff(lengths[window]) == 0).any():
             continue  # y alone changes, which a jump between two maxima does not do
         x = (lengths[window] - lengths[i]) / (lengths[i + 1] - lengths[i])
         rises = [_rise(x, column) for column in own[window].T]
         for root in rises[1].roots():
             angles = [float(rise.deriv()(root.real)) for rise in rises]
-            is_between = abs(root.imag) < COINCIDENT and 0 < root.real < 1
-            if is_between and angles[1] > MIN_ANGLE and angles[1] > ANGLE_RATIO * max(map(abs, angles[::2])):
+            is_between = abs(root.imag) < COINCIDENCE_TOLERANCE and 0 < root.real < 1
+            if (
+                is_between
+                and angles[1] > MIN_ANGLE
+                and angles[1] > MIN_ANGLE_RATIO * max(map(abs, angles[::2]))
+            ):
                 place = scipy.interpolate.barycentric_interpolate(x, own[window], root.real)
                 place[1] = scipy.interpolate.barycentric_interpolate(
                     x[x < 0.5], own[window][x < 0.5, 1], root.real
@@ -116,7 +122,7 @@ def corners_of(own: Array, extent: Array) -> dict[int, Array]:
     return {
         i: place
         for i, (angle, place) in found.items()
-        if angle == max(found[k][0] for k in found if abs(k - i) < CORNER_CYCLES)
+        if angle == max(found[k][0] for k in found if abs(k - i) < CORNER_CYCLE_COUNT)
     }
 
 
@@ -130,7 +136,7 @@ def _rise(x: Array, values: Array) -> Polynomial:
     return (behind - before) / (np.abs(np.diff(values) / np.diff(x)).max() or 1.0)
 
 
-def _lengths(places: Array, extent: Array, shares: Array = SHARES, power: float = 1.0) -> Array:
+def _lengths(places: Array, extent: Array, shares: Array = CHORD_WEIGHTS, power: float = 1.0) -> Array:
     """Sum of the chords, each to the given power, from the first point to each point, (n,).
 
     places: points, (n, 3). extent: range of the branch, (3,). shares: weights in a chord, (3,).
@@ -155,10 +161,10 @@ def _roughness(s: Array, places: Array) -> float:
 
 
 def slopes_at_cycles(s: Array, places: Array) -> Array:
-    """Derivatives of the points by s, (n, columns), from polynomials through SLOPE_CYCLES neighbours. s:
+    """Derivatives of the points by s, (n, columns), from polynomials through SLOPE_CYCLE_COUNT neighbours. s:
     (n,). places: points, (n, columns).
     """
-    count = min(SLOPE_CYCLES, len(s))
+    count = min(SLOPE_CYCLE_COUNT, len(s))
     slopes = np.empty_like(places)
     for i, start in enumerate(np.clip(np.arange(len(s)) - count // 2, 0, len(s) - count)):
         beside = s[start : start + count] - s[i]

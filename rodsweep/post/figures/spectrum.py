@@ -48,7 +48,7 @@ SHADES_PER_SIGN = 40
 """Number of colours of a map for negative growth rates, and for positive growth rates."""
 MAX_LINE_PANELS = 6
 """Largest number of values of a second parameter that get a panel each; more values are drawn as a map."""
-SMALLEST_SHADE = 1e-4
+LINEAR_SHADE_FRACTION = 1e-4
 """Growth rate, as a fraction of the largest, below which the colour scale of a map is linear."""
 GROWTH_LABEL = r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$"
 """Label of the colour bar."""
@@ -128,7 +128,7 @@ def _map(view: View, names: list[str]) -> Figure:
     figure = Figure(figsize=(5.6, 4.4), layout="constrained")
     axes = figure.subplots()
     reach = float(np.nanmax(np.abs(growth)))
-    linear = max(1.0, reach * SMALLEST_SHADE)
+    linear = max(1.0, reach * LINEAR_SHADE_FRACTION)
     norm = matplotlib.colors.SymLogNorm(linear, vmin=-reach, vmax=reach)
     # Zero is a level of the filled contours, so that the line of zero growth and the colours agree.
     shades = norm.inverse(np.linspace(0.0, 1.0, 2 * SHADES_PER_SIGN + 1))

@@ -23,24 +23,24 @@ CRITICAL_FORCE = f"critical force ${SYMBOLS['F']}$"
 """Label of an axis of critical forces."""
 INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$"
 """Label of an axis of 1/gamma3."""
-FIRST = "#0072B2"
+BLUE = "#0072B2"
 """Blue of Okabe and Ito's palette, whose colours colour-blind readers can distinguish."""
-SECOND = "#D55E00"
+VERMILION = "#D55E00"
 """Vermilion of Okabe and Ito's palette."""
-THIRD = "#009E73"
+GREEN = "#009E73"
 """Green of Okabe and Ito's palette."""
-DECADE = 10
+LOGARITHMIC_RATIO = 10
 """Ratio of the largest to the smallest value of a map above which its colours are logarithmic."""
-FEW_DECADES = 50
+FEW_DECADES_RATIO = 50
 """Ratio of the ends of a logarithmic axis below which 1, 2 and 5 of each decade have tick labels."""
-IN_ONE_DECADE = 6
+SHORT_AXIS_RATIO = 6
 """Ratio of the ends of a logarithmic axis below which further numbers have tick labels; 1, 2 and 5 could all
 be outside."""
 MIN_POWER = 2
 """Least exponent of a power of ten that is written as 10^n."""
 PLAIN_BELOW = 4
 """Exponent of ten below which a number is written without a power of ten."""
-STYLE = {
+FIGURE_STYLE = {
     "font.size": 10,
     "axes.titlesize": 9,
     "figure.titlesize": 9,
@@ -58,7 +58,7 @@ STYLE = {
 FONT_SIZES = ("font.size", "axes.titlesize", "axes.labelsize", "figure.titlesize", "legend.fontsize",
            "xtick.labelsize", "ytick.labelsize")  # fmt: skip
 """Names of matplotlib's settings of font sizes."""
-PRINT_STYLE = STYLE | dict.fromkeys(FONT_SIZES, 8)
+PRINT_STYLE = FIGURE_STYLE | dict.fromkeys(FONT_SIZES, 8)
 """Settings of matplotlib for a figure with a width for print; all text has 8 points."""
 
 
@@ -171,8 +171,8 @@ def label_few_decades(axis: Axis, low: float, high: float) -> None:
     """Labels 1, 2 and 5 of each decade on a short logarithmic axis from `low` to `high`, all as numbers or
     all as powers of ten.
     """
-    if high < FEW_DECADES * low:
-        subs = (1, 2, 5) if high > IN_ONE_DECADE * low else (1, 1.5, 2, 3, 4, 6, 8)
+    if high < FEW_DECADES_RATIO * low:
+        subs = (1, 2, 5) if high > SHORT_AXIS_RATIO * low else (1, 1.5, 2, 3, 4, 6, 8)
         axis.set_major_locator(LogLocator(subs=subs))
         written_out = low >= 10.0**-MIN_POWER and high < 10.0 ** (PLAIN_BELOW + 1)
         axis.set_major_formatter(
@@ -207,7 +207,7 @@ def colour_cells(
     """
     low = float(np.nanmin(values))
     high = float(np.nanmax(values))
-    if ratios and high > DECADE * low > 0:
+    if ratios and high > LOGARITHMIC_RATIO * low > 0:
         norm: Normalize = LogNorm(low, high)
     else:
         # Equal zeros would give a scale below zero.

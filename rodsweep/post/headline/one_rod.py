@@ -14,13 +14,13 @@ from ..tables import Tables
 from ..tables.columns import Column
 from ..tables.contents import POINTS
 
-YES_NO = ("no", "yes")
+BOOLEAN_WORDS = ("no", "yes")
 """Words for the boolean values 0 and 1."""
-EXACT = ("F_end",)
+EXACT_VARIABLES = ("F_end",)
 """Variables without an error, because they repeat an option of the config."""
 
 
-class Digits:
+class ColumnTexts:
     """Columns of a table as text, with as many digits as the errors allow.
 
     columns: of equal length, (rows,). si: name of the SI variable, by dimensionless variable. beside:
@@ -45,7 +45,7 @@ class Digits:
         if base in self.columns:
             with np.errstate(divide="ignore", invalid="ignore"):
                 return self.error(base) * np.abs(self._values[name] / self._values[base])
-        if name in EXACT:
+        if name in EXACT_VARIABLES:
             return np.zeros_like(self._values[name])
         if name in self._beside:
             return self._beside[name]
@@ -57,7 +57,7 @@ class Digits:
         """(value, absolute error) of the variable `name` as text, for every row; the error may be empty."""
         column = self.columns[name]
         if column.is_boolean:
-            return [(YES_NO[int(value)], "") for value in column.values]
+            return [(BOOLEAN_WORDS[int(value)], "") for value in column.values]
         if column.words or column.values.dtype.kind != "f":
             return [(text, "") for text in column.text()]
         if column.is_estimate:
@@ -93,7 +93,7 @@ class Digits:
         return f"{rounded(value, error)} {'' if column.unit == '1' else column.unit}".rstrip()
 
 
-EVENTS = ("onset", "hopf", "restabilization")
+FIRST_THRESHOLD_KINDS = ("onset", "hopf", "restabilization")
 """Kinds of thresholds for which the result stores the first force as a number of its own."""
 CROSSINGS = "crossings"
 """Name of the table of crossings."""
@@ -107,10 +107,10 @@ class OneRod:
         self.tables = Tables(view)
         self.si = _si_names(view)
         own = [column for column in self.tables.table(POINTS).columns if not column.given]
-        self.lists: dict[str, Digits] = {
-            name: Digits(self.tables.items(name), self.si) for name in self.tables.contents.tables[1:]
+        self.lists: dict[str, ColumnTexts] = {
+            name: ColumnTexts(self.tables.items(name), self.si) for name in self.tables.contents.tables[1:]
         }
-        self.points = Digits(own, self.si, self._threshold_errors())
+        self.points = ColumnTexts(own, self.si, self._threshold_errors())
 
     def _threshold_errors(self) -> Mapping[str, np.ndarray]:
         """Absolute errors, (1,) each, of the first threshold force of each kind, read from the list of
@@ -121,14 +121,14 @@ class OneRod:
         columns = self.lists[CROSSINGS].columns
         at = next((columns[name] for name in ("crossing_F", "crossing_at") if name in columns), None)
         found = {}
-        for event in EVENTS:
+        for event in FIRST_THRESHOLD_KINDS:
             force = self.view.variables.get(f"F_{event}")
             if at is not None and force is not None:
                 error = columns["crossing_error"].values[at.values == force.ravel()[0]]
                 found[f"F_{event}"] = error[:1] if error.size else np.array([np.nan])
         return found
 
-    def preferred(self, digits: Digits, name: str) -> str:
+    def preferred(self, digits: ColumnTexts, name: str) -> str:
         """Name of the variable that is printed for `name`: its SI variable if the table has one, else `name`
         itself.
         """

@@ -20,10 +20,10 @@ from ...results.file.view import View
 from ...wording import counted
 from ..figures.request import Shapes
 from ..whole_file import require_name, written_whole
-from .dark_colours import in_the_dark
+from .dark_colours import dark_page_colour
 from .page_tables import MAX_ROWS
 from .pictures import Pictures, pictures_of
-from .reported import ReportContents, reported
+from .reported import ReportContents, report_contents
 from .vector_picture import VectorPicture
 
 QUOTED = re.compile("`([^`]*)`")
@@ -45,7 +45,7 @@ def write_report(views: Sequence[View], output: Path, shapes: Shapes | None = No
     """
     require_page(output, [view.path for view in views])
     numbers = count(1)
-    results = [reported(view, pictures_of([view], shapes, numbers)) for view in views]
+    results = [report_contents(view, pictures_of([view], shapes, numbers)) for view in views]
     together = pictures_of(views, shapes, numbers) if views[1:] else Pictures(())
     text = page_text(results, together)
     with written_whole(output) as stream:
@@ -78,7 +78,7 @@ def rendered(template: str, drawn: Sequence[VectorPicture], **contents: Any) -> 
     environment.filters["with_code"] = _with_code
     colours = sorted(set[str]().union(*(picture.colours for picture in drawn)))
     return environment.get_template(template).render(
-        colours=[(colour, in_the_dark(colour)) for colour in colours],
+        colours=[(colour, dark_page_colour(colour)) for colour in colours],
         max_rows=MAX_ROWS,
         version=__version__,
         written=now(),

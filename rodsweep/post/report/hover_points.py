@@ -25,13 +25,13 @@ from .label_text import label_text
 MAX_POINTS = 2500
 """Largest number of values of a figure that get a text; of more values every n-th gets one. A text takes some
 100 bytes."""
-ALWAYS = 24
+MAX_UNTHINNED_POINTS = 24
 """Number of points up to which every point of a curve keeps its text."""
 POINTER_DIGITS = 8
 """Number of significant digits of a value under the pointer."""
 POINTS_PER_INCH = 72
 """Length unit of matplotlib's SVG files: points per inch."""
-MARGIN = 1.0
+FRAME_MARGIN = 1.0
 """Distance outside the frame of a panel, in points, within which a value still belongs to the panel."""
 
 
@@ -58,13 +58,13 @@ def hover_points(figure: Figure) -> list[HoverPoint]:
     """Texts for all values in a figure, in the order of drawing. The layout of the figure must be final."""
     words = _legend_words(figure)
     found = [series for axes in figure.axes for series in _of_panel(axes, words)]
-    long = sum(len(series.texts) for series in found if len(series.texts) > ALWAYS)
+    long = sum(len(series.texts) for series in found if len(series.texts) > MAX_UNTHINNED_POINTS)
     step = max(1, ceil(long / MAX_POINTS))
     height = figure.get_size_inches()[1] * POINTS_PER_INCH
     scale = POINTS_PER_INCH / figure.dpi
     points = []
     for series in found:
-        every = step if len(series.texts) > ALWAYS else 1
+        every = step if len(series.texts) > MAX_UNTHINNED_POINTS else 1
         for (x, y), text in zip(series.places[::every], series.texts[::every], strict=True):
             points.append(HoverPoint(float(scale * x), float(height - scale * y), text))
     return points
@@ -80,7 +80,7 @@ def _of_panel(axes: Axes, words: dict[str, str]) -> Iterator[HoverSeries]:
         if line.get_visible():
             found.append(_line(axes, line, names))
     found += [_scatter(dots, names) for dots in axes.collections if isinstance(dots, PathCollection)]
-    frame = axes.bbox.padded(MARGIN)
+    frame = axes.bbox.padded(FRAME_MARGIN)
     for series in found:
         inside = np.isfinite(series.places).all(axis=1)
         inside[inside] = [frame.contains(x, y) for x, y in series.places[inside]]

@@ -16,7 +16,16 @@ POWER = re.compile(r"\^(?:\{([^{}]*)\}|(\\?\w+|.))")
 """TeX superscript."""
 COMMAND = re.compile(r"\\([A-Za-z]+|.)")
 """Any other TeX command."""
-SIGNS = {"times": "×", "infty": "∞", "dagger": "†", "partial": "∂", ",": " ", ";": " ", " ": " ", "$": "$"}
+TEX_SIGNS = {
+    "times": "×",
+    "infty": "∞",
+    "dagger": "†",
+    "partial": "∂",
+    ",": " ",
+    ";": " ",
+    " ": " ",
+    "$": "$",
+}
 """Unicode text of the TeX commands that are neither Greek letters nor names of functions."""
 
 
@@ -46,8 +55,8 @@ def _power(exponent: str) -> str:
 @cache
 def _sign(command: str) -> str:
     """Unicode text of a TeX command: a Greek letter, a sign, or the name of the command, as for max."""
-    if command in SIGNS:
-        return SIGNS[command]
+    if command in TEX_SIGNS:
+        return TEX_SIGNS[command]
     size = "CAPITAL" if command[0].isupper() else "SMALL"
     name = "lamda" if command == "lambda" else command  # Unicode's spelling
     try:

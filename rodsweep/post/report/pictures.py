@@ -15,7 +15,7 @@ from .vector_picture import VectorPicture, vector_picture
 
 ANIMATION_KIND = "animation"
 """Kind of figure that is an animation, which a page cannot show as one picture."""
-UNWRITTEN = Path("figure.svg")
+SVG_REQUEST_NAME = Path("figure.svg")
 """Output name that requests a figure in SVG for the page; no file of this name is written."""
 
 
@@ -54,11 +54,11 @@ def pictures_of(views: Sequence[View], shapes: Shapes | None, numbers: "count[in
             kept.append(figure)
 
         try:
-            sentence = draw(views, UNWRITTEN, what=kind, shapes=wanted, keep=keep)
+            sentence = draw(views, SVG_REQUEST_NAME, what=kind, shapes=wanted, keep=keep)
         except InputError as error:
             refusal = refusal or str(error)
             continue
-        caption = sentence.removeprefix(f"wrote {UNWRITTEN}: ")
+        caption = sentence.removeprefix(f"wrote {SVG_REQUEST_NAME}: ")
         if caption not in found:
             found[caption] = CaptionedPicture(caption, vector_picture(kept[0], next(numbers), caption))
     return Pictures(tuple(found.values()), "" if found else refusal)

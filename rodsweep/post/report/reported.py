@@ -11,7 +11,7 @@ from ..summary.summary_lines import Summary, TextTable, region
 from .page_tables import PageTable, page_tables
 from .pictures import Pictures
 
-VERSIONS = {
+VERSION_WORDS = {
     "rodsweep_version": "rodsweep",
     "git_commit": "commit",
     "format": "format of the file",
@@ -55,7 +55,7 @@ class ReportContents:
     """(software, version) of the programs that computed the result."""
 
 
-def reported(view: View, pictures: Pictures) -> ReportContents:
+def report_contents(view: View, pictures: Pictures) -> ReportContents:
     """Contents of the page about the result `view`, with its `pictures`."""
     a = view.attributes
     summary = summary_of(view)
@@ -70,7 +70,7 @@ def reported(view: View, pictures: Pictures) -> ReportContents:
         tables=list(page_tables(view)),
         config=str(a.get("config", "")).strip("\n"),
         complete=yaml_of(view.config).strip("\n"),
-        versions=[(word, str(a[key])) for key, word in VERSIONS.items() if str(a.get(key, ""))],
+        versions=[(word, str(a[key])) for key, word in VERSION_WORDS.items() if str(a.get(key, ""))],
     )
 
 

@@ -12,9 +12,9 @@ from .hover_points import hover_points
 
 SVG = "http://www.w3.org/2000/svg"
 XLINK = "http://www.w3.org/1999/xlink"
-COLOUR = re.compile(r"#([0-9a-f]{6})(?![0-9a-f])")
+HEX_COLOUR = re.compile(r"#([0-9a-f]{6})(?![0-9a-f])")
 """Colour in SVG: # and six hexadecimal digits."""
-RADIUS = "4"
+HOVER_RADIUS = "4"
 """Radius, in points, of the invisible circle around a value whose title the browser shows under
 the pointer."""
 
@@ -74,8 +74,8 @@ def _name_colours(root: ElementTree.Element) -> frozenset[str]:
     for element in root.iter():
         for attribute in ("style", "fill", "stroke"):
             if text := element.get(attribute):
-                found |= set(COLOUR.findall(text))
-                element.set(attribute, COLOUR.sub(r"var(--c\1, \g<0>)", text))
+                found |= set(HEX_COLOUR.findall(text))
+                element.set(attribute, HEX_COLOUR.sub(r"var(--c\1, \g<0>)", text))
     return frozenset(found)
 
 
@@ -83,6 +83,6 @@ def _add_texts(root: ElementTree.Element, figure: Figure) -> None:
     """Adds an invisible circle with a title at every value of the figure, for the text under the pointer."""
     group = ElementTree.SubElement(root, f"{{{SVG}}}g", {"class": "values"})
     for point in hover_points(figure):
-        place = {"cx": f"{point.x:.1f}", "cy": f"{point.y:.1f}", "r": RADIUS}
+        place = {"cx": f"{point.x:.1f}", "cy": f"{point.y:.1f}", "r": HOVER_RADIUS}
         circle = ElementTree.SubElement(group, f"{{{SVG}}}circle", place)
         ElementTree.SubElement(circle, f"{{{SVG}}}title").text = point.text

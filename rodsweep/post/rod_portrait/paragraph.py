@@ -14,14 +14,14 @@ from ...wording import counted, is_or_are
 from ..branch_curves import StoredBranch
 from ..summary.arm.validity import plane_lines, validity_sentence
 from ..summary.branch import SPECIAL_WORDS
-from ..summary.criticality import SIDES
+from ..summary.criticality import CRITICALITY_WORDS
 from ..summary.ranges import rounded
 from ..summary.thresholds import ENDED_EARLY
 from .results import RodResults
 
-SAME_FORCE = 1e-6
+SAME_FORCE_TOLERANCE = 1e-6
 """Largest relative difference between the forces that two tasks find for the same Hopf point."""
-EVENTS = {
+THRESHOLD_CLAUSES = {
     "onset": "it starts to oscillate at {F}",
     "hopf": "a pair of modes becomes unstable at {F}",
     "hopf_reverse": "a pair becomes stable at {F}, where other modes stay unstable",
@@ -31,9 +31,9 @@ EVENTS = {
     "pair_leads": "a complex pair takes the lead at {F}",
 }
 """Clause on the straight rod at a threshold, by kind of threshold."""
-SEARCHES = ("thresholds", "criticality", "branch")
-"""Tasks whose status the paragraph states unless it is `SUCCEEDED`."""
-SUCCEEDED = "ok"
+SEARCH_TASKS = ("thresholds", "criticality", "branch")
+"""Tasks whose status the paragraph states unless it is `SUCCESS_STATUS`."""
+SUCCESS_STATUS = "ok"
 """Status of a search for thresholds, criticality or branches that is complete."""
 
 
@@ -92,7 +92,7 @@ def _thresholds(results: RodResults) -> Iterator[str]:
     clauses = []
     for i in places:
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
-        clause = EVENTS[kind].format(F=units.force_at(v["crossing_F"][i], v["crossing_error"][i]))
+        clause = THRESHOLD_CLAUSES[kind].format(F=units.force_at(v["crossing_F"][i], v["crossing_error"][i]))
         if frequency := float(v["crossing_frequency"][i]):
             clause += f" (frequency {units.frequency_text(frequency)}"
             clause += f"{_side(results, float(v['crossing_F'][i]))})"
@@ -113,12 +113,12 @@ def _side(results: RodResults, F: float) -> str:
     if view is None:
         return ""
     v = view.of_point(0)
-    same = np.abs(v["crossing_F"] - F) <= SAME_FORCE * abs(F)
+    same = np.abs(v["crossing_F"] - F) <= SAME_FORCE_TOLERANCE * abs(F)
     sides = v["criticality"][same & np.isfinite(v["criticality"])]
     if not sides.size:
         return ""
     a = float(v["amplitude_coefficient"][same][0])
-    return f"; {SIDES[int(sides[0])]}, its cycles are {'above' if a > 0 else 'below'} it"
+    return f"; {CRITICALITY_WORDS[int(sides[0])]}, its cycles are {'above' if a > 0 else 'below'} it"
 
 
 def _branches(results: RodResults) -> Iterator[str]:
@@ -211,9 +211,9 @@ def _cycles(results: RodResults) -> Iterator[str]:
 
 
 def _missing(results: RodResults) -> Iterator[str]:
-    """Yields sentences on missing results, and on results whose status is not `SUCCEEDED`."""
+    """Yields sentences on missing results, and on results whose status is not `SUCCESS_STATUS`."""
     for task, reason in results.missing.items():
         yield f"Not solved, {task.replace('_', ' ')}: {reason}."
-    for task in SEARCHES:
-        if (view := results.views.get(task)) and (word := str(view.outcomes[0])) != SUCCEEDED:
+    for task in SEARCH_TASKS:
+        if (view := results.views.get(task)) and (word := str(view.outcomes[0])) != SUCCESS_STATUS:
             yield f"About {task}, {word.replace('_', ' ')}: {view.sentences.get(word, word)}."

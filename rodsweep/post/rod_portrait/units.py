@@ -16,9 +16,9 @@ from ..figures import style
 from ..summary.arm.arm import own_unit
 from ..summary.ranges import listed, rounded
 
-THRESHOLDS = {"onset": ("*", "onset"), "hopf": ("**", "flutter")}
+THRESHOLD_MARKS = {"onset": ("*", "onset"), "hopf": ("**", "flutter")}
 """(superscript of the symbol, word) of a threshold, by kind."""
-LABELLED = (1.0, 2.0, 5.0)
+LABELLED_NUMBERS = (1.0, 2.0, 5.0)
 """Numbers of each decade of a logarithmic axis that have tick labels, in SI units."""
 
 
@@ -80,7 +80,7 @@ class PortraitUnits:
 
     def mode_title(self, kind: str, F: float) -> str:
         """Title of the panel of a mode at the threshold F of the given kind."""
-        symbol, word = THRESHOLDS[kind]
+        symbol, word = THRESHOLD_MARKS[kind]
         if self.load:
             return f"mode at {word},\n{self.force_title(F)}"
         return rf"mode at ${style.SYMBOLS['F']}_{{{symbol}}} = {F:.6g}$"
@@ -128,6 +128,6 @@ def rescale_panel(axes: Axes, x: float, y: float) -> None:
     axes.relim()
     axes.autoscale_view()
     if y != 1 and axes.get_yscale() == "log":
-        axes.yaxis.set_major_locator(LogLocator(subs=LABELLED))
+        axes.yaxis.set_major_locator(LogLocator(subs=LABELLED_NUMBERS))
         axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axes.yaxis.set_minor_formatter(NullFormatter())

@@ -12,19 +12,21 @@ from .paragraph import paragraph
 from .picture import portrait_figure
 from .results import RodResults
 
-IMAGES = (".png", ".pdf", ".svg")
+IMAGE_SUFFIXES = (".png", ".pdf", ".svg")
 """Suffixes of image files for a portrait."""
-PAGE = ".html"
+PAGE_SUFFIX = ".html"
 """Suffix of an HTML page."""
 CAPTION = "thresholds, branches of cycles, modes at the thresholds and three cycles"
 """Description of the picture on an HTML page."""
-HIDDEN = ("mode_shapes", "shapes", "harmonics", "multipliers", "samples")
+HIDDEN_TABLES = ("mode_shapes", "shapes", "harmonics", "multipliers", "samples")
 """Tables left out of an HTML page, because the picture shows their content better."""
 
 
 def require_portrait(output: Path) -> None:
     """Raises InputError unless a portrait can be written to the file `output`."""
-    require_name(output, (*IMAGES, PAGE), "page" if output.suffix == PAGE else "picture")
+    require_name(
+        output, (*IMAGE_SUFFIXES, PAGE_SUFFIX), "page" if output.suffix == PAGE_SUFFIX else "picture"
+    )
 
 
 def write_portrait(results: RodResults, output: Path) -> str:
@@ -32,7 +34,7 @@ def write_portrait(results: RodResults, output: Path) -> str:
     file name.
     """
     require_portrait(output)
-    if output.suffix == PAGE:
+    if output.suffix == PAGE_SUFFIX:
         with written_whole(output) as stream:
             stream.write(portrait_page(results))
     else:
@@ -54,6 +56,8 @@ def portrait_page(results: RodResults) -> str:
         title=f"{results.rod.kind.capitalize()} with {results.rod.words}",
         paragraph=paragraph(results),
         pictures=Pictures((CaptionedPicture(CAPTION, picture),)),
-        tables=[(name, [t for t in page_tables(view) if t.name not in HIDDEN]) for name, view in views],
+        tables=[
+            (name, [t for t in page_tables(view) if t.name not in HIDDEN_TABLES]) for name, view in views
+        ],
         origin=origin_lines(results.views["thresholds"].attributes),
     )

@@ -43,9 +43,9 @@ SUMMARIES: dict[str, Callable[[View, np.ndarray], SummaryLines]] = {
 }
 """Function of each task that returns the lines of the summary. Arguments: view of the file, mask of its
 computed points."""
-WIDEST = 1000
+MAX_TABLE_WIDTH = 1000
 """Largest width, in characters, of a table of numbers that is printed into a pipe or a file."""
-NOUNS = {"thresholds": "rod", "criticality": "rod", "branch": "rod", "phase_diagram": "row"}
+POINT_NOUNS = {"thresholds": "rod", "criticality": "rod", "branch": "rod", "phase_diagram": "row"}
 """Noun for a point of the result of a task, if it is not "point"."""
 
 
@@ -54,7 +54,7 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
     view = view.listed
     status = view.variables["status"]
     done = status != MISSING
-    noun = NOUNS.get(view.task, "point")
+    noun = POINT_NOUNS.get(view.task, "point")
     rods = done & (status < NOT_SLENDER)
     nothing = SummaryLines([] if done.any() else [f"no {noun} is computed yet"])
     lines = SUMMARIES[view.task](view, rods) if rods.any() else nothing
@@ -120,7 +120,7 @@ def _print_numbers(console: Console, table: TextTable) -> None:
     heads = [(*heading.split("\n"), "")[:2] for heading in table.headings]
     cells = zip(heads, zip(*table.rows, strict=True), strict=True)
     columns = [column_cells(head, column) for head, column in cells]
-    for block in blocks(columns, console.width if has_window(console) else WIDEST):
+    for block in blocks(columns, console.width if has_window(console) else MAX_TABLE_WIDTH):
         for line in ("", *block):
             console.print(line, soft_wrap=True)
 

@@ -15,9 +15,9 @@ from .thresholds import not_known
 
 LIST_TOO_SHORT = "they have more special points than the list holds; raise branch.special"
 """Reason why branches are not shown, and remedy."""
-BESIDE_STRAIGHT = "stable cycles beside a stable straight rod"
+COEXISTENCE_WORDS = "stable cycles beside a stable straight rod"
 """Words for a range in which a stable cycle and the stable straight rod coexist."""
-TWO_CYCLES = "stable cycles of two branches"
+TWO_CYCLES_WORDS = "stable cycles of two branches"
 """Words for a range in which stable cycles of two branches coexist."""
 SPECIAL_WORDS = {
     "fold": "fold",
@@ -27,7 +27,7 @@ SPECIAL_WORDS = {
 }
 """Words for special points between the ends of a branch, by kind. Hopf points and ends have sentences of
 their own."""
-ENDS = {
+BRANCH_END_WORDS = {
     "left_the_model": "a cycle with h1 = 0",
     "range_end": "the end of the range",
     "crushed": "a force that almost crushes the rod",
@@ -76,9 +76,9 @@ def _one_rod(rod: RodBranches) -> Iterator[str]:
         nowhere = "nowhere in the range" if rod.coexistence_is_decided else "not known"
         common = rod.coexistence
         words = f"{along} = {listed(common, rod.errors)}" if common else nowhere
-        yield f"{BESIDE_STRAIGHT}: {words}"
+        yield f"{COEXISTENCE_WORDS}: {words}"
         if pairs := rod.two_cycles:
-            yield f"{TWO_CYCLES}: {along} = {listed(pairs, rod.errors)}"
+            yield f"{TWO_CYCLES_WORDS}: {along} = {listed(pairs, rod.errors)}"
 
 
 def _extent(curve: StoredBranch, errors: Array, along: str) -> str:
@@ -123,7 +123,7 @@ def _ends(curve: StoredBranch, along: str) -> str:
         return f"{start} to branch {last.meets} at {end}"
     if last.kind == "left_the_model":
         return f"{start} to a cycle with h1 = 0, {end}"
-    return f"{start} to {ENDS[last.reason]}, {along} = {rounded(last.at, last.error)}"
+    return f"{start} to {BRANCH_END_WORDS[last.reason]}, {along} = {rounded(last.at, last.error)}"
 
 
 def _sizes(view: View, done: np.ndarray) -> str:
@@ -137,7 +137,7 @@ def _sizes(view: View, done: np.ndarray) -> str:
 
 def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
     """Yields lines about the special points of each kind, and about the ends of branches, over all rods."""
-    found: dict[str, list[tuple[float, float]]] = {word: [] for word in (*SPECIAL_WORDS, *ENDS)}
+    found: dict[str, list[tuple[float, float]]] = {word: [] for word in (*SPECIAL_WORDS, *BRANCH_END_WORDS)}
     curves = [(rod, number, curve) for rod in rods for number, curve in enumerate(rod.curves, 1)]
     for _, number, curve in curves:
         for special in curve.special:
@@ -153,7 +153,7 @@ def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
             yield f"{counted(len(located), SPECIAL_WORDS[kind])}: {where}"
         else:
             verb = "leads" if len(located) == 1 else "lead"
-            yield f"{counted(len(located), 'branch')} {verb} to {ENDS[kind]}: {where}"
+            yield f"{counted(len(located), 'branch')} {verb} to {BRANCH_END_WORDS[kind]}: {where}"
     stopped = [
         f"{at_point(rod.view, rod.rod)}: branch {number}, at {along} = {rounded(end.at, end.error)}"
         for rod, number, curve in curves
@@ -168,10 +168,10 @@ def _coexistence(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
     if len(complete) < len(rods):
         yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {LIST_TOO_SHORT}"
     if complete:
-        yield from _rods_with(complete, along, BESIDE_STRAIGHT, [rod.coexistence for rod in complete])
+        yield from _rods_with(complete, along, COEXISTENCE_WORDS, [rod.coexistence for rod in complete])
     two_cycles = [rod.two_cycles for rod in complete]
     if any(two_cycles):
-        yield from _rods_with(complete, along, TWO_CYCLES, two_cycles)
+        yield from _rods_with(complete, along, TWO_CYCLES_WORDS, two_cycles)
 
 
 def _rods_with(

@@ -14,11 +14,11 @@ from .ranges import number_and_error, rounded, span
 from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, region
 from .thresholds import ENDED_EARLY, not_known, not_known_beyond, not_stored
 
-SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
+CRITICALITY_WORDS = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Word for the criticality of a Hopf point, by sign of Re c."""
-NAMED_RODS = 8
+MAX_LISTED_RODS = 8
 """Largest number of rods with subcritical Hopf points that are listed one by one."""
-NUMBERS = {
+HOPF_NUMBERS = {
     "crossing_F": "F, k3/L^2",
     "crossing_frequency": f"frequency, {ANGULAR_UNIT}",
     "landau_real": "Re c, 1/(tau2 L^2)",
@@ -78,7 +78,7 @@ def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
         form = "its normal form is not known"
         if np.isfinite(v["landau_error"][i]):
-            form = f"{SIDES[int(v['criticality'][i])]}, {_words(v, int(i))}"
+            form = f"{CRITICALITY_WORDS[int(v['criticality'][i])]}, {_words(v, int(i))}"
         after = int(v["unstable_after"][i])
         modes = counted(after, "unstable mode") if after >= 0 else "number of unstable modes not known"
         yield f"{kind} at F = {F}: {form}; {modes} above"
@@ -91,7 +91,7 @@ def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
     at = np.flatnonzero(v["crossing_kind"] > 0)
     kinds = (CROSSING_KINDS[int(v["crossing_kind"][i])] for i in at)
     rows = []
-    for name, words in NUMBERS.items():
+    for name, words in HOPF_NUMBERS.items():
         numbers = zip(v[name][at].tolist(), errors_of(v, name)[at].tolist(), strict=True)
         rows.append((words, *(cell for number in numbers for cell in number_and_error(*number))))
     headings = ("", *(head for kind in kinds for head in (kind, "+-")))
@@ -124,7 +124,7 @@ def _subcritical_lines(view: View) -> Iterator[str]:
     rods = np.flatnonzero((side == 1).any(axis=-1))
     rods = rods[np.argsort(side[rods, 0] != 1, kind="stable")]
     columns = view.point_columns
-    for rod in rods[:NAMED_RODS]:
+    for rod in rods[:MAX_LISTED_RODS]:
         name = ", ".join(f"{key} = {column[rod]:.6g}" for key, column in columns.items())
         places = np.flatnonzero(side[rod] == 1)
         names = ("crossing_F", "amplitude_coefficient", "amplitude_coefficient_error", "crossing_error")
@@ -134,15 +134,15 @@ def _subcritical_lines(view: View) -> Iterator[str]:
             for F, dF, i, x, dx in zip(forces, absolute, places, a, relative, strict=True)
         )
         yield f"subcritical for {name}: {each}"
-    if len(rods) > NAMED_RODS:
-        yield f"and subcritical for {counted(len(rods) - NAMED_RODS, 'rod')} more"
+    if len(rods) > MAX_LISTED_RODS:
+        yield f"and subcritical for {counted(len(rods) - MAX_LISTED_RODS, 'rod')} more"
 
 
 def _counts(side: np.ndarray) -> str:
     """Numbers of supercritical, subcritical and undecided Hopf points, as text. side: sign of Re c, of any
     shape.
     """
-    counts = {word: int((side == value).sum()) for value, word in SIDES.items()}
+    counts = {word: int((side == value).sum()) for value, word in CRITICALITY_WORDS.items()}
     return ", ".join(f"{count} {word}" for word, count in counts.items() if count) or "none known"
 
 

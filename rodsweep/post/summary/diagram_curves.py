@@ -20,7 +20,7 @@ CURVE_END_WORDS = {
     "not_followed": "no further point found",
 }
 """Words for the reason why a curve of folds or torus points of cycles ends."""
-SIDES = ("start", "end")
+END_SUFFIXES = ("start", "end")
 """Suffixes of the variables that store why a curve ends, at its first and at its last point."""
 
 
@@ -50,7 +50,7 @@ def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
             f"{row} = {v[f'cycle_curve_{row}'][i]:.9g}, {line} = "
             f"{to_error(v[f'cycle_curve_{line}'][i], v['cycle_curve_error'][i])} "
             f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(v[f'cycle_curve_{side}'][i])]]})"
-            for side, i in zip(SIDES, on[[0, -1]], strict=True)
+            for side, i in zip(END_SUFFIXES, on[[0, -1]], strict=True)
         )
         what = "folds" if kind == "fold" else "torus points"
         error = error_text(float(v["cycle_curve_error"][on].max()))
@@ -164,7 +164,7 @@ def bautin_curve_lines(view: View) -> list[str]:
     for number in np.unique(v["bautin_along_curve"]):
         on = v["bautin_along_curve"] == number
         where = ", ".join(f"{name} = {span(v[f'bautin_along_{name}'][on])}" for name in names)
-        ends = [BAUTIN_ENDS[int(v[f"bautin_along_{side}"][on].max())] for side in SIDES]
+        ends = [BAUTIN_ENDS[int(v[f"bautin_along_{side}"][on].max())] for side in END_SUFFIXES]
         lines.append(
             f"curve {int(number)} of generalised Hopf points: {counted(int(on.sum()), 'point')}, {where}; "
             f"ends: {ends[0]} and {ends[1]}"

@@ -36,16 +36,16 @@ ABSOLUTE_ERRORS = {
 }
 """Variable with the absolute error, by variable. `frequency` has this error only in files without
 a period."""
-COMPLEX = ("landau", "growth_slope")
+COMPLEX_VARIABLES = ("landau", "growth_slope")
 """Complex variables, stored as real and imaginary part, with an error relative to the modulus."""
-EXTREMA = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretch")
+EXTREMA_VARIABLES = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretch")
 """Variables of a cycle whose stored error is in units of tip_y_max."""
-BETWEEN_NODES = 1e-3
+MAX_DIP_BETWEEN_NODES = 1e-3
 """Bound on how far h1 between nodes lies below its least nodal value, as a fraction of |1 - h1|."""
-POWERS = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
+POWER_VARIABLES = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
 """Mean powers and rms fluctuations, whose errors follow from the errors of amplitude, period and energy
 balance."""
-MIN_KNOWN = 0.5
+UNKNOWN_FROM_ERROR = 0.5
 """Relative error from which on the time of the largest transient growth counts as unknown."""
 STRAIGHT_EIGENVALUE = ("linear_growth_rate", "linear_frequency")
 """Variables with the eigenvalue of the straight rod in results of limit cycles."""
@@ -57,7 +57,7 @@ def errors_of(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """
     whole, _, part = name.rpartition("_")
     with np.errstate(invalid="ignore"):  # an infinite value times the error 0
-        if whole in COMPLEX and part != "error" and f"{whole}_error" in v:
+        if whole in COMPLEX_VARIABLES and part != "error" and f"{whole}_error" in v:
             return np.hypot(v[f"{whole}_real"], v[f"{whole}_imag"]) * v[f"{whole}_error"]
         return _errors(v, name)
 
@@ -69,10 +69,10 @@ def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     values = np.abs(v[name])
     if name in STRAIGHT_EIGENVALUE:
         return EIGENVALUE_ERROR * np.hypot(*(v[part] for part in STRAIGHT_EIGENVALUE))
-    if name in POWERS and "amplitude_error" in v:
+    if name in POWER_VARIABLES and "amplitude_error" in v:
         return values * power_error(v, fluctuation=name.endswith("rms"))
-    if name in EXTREMA and "extrema_error" in v:
-        beside = BETWEEN_NODES * np.abs(1 - v[name]) if name == "least_stretch" else 0.0
+    if name in EXTREMA_VARIABLES and "extrema_error" in v:
+        beside = MAX_DIP_BETWEEN_NODES * np.abs(1 - v[name]) if name == "least_stretch" else 0.0
         return v["extrema_error"] * v["tip_y_max"] + beside
     if name == "transient_time" and "growth_error" in v:
         # The growth is quadratic near its maximum, and is 1 at t = 0.
@@ -102,7 +102,7 @@ def is_known(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     values = np.asarray(v[name])
     if name != "transient_time" or "growth_error" not in v:
         return np.ones(values.shape, bool)
-    return (values == 0) | ~(errors_of(v, name) >= MIN_KNOWN * values)
+    return (values == 0) | ~(errors_of(v, name) >= UNKNOWN_FROM_ERROR * values)
 
 
 def span_of(v: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -> str:

@@ -16,7 +16,7 @@ from .ranges import error_text, number_and_error, span
 from .stability import stability_lines
 from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, region, varied
 
-OUTCOMES = {"cycle": "beats", "straight": "stays straight"}
+OUTCOME_WORDS = {"cycle": "beats", "straight": "stays straight"}
 """Words for the outcome at a point, by status; an unlisted status is a word itself."""
 CYCLE_NUMBERS = (
     ("period", "period", "tau2"),
@@ -63,12 +63,14 @@ def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarra
     status = view.variables["status"]
     whole = counted(int(done.sum()), "point")
     masks = {word: done & (status == value) for value, word in view.flags.items() if value >= 0}
-    found = {OUTCOMES.get(word, word.replace("_", " ")): mask for word, mask in masks.items() if mask.any()}
+    found = {
+        OUTCOME_WORDS.get(word, word.replace("_", " ")): mask for word, mask in masks.items() if mask.any()
+    }
     if len(found) == 1:
         word = next(iter(found))
         if done.size > 1:
             return f"{word} at all {whole}" if done.sum() > 1 else f"{word} at the one point that is solved"
-        return f"the rod {word}" if word in OUTCOMES.values() else word
+        return f"the rod {word}" if word in OUTCOME_WORDS.values() else word
     counts = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in found.items())
     return f"of {whole}: {', '.join(counts)}"
 

@@ -16,9 +16,9 @@ from .ranges import span
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
 
-STATES_NAMED = {"straight rod and cycle both stable": "both", "stable states undecided": "undecided"}
+LISTED_STATES = {"straight rod and cycle both stable": "both", "stable states undecided": "undecided"}
 """Values of `stable_states` whose regions are listed, by the words in the summary."""
-CHANGES_OF_CYCLES = {
+CYCLE_CHANGE_WORDS = {
     "fold": "folds of cycles",
     "torus": "torus points of cycles",
     "symmetry_breaking": "cycles lose their symmetry",
@@ -85,10 +85,10 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     parts = ", ".join(f"{share:.1f} % {word.replace('_', ' ')}" for share, word in shares if share)
     lines = [f"stable states, of the grid: {parts}"]
     found_on = {}
-    for words, state in STATES_NAMED.items():
+    for words, state in LISTED_STATES.items():
         there = (states == number_of(state, STABLE_STATES)) & done[..., np.newaxis]
         found_on[words] = there.any(axis=-1), np.broadcast_to(v[line], there.shape)[there]
-    for kind, words in CHANGES_OF_CYCLES.items():
+    for kind, words in CYCLE_CHANGE_WORDS.items():
         of_kind = (kinds == SPECIAL_KINDS.index(kind)) & done[..., np.newaxis]
         found_on[words] = of_kind.any(axis=-1), at[of_kind]
     for words, (rows, where) in found_on.items():

@@ -11,7 +11,7 @@ from .ranges import number_and_error, span
 from .stability import stability_lines
 from .summary_lines import SummaryLines, TextTable, in_brackets, region
 
-HOW_FOUND = (
+LOCATION_EXPLANATION = (
     "located where the leading eigenvalue changes between two forces of the file: F** by a zero of the "
     "characteristic determinant D(i eta; F), F* by a double zero of D; `task: thresholds` proves that none "
     "is missing"
@@ -20,7 +20,7 @@ HOW_FOUND = (
 NOT_LOCATED = "not located between the forces of the file; `task: thresholds` finds them"
 """Explanation of intervals of force in place of located forces, for arms that are not uniform or not of
 linear material."""
-PROOFS = {True: "proved by a winding number", False: "not proved"}
+PROOF_WORDS = {True: "proved by a winding number", False: "not proved"}
 """Words on whether the number of unstable modes is proved, for a file with one point."""
 
 
@@ -60,7 +60,7 @@ def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
     empty lists if F is no axis.
     """
     lines, of_arm = stability_lines(view, "F", StoredChanges(view, "F").on)
-    how = HOW_FOUND if has_covering(view.config) else NOT_LOCATED
+    how = LOCATION_EXPLANATION if has_covering(view.config) else NOT_LOCATED
     return lines, [f"thresholds: {how}"] if lines else [], of_arm
 
 
@@ -80,7 +80,7 @@ def count_line(view: View) -> str:
     """Line on the number of unstable modes at the only point of a file."""
     v = view.variables
     unstable = int(v["unstable_count"].max())
-    proof = PROOFS[bool(v["certified"].all())]
+    proof = PROOF_WORDS[bool(v["certified"].all())]
     if v["certified"].all() and estimates_counts(view.config):
         proof = "proved by D or counted by its winding number, estimated in part"
     return f"unstable modes: {unstable}, {proof}" if unstable >= 0 else "unstable modes: not known"

@@ -11,16 +11,16 @@ from ..hopf_points import BracketedChange, LocatedChange
 from .arm.arm import thresholds_of_arm
 from .ranges import error_text, stated_error
 
-FEW_LINES = 3
+MAX_LISTED_LINES = 3
 """Largest number of lines of points whose thresholds are listed one by one; of more lines the
 range is given."""
-OVER_FORCE = {
+FORCE_THRESHOLD_WORDS = {
     "onset": "F* (straight rod starts to oscillate)",
     "hopf": "F** (straight rod starts to beat)",
     "restabilization": "restabilization (straight rod is stable again)",
 }
 """Words for a threshold along F, by kind."""
-OVER_OTHERS = {
+OTHER_THRESHOLD_WORDS = {
     "hopf": "the straight rod starts to beat, as {name} grows, at {name}",
     "restabilization": "the straight rod is stable again, as {name} grows, at {name}",
 }
@@ -47,7 +47,7 @@ def stability_lines(
     along = [found_on(line) for line in lines]
     texts = list[str]()
     of_arm = list[str]()
-    for kind, words in (OVER_FORCE if name == "F" else OVER_OTHERS).items():
+    for kind, words in (FORCE_THRESHOLD_WORDS if name == "F" else OTHER_THRESHOLD_WORDS).items():
         of_kind = [[point for point in points if point.kind == kind] for points in along]
         if found := {i: points for i, points in enumerate(of_kind) if points}:
             texts.append(f"{words.format(name=name)}: {_positions(found, names, name)}")
@@ -70,7 +70,7 @@ def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: st
         frequency = located[0].frequency
         beats = f", frequency {frequency:.6g} rad/tau2" if np.isfinite(frequency) else ""
         return _text(located[0]) + error + some + beats
-    if len(found) <= FEW_LINES:
+    if len(found) <= MAX_LISTED_LINES:
         each = ((" and ".join(map(_text, found[i])), names[i]) for i in found)
         return f"{', '.join(' for '.join(filter(None, pair)) for pair in each)}{error}"
     if not located:

@@ -10,7 +10,7 @@ from ...results.layouts.rods import has_covering
 from ...wording import counted
 from .ranges import span
 
-NAMED_THINGS = 8
+MAX_LISTED_ITEMS = 8
 """Largest number of rods, branches or points that are listed one by one."""
 
 
@@ -80,12 +80,12 @@ def at_point(view: View, index: int) -> str:
 
 
 def first_lines(lines: Sequence[str], noun: str) -> Iterator[str]:
-    """Yields the first NAMED_THINGS lines, indented, and then a line with the number of the others. noun:
+    """Yields the first MAX_LISTED_ITEMS lines, indented, and then a line with the number of the others. noun:
     what a line is about.
     """
-    yield from (f"  {line}" for line in lines[:NAMED_THINGS])
-    if len(lines) > NAMED_THINGS:
-        yield f"  and {counted(len(lines) - NAMED_THINGS, noun)} more"
+    yield from (f"  {line}" for line in lines[:MAX_LISTED_ITEMS])
+    if len(lines) > MAX_LISTED_ITEMS:
+        yield f"  and {counted(len(lines) - MAX_LISTED_ITEMS, noun)} more"
 
 
 def in_brackets(text: str) -> str:

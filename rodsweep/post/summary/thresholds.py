@@ -14,7 +14,7 @@ from .arm.arm import crossings_of_arm
 from .ranges import error_text, number_and_error, rounded, span
 from .summary_lines import SummaryLines, TextTable, at_point, completeness, in_brackets
 
-EVENTS = {
+FIRST_THRESHOLD_WORDS = {
     "hopf": ("F** (straight rod starts to beat)", "hopf_frequency", "frequency", ANGULAR_UNIT),
     "restabilization": ("stable again", "restabilization_frequency", "frequency", ANGULAR_UNIT),
     "onset": ("F* (straight rod starts to oscillate)", "onset_growth_rate", "growth rate", "1/tau2"),
@@ -36,14 +36,14 @@ def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
         details = cost_lines(view, done)
         of_arm = crossings_of_arm(view)
         return SummaryLines(crossing_lines(view), trust_of_one(view), details, of_arm, crossing_table(view))
-    answer = [event_line(view, done, event) for event in EVENTS]
+    answer = [event_line(view, done, event) for event in FIRST_THRESHOLD_WORDS]
     trust = [*search_lines(view, done, "rod"), f"searched up to F = {span(view.variables['F_end'][done])}"]
     return SummaryLines(answer, trust, [*monotony_lines(view), *cost_lines(view, done)])
 
 
 def event_line(view: View, done: np.ndarray, event: str) -> str:
     """Line on the forces at the first threshold of the kind `event`. done: mask of the computed points."""
-    words, rate, noun, unit = EVENTS[event]
+    words, rate, noun, unit = FIRST_THRESHOLD_WORDS[event]
     v = view.variables
     F = np.where(done, v[f"F_{event}"], np.nan).ravel()
     found = np.isfinite(F)

@@ -12,7 +12,7 @@ from ...model.parameters import PARAMETERS
 from ...results.file.view import View
 from ..branch_curves import followed_parameter
 from .columns import Column
-from .contents import BRANCHES, GRID, POINTS, Contents, chosen, contents_of, refuse_unknown
+from .contents import BRANCHES, GRID, POINTS, Contents, chosen_table, contents_of, refuse_unknown
 from .rows import Rows, item_rows, line_columns, list_columns, point_columns, si_columns
 
 
@@ -55,7 +55,7 @@ class Tables:
         columns: names in the order of the output; by default all columns, except that a list has only the
         parameters, quantities and status of its points. Raises InputError for an unknown name.
         """
-        name = chosen(self.view, self.contents, name, tuple(columns))
+        name = chosen_table(self.view, self.contents, name, tuple(columns))
         points, found = self._rows(name)
         beside = [] if points is None else list(point_columns(self.view, self.contents.of_points, points))
         if name == GRID:  # its first column is a parameter, which takes its place among the other parameters

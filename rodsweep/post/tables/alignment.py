@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 
 WIDTH = 80
 """Largest length of a printed line, in characters: the usual width of a terminal."""
-GAP = "  "
+COLUMN_GAP = "  "
 """Space between two columns."""
-MIN_PROSE = 24
+MIN_PROSE_WIDTH = 24
 """Least width, in characters, of a last column of prose; if less is left, the prose gets lines of its own
 below the row."""
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*(?:e[-+]?\d+)?|inf)")
@@ -74,7 +74,7 @@ def blocks(columns: Sequence[Sequence[str]], width: int = WIDTH) -> Iterator[lis
     first, *others = columns
     block = [first]
     for column in others:
-        taken = sum(len(each[0]) + len(GAP) for each in block)
+        taken = sum(len(each[0]) + len(COLUMN_GAP) for each in block)
         if len(block) > 1 and taken + len(column[0]) > width:
             yield _lines(block)
             block = [first]
@@ -84,7 +84,7 @@ def blocks(columns: Sequence[Sequence[str]], width: int = WIDTH) -> Iterator[lis
 
 def _lines(columns: Sequence[Sequence[str]]) -> list[str]:
     """Lines of columns side by side, without empty lines."""
-    lines = (GAP.join(cells).rstrip() for cells in zip(*columns, strict=True))
+    lines = (COLUMN_GAP.join(cells).rstrip() for cells in zip(*columns, strict=True))
     return [line for line in lines if line]
 
 
@@ -96,13 +96,13 @@ def rows_with_prose(rows: Sequence[Line], width: int = WIDTH) -> list[str]:
         return []
     *columns, prose = zip(*rows, strict=True)
     aligned = zip(*(point_aligned(column) if any(column) else column for column in columns), strict=True)
-    before = [GAP.join(cells) for cells in aligned]
-    room = width - max(map(len, before)) - len(GAP)
+    before = [COLUMN_GAP.join(cells) for cells in aligned]
+    room = width - max(map(len, before)) - len(COLUMN_GAP)
     lines = []
     for begin, text in zip(before, prose, strict=True):
-        if room >= MIN_PROSE:
+        if room >= MIN_PROSE_WIDTH:
             first, *further = textwrap.wrap(text, room) or [""]
-            lines.append(f"{begin}{GAP}{first}".rstrip())
+            lines.append(f"{begin}{COLUMN_GAP}{first}".rstrip())
             lines += [" " * (width - room) + line for line in further]
         else:
             lines += (

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from ...results.layouts.variables import NOT_KNOWN, SECONDS, Variable
 
-NO_WORD = ("none", "missing")
+UNUSED_WORDS = ("none", "missing")
 """Words of a flag variable that mark an unused item of a list."""
 BOOLEAN_TEXTS = {0: "false", 1: "true"}
 """Text in CSV of the boolean values 0 and 1."""
 ERROR_DIGITS = 3
 """Number of significant digits of errors and computing times, which are estimates."""
-ROUNDING = 4 * np.finfo(float).eps
+COORDINATE_ROUNDING = 4 * np.finfo(float).eps
 """Largest relative rounding error of a coordinate that was converted between units, or computed as part of a
 range."""
 
@@ -102,20 +102,20 @@ def _typed(value: float, text: str) -> str:
     if not np.isfinite(value):
         return text
     short = f"{value:.15g}"
-    is_close = abs(float(short) - value) <= ROUNDING * abs(value)
+    is_close = abs(float(short) - value) <= COORDINATE_ROUNDING * abs(value)
     return short if is_close and len(short) + 2 < len(text) else text
 
 
 def absent_in(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
-    """Mask of missing values, of the shape of `values`: NaN, the fill value -1, or a word of NO_WORD."""
+    """Mask of missing values, of the shape of `values`: NaN, the fill value -1, or a word of UNUSED_WORDS."""
     if values.dtype.kind == "f":
         return np.isnan(values)
     if variable.flags:
-        return np.isin(values, [value for value, word in variable.flags if word in NO_WORD])
+        return np.isin(values, [value for value, word in variable.flags if word in UNUSED_WORDS])
     return values == variable.fill if variable.fill == -1 else np.zeros(values.shape, bool)
 
 
-def tells_of_items(variable: Variable) -> bool:
+def marks_missing_items(variable: Variable) -> bool:
     """Whether a fill value of the variable shows that its item is missing: no valid value equals the fill
     value.
     """

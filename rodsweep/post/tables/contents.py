@@ -23,7 +23,7 @@ BRANCHES = "branches"
 """Name of the table of cycles and special points in their order on the branches."""
 PARTS_OF_BRANCHES = {"cycles", "special_points"}
 """Names of the two tables that the table `branches` merges."""
-NAMES = {
+TABLE_NAMES = {
     ("mode",): "modes",
     ("mode", "u"): "mode_shapes",
     ("crossing",): "crossings",
@@ -106,10 +106,10 @@ def contents_of(view: View) -> Contents:
 
 def name_of(dimensions: tuple[str, ...]) -> str:
     """Name of the table with the given dimensions, without the dimensions of the points."""
-    return GRID if dimensions[0] in PARAMETERS else NAMES[dimensions]
+    return GRID if dimensions[0] in PARAMETERS else TABLE_NAMES[dimensions]
 
 
-def chosen(view: View, contents: Contents, table: str | None, columns: tuple[str, ...]) -> str:
+def chosen_table(view: View, contents: Contents, table: str | None, columns: tuple[str, ...]) -> str:
     """Name of the table that the user requests by name or by columns; else the first table of the task.
     Raises InputError if there is none.
     """

@@ -14,7 +14,7 @@ from ...model.arm.quantities import ALL_QUANTITIES
 from ...results.file.view import View
 from ...results.layouts.arm import si_name_of, si_unit_of, si_variable
 from ...results.layouts.variables import DIMENSIONS, MISSING, STATUS, Variable
-from .columns import Column, absent_in, column_of, coordinate, tells_of_items
+from .columns import Column, absent_in, column_of, coordinate, marks_missing_items
 
 Rows = tuple[NDArray[np.int64], ...]
 """Index of the point of every row, then the index of its item along each dimension of the list,
@@ -28,7 +28,7 @@ def item_rows(view: View, variables: Sequence[Variable], joint: bool) -> Rows:
     points = 1 if joint else view.variables["status"].size
     exists: NDArray[np.bool_] = np.zeros((), bool)
     for variable in variables:
-        if tells_of_items(variable) and (_is_of_points(view, variable) or joint):
+        if marks_missing_items(variable) and (_is_of_points(view, variable) or joint):
             values = view.variables[variable.name]
             inner = len(variable.extra)
             values = values.reshape(points, *values.shape[values.ndim - inner :])

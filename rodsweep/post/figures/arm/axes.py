@@ -16,7 +16,7 @@ from ....model.arm.quantities import SCALE_OF, UNITS
 from ....results.file.view import View
 from ..style import CRITICAL_FORCE, LABELS
 
-SCALABLE = ("linear", "log")
+SCALES_WITH_SECOND_AXIS = ("linear", "log")
 """Scales of an axis for which matplotlib places the ticks of a second scale correctly."""
 MAX_TICKS = 5
 """Largest number of intervals between the ticks of the second scale."""
@@ -35,7 +35,7 @@ def add_si_scales(figure: Figure, views: Sequence[View]) -> None:
     for axes in list(figure.axes):
         for which in ("x", "y"):
             label, scale = (getattr(axes, f"get_{which}{what}")() for what in ("label", "scale"))
-            if label in (LABELS["F"], CRITICAL_FORCE) and scale in SCALABLE:
+            if label in (LABELS["F"], CRITICAL_FORCE) and scale in SCALES_WITH_SECOND_AXIS:
                 _add(_outermost(axes, which), which, unit, load)
 
 

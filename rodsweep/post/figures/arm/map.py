@@ -22,16 +22,16 @@ from ....model.arm.drag import DRAGS
 from ....model.arm.neglected import Validity
 from ....model.arm.quantities import ARM_UNITS
 from ....results.file.view import View
-from ...summary.arm.arm import word
+from ...summary.arm.arm import quantity_words
 from .. import style
 from ..cycle.point_map import cell_edges
 from ..request import FigureRequest
 from .panels import PANELS, Panel
 from .quantities import in_typed_unit, quantity_text
 
-MAPS = ("map", "maps")
+MAP_KINDS = ("map", "maps")
 """Values of `--what` that request this figure."""
-HATCHES: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
+COVERED_CELL_LOOKS: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
     ("model_applies", Validity.doubtful, "model doubtful", {"fc": "none", "hatch": "..."}),
     ("model_applies", Validity.does_not_apply, "model does not apply", {"fc": "none", "hatch": "////"}),
     ("status", NOT_SLENDER, "shorter than 10 radii", {"fc": "0.85", "hatch": ""}),
@@ -46,7 +46,7 @@ DRAG = "drag"
 """Name of the axis of drags. In a figure with a further axis, the range over drags is drawn as a band."""
 BAND_OPACITY = 0.25
 """Opacity of the band between the smallest and the largest value over all drags."""
-EMPTY_LOOK: dict[str, Any] = {"fc": "#E8EDF2"}
+EMPTY_CELL_LOOK: dict[str, Any] = {"fc": "#E8EDF2"}
 """Look of cells with a rod but without a value, such as a rod without flutter."""
 MAP_HATCH_COLOUR = "0.35"
 """Grey of hatches, and of the edges of covered cells."""
@@ -82,7 +82,7 @@ def draw_arm_map(request: FigureRequest) -> str:
     banded = [DRAG] if not y and DRAG in first else []
     figure.suptitle(style.heading(view, _fixed(view, axes + banded)))
     labels = " and ".join(panel.label for panel in panels)
-    return request.write(figure, f"{labels} over {' and '.join(map(word, axes))}")
+    return request.write(figure, f"{labels} over {' and '.join(map(quantity_words, axes))}")
 
 
 def can_draw(request: FigureRequest) -> bool:
@@ -90,7 +90,7 @@ def can_draw(request: FigureRequest) -> bool:
     figure.
     """
     view = request.views[0]
-    chosen = request.what not in (None, *MAPS) or request.points or request.roots
+    chosen = request.what not in (None, *MAP_KINDS) or request.points or request.roots
     several = any(len(view.variables[name]) > 1 for name in view.over)
     return several and view.task in PANELS and not chosen
 
@@ -101,7 +101,7 @@ def _axis(view: View, name: str) -> tuple[Array, str]:
     if name in style.LABELS:
         return values, style.LABELS[name]
     values, unit = in_typed_unit(view, name, values)
-    return values, word(name) + (f" ({unit})" if unit else "")
+    return values, quantity_words(name) + (f" ({unit})" if unit else "")
 
 
 def _panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
@@ -136,7 +136,7 @@ def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[
     the grid.
     """
     x, label = _axis(view, name)
-    colours = (style.SECOND, style.FIRST, style.THIRD)
+    colours = (style.VERMILION, style.BLUE, style.GREEN)
     handles: list[Artist] = []
     for colour, (line, values) in zip(colours, (panel.lines or {"": panel.values}).items(), strict=False):
         style_of_line = "o" if name == DRAG else "-o"
@@ -170,12 +170,12 @@ def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], place: 
     """
     x, y = names
     rods = view.variables["status"][place] < NOT_SLENDER
-    empty = [(rods & np.isnan(panel.values[place]), panel.empty_label, EMPTY_LOOK)] if y else []
+    empty = [(rods & np.isnan(panel.values[place]), panel.empty_label, EMPTY_CELL_LOOK)] if y else []
     across = cell_edges(_axis(view, x)[0])
     limits = axes.get_ylim()
     up = cell_edges(_axis(view, y)[0]) if y else np.array(limits)
     handles: list[Artist] = []
-    for variable, value, label, look in HATCHES:
+    for variable, value, label, look in COVERED_CELL_LOOKS:
         chosen = view.variables[variable][place] == value
         empty.append((chosen if variable == "status" else chosen & rods, label, look))
     for chosen, label, look in empty:

@@ -9,7 +9,7 @@ from ....arrays import Array
 from ....results.file.view import View
 from .quantities import in_typed_unit
 
-EVENTS = {"hopf": "flutter", "onset": "onset of oscillations", "restabilization": "return"}
+THRESHOLD_KIND_WORDS = {"hopf": "flutter", "onset": "onset of oscillations", "restabilization": "return"}
 """Word for each kind of threshold."""
 
 
@@ -39,8 +39,10 @@ def _of_thresholds(view: View) -> list[Panel]:
     load, si, typed = ("force", "N", "force") if "force" in view.quantities else ("pressure", "Pa", "young")
     lines = {}
     for event in ("hopf", "onset", "restabilization"):
-        lines[EVENTS[event]], unit = in_typed_unit(view, typed, view.variables[f"{load}_{event}"], si)
-    flutter = lines[EVENTS["hopf"]]
+        lines[THRESHOLD_KIND_WORDS[event]], unit = in_typed_unit(
+            view, typed, view.variables[f"{load}_{event}"], si
+        )
+    flutter = lines[THRESHOLD_KIND_WORDS["hopf"]]
     return [
         Panel(f"{load} at flutter ({unit})", flutter, lines, "", f"{load} ({unit})", "no flutter"),
         Panel("frequency at flutter (Hz)", view.variables["frequency_hopf_hz"], empty_label="no flutter"),

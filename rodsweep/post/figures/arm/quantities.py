@@ -13,11 +13,11 @@ from ....model.arm.drag import DRAGS
 from ....model.arm.quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE
 from ....model.units import written_in
 from ....results.file.view import View
-from ...summary.arm.arm import word
+from ...summary.arm.arm import quantity_words
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
 """No-break space between a number and its unit, at which no line of text is broken."""
-SAME_NUMBER = 1e-9
+SAME_NUMBER_TOLERANCE = 1e-9
 """Largest relative difference up to which a stored parameter equals the parameter computed from the arm."""
 
 
@@ -36,7 +36,7 @@ def quantity_text(view: View, name: str, value: float) -> str:
         return f"{name}{NO_BREAK}{DRAGS[int(value)].replace('_', NO_BREAK)}"
     shown, unit = in_typed_unit(view, name, np.array([value]))
     unit = unit.replace("^3", "$^3$").replace("*", " ").replace(" ", NO_BREAK)
-    return f"{word(name)}{NO_BREAK}{shown[0]:.4g}{NO_BREAK}{unit}".rstrip(NO_BREAK)
+    return f"{quantity_words(name)}{NO_BREAK}{shown[0]:.4g}{NO_BREAK}{unit}".rstrip(NO_BREAK)
 
 
 def given_quantities(view: View) -> list[str]:
@@ -68,5 +68,5 @@ def replaced(view: View, number: int) -> dict[str, float]:
     return {
         name: value
         for name, value in at.items()
-        if name == "F" or not isclose(value, getattr(own, name), rel_tol=SAME_NUMBER)
+        if name == "F" or not isclose(value, getattr(own, name), rel_tol=SAME_NUMBER_TOLERANCE)
     }

@@ -15,7 +15,7 @@ from ....results.file.view import View
 from ..cycle.point_map import cell_edges
 from ..style import LABELS
 
-HATCHED: dict[str, Any] = {"fc": "none", "ec": "0.6", "hatch": "////", "lw": 0}
+VALIDITY_HATCH: dict[str, Any] = {"fc": "none", "ec": "0.6", "hatch": "////", "lw": 0}
 """Look of the hatches where the model does not apply."""
 
 
@@ -71,7 +71,7 @@ def _spans(axes: Axes, which: str, edges: Array, there: np.ndarray) -> None:
     low, high = sorted(limits)
     for i in np.flatnonzero(there):
         left, right = np.clip(edges[[i, i + 1]], low, high)
-        hatch(left, right, zorder=0 if which == "x" else 3, **HATCHED)
+        hatch(left, right, zorder=0 if which == "x" else 3, **VALIDITY_HATCH)
     axes.set(**{f"{which}lim": limits})
 
 
@@ -81,6 +81,6 @@ def _cells(axes: Axes, edges: list[Array], there: np.ndarray) -> None:
     """
     limits = axes.get_xlim(), axes.get_ylim()
     for i, j in np.argwhere(there):
-        axes.fill_between(edges[0][[i, i + 1]], *edges[1][[j, j + 1]], zorder=3, **HATCHED)
+        axes.fill_between(edges[0][[i, i + 1]], *edges[1][[j, j + 1]], zorder=3, **VALIDITY_HATCH)
     axes.set_xlim(limits[0])
     axes.set_ylim(limits[1])

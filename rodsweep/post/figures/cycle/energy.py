@@ -11,8 +11,8 @@ from ....results.file.view import View
 from ...summary.errors import power_error
 from ...summary.ranges import rounded
 from ..arm.quantities import NO_BREAK
-from ..style import FIRST, SECOND, THIRD, legend_below
-from .selection import ENERGIES, StoredCycle, chosen_cycles, in_tex
+from ..style import BLUE, GREEN, VERMILION, legend_below
+from .selection import ENERGY_VARIABLES, StoredCycle, chosen_cycles, in_tex
 
 RATE_MARK_COUNT = 24
 """Number of times at which marks of dU/dt are drawn over the curve of injection minus dissipation."""
@@ -25,7 +25,7 @@ def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tupl
     The marks of dU/dt are derivatives of the stored energy U, computed independently of the curve on which
     they must lie. narrow: whether the page is narrow.
     """
-    selection = chosen_cycles(view, points, ENERGIES)
+    selection = chosen_cycles(view, points, ENERGY_VARIABLES)
     cycles = selection.cycles
     figure = Figure(figsize=(3.6 * len(cycles) + 1.0, 6.4), layout="constrained")
     rows = figure.subplots(
@@ -61,14 +61,14 @@ def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     top, middle, bottom = column
     phase = np.linspace(0, 1, 401, dtype=np.float64)
     time = phase * cycle.period
-    energy, injection, dissipation = (resampled(cycle.values[name], phase) for name in ENERGIES)
+    energy, injection, dissipation = (resampled(cycle.values[name], phase) for name in ENERGY_VARIABLES)
     top.plot(time, energy, color="k", lw=1.5)
     mean = float(cycle.values["injection_mean"])
     middle.axhline(mean, color="0.6", lw=0.9, ls=":", label="mean injection", zorder=1)
-    middle.plot(time, injection, color=SECOND, lw=1.5, label="injection")
-    middle.plot(time, dissipation, color=FIRST, lw=1.5, ls="--", label="dissipation")
+    middle.plot(time, injection, color=VERMILION, lw=1.5, label="injection")
+    middle.plot(time, dissipation, color=BLUE, lw=1.5, ls="--", label="dissipation")
     bottom.axhline(0, color="0.8", lw=0.6, zorder=0)
-    bottom.plot(time, injection - dissipation, color=THIRD, lw=1.5, label=r"injection $-$ dissipation")
+    bottom.plot(time, injection - dissipation, color=GREEN, lw=1.5, label=r"injection $-$ dissipation")
     at = np.arange(RATE_MARK_COUNT) / RATE_MARK_COUNT
     rate = resampled(time_derivative(cycle.values["energy"]), at) / cycle.period * cycle.units.power_of_rate
     bottom.plot(at * cycle.period, rate, "o", color="k", mfc="none", ms=3.5, label="derivative of $U$")

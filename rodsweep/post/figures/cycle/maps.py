@@ -58,9 +58,9 @@ MARKER_SIZES = 1.0, 4.0
 a cell."""
 CYCLE_HATCH_COLOUR = "0.25"
 """Grey of the hatches of cells without a cycle, and of the markers of unstable cycles."""
-ROW_ENTRIES = 6
+MAX_ROW_ENTRIES = 6
 """Largest number of entries in one row of the legend."""
-QUANTITIES = (("period", "viridis", True), ("tip_y_max", "plasma", False))
+MAP_QUANTITIES = (("period", "viridis", True), ("tip_y_max", "plasma", False))
 """(variable, colour map, whether colours are logarithmic if the values span more than a decade) of each
 panel."""
 
@@ -77,7 +77,7 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     lines = hopf_lines(points, view)
     (units,) = units_over([view], [points.at.ravel()])
     _, largest_y, period, _ = units.labels_over
-    for axes, label, (name, colours, ratios) in zip(panels, (period, largest_y), QUANTITIES, strict=True):
+    for axes, label, (name, colours, ratios) in zip(panels, (period, largest_y), MAP_QUANTITIES, strict=True):
         drawn = units.drawn({name: view.variables[name].ravel()[points.at.ravel()]})[name]
         values = np.where(cycles, drawn.reshape(points.at.shape), np.nan)
         edges = cell_edges(points.x), cell_edges(points.y)
@@ -87,7 +87,7 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
         handles += _mark_unstable(axes, points, words == "unstable")
     label_maps(panels, points)
     if handles:
-        rows = -(-len(handles) // ROW_ENTRIES)
+        rows = -(-len(handles) // MAX_ROW_ENTRIES)
         legend_below(figure, handles, columns=-(-len(handles) // rows))
     figure.suptitle(heading(view, _shared(view, points, units.in_si)))
     return figure, f"period and amplitude over {' and '.join(points.names)}{points.left_out}"

@@ -21,8 +21,8 @@ from matplotlib.ticker import FuncFormatter
 
 from ....arrays import Array
 from ....results.file.view import View
-from ..style import FIRST, SECOND
-from .selection import SHAPES, StoredCycle, chosen_cycles
+from ..style import BLUE, VERMILION
+from .selection import SHAPE_VARIABLES, StoredCycle, chosen_cycles
 from .transient import draw_start_of_motion, label_time, label_tip
 
 MAX_SHAPES = 12
@@ -31,9 +31,9 @@ ARROW_LENGTH = 0.14
 """Length of the arrow for the follower force, in L."""
 WALL_DEPTH = 0.05
 """Thickness of the drawn wall, in L."""
-WALL_HALF = 0.13
+WALL_HALF_HEIGHT = 0.13
 """Half the height of the drawn wall, in L."""
-MARGIN = 0.04
+SHAPE_MARGIN = 0.04
 """Margin around the shapes and arrows, in L."""
 TIP_PERIODS = 2
 """Duration of the drawn motion of the tip, in periods of the slowest cycle."""
@@ -50,7 +50,7 @@ TEXT_HEIGHT = 1.4
 """Height of all labels and headings above and below the panels, in inches."""
 NARROW_TEXT_HEIGHT = 2.0
 """The value of `TEXT_HEIGHT` on a narrow page, where the colour bar lies below the panels."""
-LIGHTEST_ARM = 0.14
+UNUSED_COLOUR_FRACTION = 0.14
 """Fraction of the colour map that is not used: its yellow end is invisible on white paper."""
 
 
@@ -60,19 +60,21 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
 
     narrow: whether the page has no room for panels side by side.
     """
-    selection = chosen_cycles(view, points, SHAPES)
+    selection = chosen_cycles(view, points, SHAPE_VARIABLES)
     cycles = selection.cycles
     figure, shapes, tips = _panels(cycles, narrow)
     emerging = all(cycle.has_trace for cycle in cycles)
     end = TIP_PERIODS * max(c.period for c in cycles)
     drawn, step = drawn_shapes(len(cycles[0].values["shape_x"]))
     # Light to dark, so that colour-blind readers see the order.
-    colours = ListedColormap(matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST_ARM, 1, len(drawn))))
+    colours = ListedColormap(
+        matplotlib.colormaps["viridis_r"](np.linspace(UNUSED_COLOUR_FRACTION, 1, len(drawn)))
+    )
     for axes, (upper, lower), cycle in zip(shapes, tips, cycles, strict=True):
         draw_tip_path(axes, cycle)
         draw_clamp(axes, cycle.units.length)
         for k, place in enumerate(drawn):
-            x, y, theta = (cycle.values[name][place] for name in SHAPES)
+            x, y, theta = (cycle.values[name][place] for name in SHAPE_VARIABLES)
             axes.plot(x, y, color=colours(k), lw=1.8, solid_capstyle="round", zorder=2 + k / 100)
             force_arrow(axes, x, y, theta, colours(k), cycle.units.length)
         axes.set_xlabel(cycle.units.along("x"))
@@ -168,7 +170,7 @@ def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, lengt
 def draw_clamp(axes: Axes, length: float) -> None:
     """Draws the wall that clamps the rod at u = 0. length: L, in the unit of the axes."""
     depth = WALL_DEPTH * length
-    half = WALL_HALF * length
+    half = WALL_HALF_HEIGHT * length
     wall = Rectangle((-depth, -half), depth, 2 * half, fc="white", ec="0.3", hatch="/////", lw=0)
     axes.add_patch(wall)
     axes.plot([0, 0], [-half, half], color="k", lw=1.4, zorder=5)
@@ -186,11 +188,11 @@ def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[fl
     """((left, right), (bottom, top)) of all shapes and arrows, in the cycles' unit of length."""
     longest = max(cycle.units.length for cycle in cycles)
     wall = -WALL_DEPTH * longest
-    margin = MARGIN * longest
+    margin = SHAPE_MARGIN * longest
     along_x = [np.array([wall])]
     along_y = []
     for cycle in cycles:
-        x, y, theta = (cycle.values[name] for name in SHAPES)
+        x, y, theta = (cycle.values[name] for name in SHAPE_VARIABLES)
         arrow = ARROW_LENGTH * cycle.units.length
         along_x += [x.ravel(), x[:, -1] + arrow * np.cos(theta[:, -1])]
         along_y += [y.ravel(), y[:, -1] + arrow * np.sin(theta[:, -1])]
@@ -208,7 +210,7 @@ def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
     from ....discretization.elements.periodic import resampled  # compiled code, which few figures need
 
     time = np.linspace(0, end, 801, dtype=np.float64)
-    for axes, values, colour in zip((upper, lower), cycle.tip, (FIRST, SECOND), strict=True):
+    for axes, values, colour in zip((upper, lower), cycle.tip, (BLUE, VERMILION), strict=True):
         axes.plot(time, resampled(values, time / cycle.period), color=colour, lw=1.4)
         if len(values) < FEW_SAMPLES:
             at = np.arange(int(end / cycle.period * len(values)) + 1)

@@ -16,17 +16,17 @@ from ....results.file.view import View
 from ...summary.ranges import rounded
 from ..arm.quantities import at_point, given_quantities, quantity_text, replaced
 from ..style import heading, parameter_text
-from .units import PLAIN_UNITS, REQUIRED, CycleUnits, units_of
+from .units import PLAIN_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_of
 
 MAX_CYCLES = 3
 """Largest number of cycles that fit side by side into one figure."""
-SHAPES = ("shape_x", "shape_y", "shape_theta")
+SHAPE_VARIABLES = ("shape_x", "shape_y", "shape_theta")
 """Names of the variables with the shapes over a period."""
-ENERGIES = ("energy", "injection", "dissipation")
+ENERGY_VARIABLES = ("energy", "injection", "dissipation")
 """Names of the variables with the energy budget over a period."""
-TRACE = ("transient_time", "transient_x", "transient_y")
+TRACE_VARIABLES = ("transient_time", "transient_x", "transient_y")
 """Names of the variables with the motion from the initial state."""
-OPTIONS = dict.fromkeys(SHAPES, "shapes") | dict.fromkeys(TRACE, "transient")
+STORING_OPTIONS = dict.fromkeys(SHAPE_VARIABLES, "shapes") | dict.fromkeys(TRACE_VARIABLES, "transient")
 """Option of the config that makes the task store a variable; all unlisted variables over a period need
 `samples`."""
 
@@ -82,7 +82,7 @@ class StoredCycle:
     @property
     def has_trace(self) -> bool:
         """Whether the motion from the initial state is stored."""
-        return TRACE[0] in self.values and bool(np.isfinite(self.values[TRACE[0]]).all())
+        return TRACE_VARIABLES[0] in self.values and bool(np.isfinite(self.values[TRACE_VARIABLES[0]]).all())
 
     def heading(self, *lines: str) -> str:
         """Title of a panel: the label, if not empty, above the given lines."""
@@ -124,9 +124,9 @@ def chosen_traces(view: View, points: Sequence[int]) -> CycleSelection:
     """Motions from the initial state at the points that the user chose by number, else the first. Raises
     InputError if there is none.
     """
-    _refuse_missing(view, TRACE)
+    _refuse_missing(view, TRACE_VARIABLES)
     _refuse_bad_points(view, points)
-    is_stored = np.isfinite(view.variables[TRACE[0]][..., -1].ravel())
+    is_stored = np.isfinite(view.variables[TRACE_VARIABLES[0]][..., -1].ravel())
     for number in points:
         if not is_stored[number - 1]:
             raise InputError(f"--point {number}: the motion of the point from its start is not stored")
@@ -139,7 +139,7 @@ def _refuse_missing(view: View, needs: Sequence[str]) -> None:
     """
     for name in needs:
         if name not in view.variables:
-            key = f"limit_cycle.{OPTIONS.get(name, 'samples')}"
+            key = f"limit_cycle.{STORING_OPTIONS.get(name, 'samples')}"
             raise InputError(f"{view.path} holds no {name}; run with {key} > 0, which stores it")
 
 
@@ -195,7 +195,7 @@ def shared_and_own_of_points(view: View, numbers: Sequence[int]) -> tuple[str, l
     """(text of the parameters that all points share, text of the other parameters of each point); for an arm,
     of its quantities. numbers: from 1.
     """
-    if all(name in view.quantities for name in REQUIRED):
+    if all(name in view.quantities for name in REQUIRED_QUANTITIES):
         return shared_and_own_of_arms(view, numbers)
     columns = view.point_columns
     return shared_and_own([{name: float(columns[name][n - 1]) for name in columns} for n in numbers])

@@ -11,11 +11,11 @@ from matplotlib.figure import Figure
 
 from ....results.file.view import View
 from ....results.layouts.limit_cycle import CYCLE_WORDS
-from ..style import FIRST, SECOND
-from .selection import TRACE, StoredCycle, chosen_traces
+from ..style import BLUE, VERMILION
+from .selection import TRACE_VARIABLES, StoredCycle, chosen_traces
 from .units import CycleUnits
 
-LEVEL_LOOK: dict[str, Any] = {"color": "0.55", "lw": 0.8, "ls": (0, (4, 2)), "zorder": 1}
+EXTREMUM_LINE_LOOK: dict[str, Any] = {"color": "0.55", "lw": 0.8, "ls": (0, (4, 2)), "zorder": 1}
 """Line style of horizontal lines at the extrema of the cycle that the motion approaches."""
 
 
@@ -46,21 +46,21 @@ def draw_start_of_motion(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
     """Draws x and y of the tip from the initial state, with horizontal lines at the extrema of the cycle, if
     any.
     """
-    time, *tip = (cycle.values[name] for name in TRACE)
+    time, *tip = (cycle.values[name] for name in TRACE_VARIABLES)
     v = cycle.values
     levels = (("tip_x_min", 1), ("tip_x_max", 1)), (("tip_y_max", 1), ("tip_y_max", -1))
-    for axes, values, colour, pair in zip((upper, lower), tip, (FIRST, SECOND), levels, strict=True):
+    for axes, values, colour, pair in zip((upper, lower), tip, (BLUE, VERMILION), levels, strict=True):
         axes.plot(time, values, color=colour, lw=1.1)
         for name, sign in pair if cycle.word in CYCLE_WORDS else ():
-            axes.axhline(sign * float(v[name]), **LEVEL_LOOK)
+            axes.axhline(sign * float(v[name]), **EXTREMUM_LINE_LOOK)
         axes.margins(x=0)
     label_time(upper, lower, cycle)
 
 
 def label_tip(upper: Axes, lower: Axes, units: CycleUnits) -> None:
     """Labels the vertical axes of two panels, x and y of the tip, in the colours of the curves."""
-    upper.set_ylabel("tip " + units.along("x"), color=FIRST)
-    lower.set_ylabel("tip " + units.along("y"), color=SECOND)
+    upper.set_ylabel("tip " + units.along("x"), color=BLUE)
+    lower.set_ylabel("tip " + units.along("y"), color=VERMILION)
 
 
 def label_time(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:

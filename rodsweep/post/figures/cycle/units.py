@@ -1,4 +1,4 @@
-"""Units in figures of cycles: the dimensionless units of the paper, or SI units for an arm."""
+"""Units in figures of cycles: the dimensionless units of the paper, or SI_UNITS units for an arm."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,23 +13,23 @@ from ....results.file.view import View
 from ...tables.rows import quantities_at_points
 from ..arm.quantities import NO_BREAK
 
-LENGTHS = ("shape_x", "shape_y", "tip_x", "tip_y", "transient_x", "transient_y")
+LENGTH_VARIABLES = ("shape_x", "shape_y", "tip_x", "tip_y", "transient_x", "transient_y")
 """Names of variables that are lengths, with values over a period, along a shape, or over a transient."""
-LENGTHS_OF_CYCLES = ("tip_x_min", "tip_x_max", "tip_y_max")
+CYCLE_LENGTH_VARIABLES = ("tip_x_min", "tip_x_max", "tip_y_max")
 """Names of variables that are lengths, with one value for each cycle."""
-TIMES = ("period", "transient_time")
+TIME_VARIABLES = ("period", "transient_time")
 """Names of variables that are times."""
-ENERGIES = ("energy",)
+ENERGY_NAMES = ("energy",)
 """Names of variables that are energies."""
-POWERS = ("injection", "dissipation", "injection_mean", "dissipation_mean")
+POWER_NAMES = ("injection", "dissipation", "injection_mean", "dissipation_mean")
 """Names of variables that are powers."""
 SHORT_PERIOD = 0.1
 """Period, in s, below which times have a prefix, such as ms; longer times are in seconds."""
 Factor = Any
 """A number, or an array with a number for each point, (points,)."""
-SI = ("m", "s", "J", "W")
-"""SI units of length, time, energy and power."""
-REQUIRED = ("length", "tau2", "force_scale")
+SI_UNITS = ("m", "s", "J", "W")
+"""SI_UNITS units of length, time, energy and power."""
+REQUIRED_QUANTITIES = ("length", "tau2", "force_scale")
 """Quantities of an arm from which its units are computed."""
 
 
@@ -92,16 +92,16 @@ class CycleUnits:
         return self.power * self.time / self.energy
 
     def time_text(self, time: float) -> str:
-        """A time with its unit as text, such as `53.91 s`; only for SI units."""
+        """A time with its unit as text, such as `53.91 s`; only for SI_UNITS units."""
         return f"{time:.4g}{NO_BREAK}{self.names[1]}"
 
     def drawn(self, values: dict[str, Array]) -> dict[str, Array]:
         """Variables of a point, by name, converted to these units; each of any shape."""
         factors: dict[str, Factor] = (
-            dict.fromkeys((*LENGTHS, *LENGTHS_OF_CYCLES), self.length)
-            | dict.fromkeys(TIMES, self.time)
-            | dict.fromkeys(ENERGIES, self.energy)
-            | dict.fromkeys(POWERS, self.power)
+            dict.fromkeys((*LENGTH_VARIABLES, *CYCLE_LENGTH_VARIABLES), self.length)
+            | dict.fromkeys(TIME_VARIABLES, self.time)
+            | dict.fromkeys(ENERGY_NAMES, self.energy)
+            | dict.fromkeys(POWER_NAMES, self.power)
         )
         return {name: value * factors[name] if name in factors else value for name, value in values.items()}
 
@@ -125,11 +125,11 @@ def units_over(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[C
     """Units for the points of each file, with factors (n,); dimensionless if a file has no arm. at: indices
     of the points of each file.
     """
-    if not all(name in view.quantities for view in views for name in REQUIRED):
+    if not all(name in view.quantities for view in views for name in REQUIRED_QUANTITIES):
         return [PLAIN_UNITS] * len(views)
     lengths, times, forces = (
         [quantities_at_points(view)[name][places] for view, places in zip(views, at, strict=True)]
-        for name in REQUIRED
+        for name in REQUIRED_QUANTITIES
     )
     powers = [force * length / time for force, length, time in zip(forces, lengths, times, strict=True)]
     energies = [force * length for force, length in zip(forces, lengths, strict=True)]
@@ -141,7 +141,7 @@ def units_over(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[C
     joule = compact(max(float(np.nanmax(energy)) for energy in energies), "J")[1]
     watt = compact(mean, "W")[1]
     names = (length, second, joule, watt)
-    scales = [written_in(1.0, unit, si) for unit, si in zip(names, SI, strict=True)]
+    scales = [written_in(1.0, unit, si) for unit, si in zip(names, SI_UNITS, strict=True)]
     columns = zip(lengths, times, energies, powers, strict=True)
     scaled = ([scale * column for scale, column in zip(scales, each, strict=True)] for each in columns)
     return [CycleUnits(a, t, e, p, in_si=True, names=names) for a, t, e, p in scaled]

@@ -21,21 +21,21 @@ MAP_ASPECT = 0.7
 """Least ratio of height to width of a map, whose slopes matter in both directions."""
 STRIP_ASPECT = 0.25
 """Least ratio of height to width of a panel with a curve over time, in a figure with several panels."""
-TALLEST = 9.5
+MAX_FIGURE_HEIGHT = 9.5
 """Largest height of a figure, in inches: the printable height of a page."""
 MAX_PASSES = 6
 """Largest number of layouts. Several are needed, because each change of the figure moves texts already
 measured."""
-MIN_HEIGHT = 0.45
+MIN_PANEL_HEIGHT = 0.45
 """Least height of a panel, in inches, at which two tick labels fit above each other."""
 SPARE_HEIGHT = 4.0
 """Height added to the figure while texts are measured, in inches, so that no panel shrinks to nothing."""
-SLACK = 1.03
+EQUAL_SCALE_SLACK = 1.03
 """Factor that enlarges the height of panels with equal scales. If height and width both just suffice,
 successive layouts alternate."""
-MARGIN = 0.04
+TEXT_MARGIN = 0.04
 """Least distance of a text from the edge of the figure, in inches."""
-WORDS = re.compile(r"(?:\\.|\$(?:\\.|[^$\\])*\$|[^\s$]|\xa0)+")
+WORD_PATTERN = re.compile(r"(?:\\.|\$(?:\\.|[^$\\])*\$|[^\s$]|\xa0)+")
 """Regular expression for a word of a text. Mathematics between dollar signs is part of a word, blanks
 included. A no-break space joins a number and its unit."""
 
@@ -54,7 +54,7 @@ def fit(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
             break
     # The texts fit; now remove the additional height, which does not lengthen any text.
     spare = _spare_height(figure, min_aspect)
-    figure.set_size_inches(width, max(height, min(height + SPARE_HEIGHT - spare, TALLEST)))
+    figure.set_size_inches(width, max(height, min(height + SPARE_HEIGHT - spare, MAX_FIGURE_HEIGHT)))
     for _ in range(MAX_PASSES):
         _lay_out(figure)
         if not thin_ticks(figure):
@@ -92,7 +92,7 @@ def break_lines(text: Text, room: float, upright: bool = False) -> bool:
     lines: list[str] = []
     for given in before.split("\n"):
         line = ""
-        for word in WORDS.findall(given):
+        for word in WORD_PATTERN.findall(given):
             longer = f"{line} {word}" if line else word
             text.set_text(longer)
             if line and length() > room:
@@ -107,7 +107,7 @@ def break_lines(text: Text, room: float, upright: bool = False) -> bool:
 
 def _break_texts(figure: Figure) -> bool:
     """Breaks headings and axis labels that are too long; returns whether any text changed."""
-    margin = MARGIN * figure.dpi
+    margin = TEXT_MARGIN * figure.dpi
     width = figure.bbox.width
     changed = [break_lines(heading, width - 2 * margin) for heading in figure.texts]
     for axes in figure.axes:
@@ -148,7 +148,7 @@ def _fit_legends(figure: Figure) -> bool:
     """Reduces the number of columns of legends that are too wide, and breaks long entries; returns whether
     any legend changed.
     """
-    room = figure.bbox.width - 2 * MARGIN * figure.dpi
+    room = figure.bbox.width - 2 * TEXT_MARGIN * figure.dpi
     changed = False
     for given in list(figure.legends):
         legend = given
@@ -193,7 +193,7 @@ def _spare_height(figure: Figure, min_aspect: float) -> float:
         label = axes.yaxis.label.get_window_extent().height / figure.dpi
         scale = axes.get_aspect()  # panels with equal scales have the aspect ratio of their data
         own = 0.0 if scale == "auto" else float(axes.get_data_ratio() * scale)
-        shape = max(min_aspect, SLACK * own)
-        least = max(shape * room.width * width, label + MARGIN, MIN_HEIGHT)
+        shape = max(min_aspect, EQUAL_SCALE_SLACK * own)
+        least = max(shape * room.width * width, label + TEXT_MARGIN, MIN_PANEL_HEIGHT)
         spare.append((room.height * height - least) / part)
     return min(spare)

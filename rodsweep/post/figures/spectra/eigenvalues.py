@@ -9,15 +9,15 @@ from matplotlib.lines import Line2D
 
 from ....results.file.view import View
 from ..lists import number_points, shared_parameters
-from ..style import FIRST, SECOND, heading, legend_below, parameter_text, require
+from ..style import BLUE, VERMILION, heading, legend_below, parameter_text, require
 
 SPREAD_RATIO = 100.0
 """Ratio of the largest to the smallest eigenvalue above which axes are symmetric logarithmic."""
-SMALLEST_SHOWN = 1e-6
+LINEAR_RANGE_FRACTION = 1e-6
 """Fraction of the largest eigenvalue up to which an axis is always linear."""
 LINEAR_FRACTION = 0.1
 """Fraction of the eigenvalues in the linear range of a symmetric logarithmic axis."""
-LOOKS = {True: (SECOND, "s", "growing mode"), False: (FIRST, "o", "decaying mode")}
+MODE_LOOKS = {True: (VERMILION, "s", "growing mode"), False: (BLUE, "o", "decaying mode")}
 """(colour, marker, legend entry) of a mode, by whether it grows."""
 MAX_NUMBERED = 8
 """Largest number of modes of which each is labelled with its number."""
@@ -72,7 +72,7 @@ def _mark(axes: Axes, x: np.ndarray, y: np.ndarray, grows: np.ndarray) -> list[L
     growing modes.
     """
     handles = []
-    for kind, (colour, marker, word) in LOOKS.items():
+    for kind, (colour, marker, word) in MODE_LOOKS.items():
         chosen = (grows == kind) & np.isfinite(y)
         if chosen.any():
             handles += axes.plot(x[chosen], y[chosen], marker, color=colour, mfc="none", ms=4.5, label=word)
@@ -86,5 +86,5 @@ def scale_if_spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
         sizes = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)
         if sizes.size and sizes.max() > SPREAD_RATIO * sizes.min():
-            smallest = max(float(np.quantile(sizes, LINEAR_FRACTION)), sizes.max() * SMALLEST_SHOWN)
+            smallest = max(float(np.quantile(sizes, LINEAR_FRACTION)), sizes.max() * LINEAR_RANGE_FRACTION)
             set_scale("symlog", linthresh=10 ** np.floor(np.log10(smallest)))

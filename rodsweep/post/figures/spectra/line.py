@@ -15,7 +15,7 @@ from ....results.file.view import View
 from ....sweep.points.points import lines_over
 from ...hopf_points import LocatedChange, StoredChanges
 from ..arm.quantities import NO_BREAK
-from ..style import FIRST, LABELS, SECOND, SYMBOLS, fixed_text, heading, legend_below, scale
+from ..style import BLUE, LABELS, SYMBOLS, VERMILION, fixed_text, heading, legend_below, scale
 from .eigenvalues import scale_if_spread
 
 FOLLOWED_ROOTS = {
@@ -109,7 +109,7 @@ def draw_line(view: View, name: str, roots: str) -> Figure:
     w = draw_roots(top, view, name, roots)
     mark_thresholds(top, view, name)
     if roots != "all":
-        for i, colour in enumerate((FIRST, SECOND)):
+        for i, colour in enumerate((BLUE, VERMILION)):
             bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3)
             _point_along(bottom, w[:, i], colour)
     else:
@@ -130,13 +130,13 @@ def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
     if roots != "all":
         x_broken, w = with_gaps(x, w)
         # Thin on thick, so that both show where they coincide.
-        for i, (colour, width) in enumerate(((FIRST, 3.0), (SECOND, 1.2))):
+        for i, (colour, width) in enumerate(((BLUE, 3.0), (VERMILION, 1.2))):
             look: dict[str, Any] = {"color": colour, "lw": width}
             axes.plot(x_broken, w[:, i].real, label=rf"$\mathrm{{Re}}\,\omega_{i + 1}$", **look)
             axes.plot(x_broken, w[:, i].imag, ":", label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$", **look)
     else:
         across = np.broadcast_to(x[:, None], w.shape)
-        for part, colour, marker in ((w.real, FIRST, "o"), (w.imag, SECOND, "s")):
+        for part, colour, marker in ((w.real, BLUE, "o"), (w.imag, VERMILION, "s")):
             word = rf"$\mathrm{{{'Re' if marker == 'o' else 'Im'}}}\,\omega$"
             axes.plot(
                 across.ravel(), part.ravel(), marker, color=colour, mfc="none", ms=2, mew=0.6, label=word

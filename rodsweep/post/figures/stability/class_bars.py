@@ -21,13 +21,13 @@ from ....results.layouts.thresholds import CROSSING_KINDS
 from ....results.layouts.variables import number_of
 from ....wording import plural
 from ..lists import number_points, shared_parameters
-from ..style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, parameter_text, require
+from ..style import BLUE, GREEN, LABELS, SYMBOLS, VERMILION, heading, legend_below, parameter_text, require
 
-WORDS = {"class": CLASSES, "stable_states": STABLE_STATES}
+CLASS_WORDS = {"class": CLASSES, "stable_states": STABLE_STATES}
 """(integer, word) pairs of each variable with classes."""
 STABILITY_CROSSINGS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
 """Codes of the kinds of crossings at which the stability of the straight rod may change."""
-ON_A_CHANGE = 1e-9
+CHANGE_TOLERANCE = 1e-9
 """Relative distance between a point and a change of class below which the point belongs to neither class."""
 CLASS_COLOURS = {
     "missing": "white",
@@ -50,11 +50,11 @@ STABLE_CLASS = {
 FURTHER_HOPF = "later"
 """Kind of a Hopf point at which a further pair of modes becomes unstable, while the rod is
 unstable already."""
-MARKS = {
-    "onset": (FIRST, "o", rf"onset ${SYMBOLS['F']}_*$"),
-    "hopf": (SECOND, "s", rf"Hopf ${SYMBOLS['F']}_{{**}}$"),
-    FURTHER_HOPF: (SECOND, "D", "further Hopf point"),
-    "restabilization": (THIRD, "^", "restabilization"),
+CROSSING_MARKS = {
+    "onset": (BLUE, "o", rf"onset ${SYMBOLS['F']}_*$"),
+    "hopf": (VERMILION, "s", rf"Hopf ${SYMBOLS['F']}_{{**}}$"),
+    FURTHER_HOPF: (VERMILION, "D", "further Hopf point"),
+    "restabilization": (GREEN, "^", "restabilization"),
 }
 """(colour, marker, legend entry) of a marked crossing, by kind."""
 BAR_WIDTH = 0.8
@@ -166,10 +166,10 @@ def mark_thresholds_on_bars(
     """
     kinds, F, after = map(view.by_point, ("crossing_kind", "crossing_F", "unstable_after"))
     hopf = kinds == CROSSING_KINDS.index("hopf")
-    chosen = {kind: kinds == CROSSING_KINDS.index(kind) for kind in MARKS if kind != FURTHER_HOPF}
+    chosen = {kind: kinds == CROSSING_KINDS.index(kind) for kind in CROSSING_MARKS if kind != FURTHER_HOPF}
     chosen |= {"hopf": hopf & (after <= 2), FURTHER_HOPF: hopf & (after > 2)}
     handles = []
-    for kind, (colour, marker, word) in MARKS.items():
+    for kind, (colour, marker, word) in CROSSING_MARKS.items():
         rods, places = np.nonzero(chosen[kind])
         if not rods.size:
             continue
@@ -203,11 +203,11 @@ def class_along_row(
         own = rows == view.axes[row][place]
         x = np.append(x, between[own])
         classes = np.append(classes, found[own])
-    decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > ON_A_CHANGE * np.abs(x)
+    decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > CHANGE_TOLERANCE * np.abs(x)
     pixels = (edges[1:] + edges[:-1]) / 2
     piece_of_pixels = np.searchsorted(changes, pixels)
     piece_of_points = np.searchsorted(changes, x)
-    found = np.full(len(pixels), number_of("undecided", WORDS[variable]), dtype=np.intp)
+    found = np.full(len(pixels), number_of("undecided", CLASS_WORDS[variable]), dtype=np.intp)
     for piece in np.unique(piece_of_pixels):
         own_pixels = piece_of_pixels == piece
         own_points = decided & (piece_of_points == piece)

@@ -10,7 +10,7 @@ from ....model.parameters import LINEAR_PARAMETERS
 from ....results.file.view import View
 from ....results.layouts.branch import SPECIAL_KINDS
 from ...stability_curves import bounds_stability
-from ..style import SYMBOLS, THIRD
+from ..style import GREEN, SYMBOLS
 from ..style import number as number_text
 
 CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")}
@@ -32,7 +32,7 @@ CYCLE_MARKS = {
 """(legend entry, marker) of special points of cycles on rows that lie on no curve, by kind."""
 ON_CURVE = 1e-3
 """Largest distance of a point from its curve, as a fraction of the axis; drawn chords deviate as much."""
-CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", THIRD)}
+CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", GREEN)}
 """(legend entry, colour) of curves of special points of cycles, by kind."""
 CHORD_ROUNDING = 1e-6
 """Relative rounding error in the distance of a curve's vertex from its own chord."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ..style import is_logarithmic
 
-PIXELS = 900
+PIXEL_COUNT = 900
 """Number of pixels along each axis. In a figure 183 mm wide a pixel measures 0.2 mm, half the width of the
 line over a boundary."""
 CURVE_STEP = 0.4
@@ -50,28 +50,30 @@ class ClassifiedPoints:
 
     def within(self, regions: NDArray[Any]) -> tuple["ClassifiedPoints", NDArray[Any]]:
         """(points inside the plane, region of each of these points). regions: number of the region of every
-        pixel, (PIXELS, PIXELS).
+        pixel, (PIXEL_COUNT, PIXEL_COUNT).
         """
         inside = ((self.at >= 0) & (self.at <= 1)).all(axis=1)
         at = self.at[inside]
         return ClassifiedPoints(at, self.classes[inside]), regions[tuple(_pixels(at).T)]
 
 
-def coloured(computed: ClassifiedPoints, further: ClassifiedPoints, curves: Sequence[Array]) -> NDArray[Any]:
-    """Class of each pixel, (PIXELS, PIXELS), lowest row first: the class of the nearest point in the same
-    region.
+def pixel_classes(
+    computed: ClassifiedPoints, further: ClassifiedPoints, curves: Sequence[Array]
+) -> NDArray[Any]:
+    """Class of each pixel, (PIXEL_COUNT, PIXEL_COUNT): the class of the nearest point in the same region.
 
-    further: points used in regions without a computed point. curves: boundaries, (m, 2) each, as fractions of
-    the axes. A region without any point takes the class of the nearest computed point.
+    The lowest row of pixels comes first. further: points used in regions without a computed point. curves:
+    boundaries, (m, 2) each, as fractions of the axes. A region without any point takes the class of the
+    nearest computed point.
     """
-    walls = np.zeros((PIXELS, PIXELS), bool)
+    walls = np.zeros((PIXEL_COUNT, PIXEL_COUNT), bool)
     for curve in curves:
         row, column = _pixels(_dense(curve)).T
         walls[row, column] = True
     regions, count = scipy.ndimage.label(~walls)
     known, region_of_known = computed.within(regions)
     sources = [(known, region_of_known), further.within(regions), (known, None)]
-    table = np.zeros((PIXELS, PIXELS), computed.classes.dtype)
+    table = np.zeros((PIXEL_COUNT, PIXEL_COUNT), computed.classes.dtype)
     for region in range(1, count + 1):
         pixels = np.nonzero(regions == region)
         for source, of_region in sources:
@@ -91,13 +93,13 @@ def _nearest(pixels: tuple[NDArray[Any], ...], places: Array, classes: NDArray[A
     """
     if (classes == classes[0]).all():
         return classes[0]
-    centres = (np.column_stack(pixels[::-1]) + 0.5) / PIXELS
+    centres = (np.column_stack(pixels[::-1]) + 0.5) / PIXEL_COUNT
     return classes[scipy.spatial.cKDTree(places).query(centres)[1]]
 
 
 def _pixels(places: Array) -> NDArray[np.intp]:
     """(row, column), (n,) each, of the pixels that contain the points, (n, 2)."""
-    return np.clip(places[:, ::-1] * PIXELS, 0, PIXELS - 1).astype(np.intp)
+    return np.clip(places[:, ::-1] * PIXEL_COUNT, 0, PIXEL_COUNT - 1).astype(np.intp)
 
 
 def _dense(curve: Array) -> Array:
@@ -107,7 +109,7 @@ def _dense(curve: Array) -> Array:
     plane is wide.
     """
     curve = curve[np.isfinite(curve).all(axis=1)]
-    edge = 0.5 / PIXELS  # rounding may move an end on the edge outside
+    edge = 0.5 / PIXEL_COUNT  # rounding may move an end on the edge outside
     steps = np.diff(curve, axis=0)
     with np.errstate(all="ignore"):  # a piece parallel to an axis gives infinities, which are right
         crossed = np.stack([(bound - curve[:-1]) / steps for bound in (-edge, 1 + edge)])
@@ -116,7 +118,7 @@ def _dense(curve: Array) -> Array:
     pieces = [curve[:1]]
     for i in np.flatnonzero(enters <= leaves):
         share = leaves[i] - enters[i]
-        count = int(share * np.abs(steps[i]).max() * PIXELS / CURVE_STEP) + 1
+        count = int(share * np.abs(steps[i]).max() * PIXEL_COUNT / CURVE_STEP) + 1
         pieces.append(curve[i] + steps[i] * np.linspace(enters[i], leaves[i], count + 1)[:, None])
     places = np.concatenate(pieces)
     return places[((places > -edge) & (places < 1 + edge)).all(axis=1)]

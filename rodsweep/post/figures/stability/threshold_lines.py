@@ -14,23 +14,23 @@ from ....results.file.view import View
 from .. import style
 
 CRITICAL_FORCES = (
-    ("F_onset", r"onset $\tilde F_*$", style.FIRST, "o", ":"),
-    ("F_hopf", r"Hopf $\tilde F_{**}$", style.SECOND, "s", "-"),
-    ("F_restabilization", "restabilization", style.THIRD, "^", "--"),
+    ("F_onset", r"onset $\tilde F_*$", style.BLUE, "o", ":"),
+    ("F_hopf", r"Hopf $\tilde F_{**}$", style.VERMILION, "s", "-"),
+    ("F_restabilization", "restabilization", style.GREEN, "^", "--"),
 )
 """(variable, legend entry, colour, marker, line style) of each kind of threshold; the colour is used for a
 single rod."""
-FILE_COLOURS = (style.FIRST, style.SECOND, style.THIRD, "#CC79A7", "#56B4E9", "0.3")
+FILE_COLOURS = (style.BLUE, style.VERMILION, style.GREEN, "#CC79A7", "#56B4E9", "0.3")
 """Colours of the files in a figure of several files."""
 LINE_STYLES = ("-", "--", ":")
 """Line styles of the values of the second parameter in one panel."""
 MAX_LINES = 6
 """Largest number of values of the second parameter whose lines have distinguishable colours."""
-DARKEST = 0.0
+DARKEST_SHADE = 0.0
 """Start of the used range of the colour map."""
 LIGHTEST_SHADE = 0.85
 """End of the used range of the colour map; lighter colours are invisible on white paper."""
-INDISTINCT = 0.01
+MIN_LINE_DISTANCE = 0.01
 """Distance of two lines, as a fraction of the largest force, below which one line stands for both."""
 HEADROOM = 1.05
 """Upper limit of the axis of forces, in units of the largest force."""
@@ -46,7 +46,7 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
     axes = figure.subplots()
     table = _table(view, along, other)
     style.require(view, np.isfinite(_abscissa(view, along)).sum() > 1, f"two finite values of {along}")
-    shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST, LIGHTEST_SHADE, len(table)))
+    shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST_SHADE, LIGHTEST_SHADE, len(table)))
     for values, shade in zip(table, shades, strict=True):
         handles = _draw(axes, _abscissa(view, along), values, {"color": shade} if other else {"ls": "-"})
     if other:
@@ -211,7 +211,7 @@ def _alike(lines: dict[int, Array]) -> list[list[int]]:
         for group in groups:
             other = lines[group[0]]
             same = np.isnan(values) == np.isnan(other)
-            if same.all() and np.nanmax(np.abs(values - other), initial=0.0) < INDISTINCT * size:
+            if same.all() and np.nanmax(np.abs(values - other), initial=0.0) < MIN_LINE_DISTANCE * size:
                 group.append(number)
                 break
         else:

@@ -22,15 +22,15 @@ Lines = list[str]
 """Lines of text."""
 ANSWER_DIGITS = 3
 """Largest number of significant digits in an answer; numbers with larger errors have fewer."""
-FAILED = "failed"
+FAILED_STATUS = "failed"
 """Status of a point without a result, whose solve failed."""
-NO_CYCLE = {
+NO_CYCLE_WORDS = {
     "straight": "does not beat",
     "unstable": "has a cycle that it leaves at the least disturbance",
     "torus": "beats without repeating",
     "not_settled": "is not settled: no stable cycle was found, but one may exist",
     "left_the_model": "is crushed somewhere or loses its stiffness, where the model ends",
-    FAILED: "is not known: the integration failed",
+    FAILED_STATUS: "is not known: the integration failed",
 }
 """Words about an arm without a stable cycle, by status."""
 
@@ -75,7 +75,7 @@ def _of_search(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Cal
     """
 
     def lines(view: View, rods: np.ndarray) -> Lines:
-        failed = rods & view.with_status(FAILED)
+        failed = rods & view.with_status(FAILED_STATUS)
         unsolved = [f"not known{_share(failed, rods)}: the search failed"] if failed.any() else []
         if (failed == rods).all():
             return unsolved
@@ -153,7 +153,7 @@ def _of_cycles(view: View, rods: np.ndarray) -> Lines:
     errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}
     cycles = rods & view.with_status("cycle")
     if not cycles.any():  # where some arms beat, the line with all outcomes counts the others
-        masks = {words: rods & view.with_status(status) for status, words in NO_CYCLE.items()}
+        masks = {words: rods & view.with_status(status) for status, words in NO_CYCLE_WORDS.items()}
         return [f"{words}{_share(mask, rods)}" for words, mask in masks.items() if mask.any()]
     beats = cycles[rods]
     wide, rate = (

@@ -22,20 +22,20 @@ from ...tables.rows import quantities_at_points
 from ..errors import errors_of, is_known
 from ..ranges import RANGE_DIGITS, rounded, span
 
-WIDTH = 80
+SI_LINE_WIDTH = 80
 """Largest length of a line in SI units, in characters."""
 FEW_ITEMS = 4
 """Largest number of values in a table that are listed one by one; more values are given as a range."""
-TYPED_AS = {"m": ("length",), "Pa": ("pressure", "young"), "N": ("force",)}
+TYPED_UNIT_SOURCES = {"m": ("length",), "Pa": ("pressure", "young"), "N": ("force",)}
 """Quantities whose unit, as typed by the user, all numbers with an SI unit take. The first quantity that the
 user typed decides."""
-PREFIXED = ("J", "W")
+PREFIXED_UNITS = ("J", "W")
 """SI units that get a prefix, such as mW."""
 SHORT_TIME = 0.1
 """Time below which times are written with a prefix, such as ms; in s."""
 AXIS_DIGITS = 3
 """Number of significant digits of a quantity that identifies a point of the file."""
-WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
+QUANTITY_WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
 """Words for quantities of an arm whose names are unclear."""
 THRESHOLD_SENTENCES = {
     "hopf": "flutters at {load}{rate}",
@@ -45,17 +45,17 @@ THRESHOLD_SENTENCES = {
 """Sentence on the load at which the straight arm changes, by kind of change."""
 
 
-def word(name: str) -> str:
+def quantity_words(name: str) -> str:
     """Words for the quantity of an arm with the given name."""
-    return WORDS.get(name, name.replace("_", " "))
+    return QUANTITY_WORDS.get(name, name.replace("_", " "))
 
 
 def own_unit(view: View, si: str, largest: float) -> tuple[float, str]:
     """(factor, unit) that converts numbers up to `largest` from the SI unit `si` to the arm's own unit."""
-    typed = next((view.typed[name] for name in TYPED_AS.get(si, ()) if name in view.typed), si)
+    typed = next((view.typed[name] for name in TYPED_UNIT_SOURCES.get(si, ()) if name in view.typed), si)
     if typed != si:
         return written_in(1.0, typed, si), typed
-    if si == "s" and largest < SHORT_TIME or si in PREFIXED:
+    if si == "s" and largest < SHORT_TIME or si in PREFIXED_UNITS:
         return compact(largest, si)
     return 1.0, si
 
@@ -116,7 +116,7 @@ def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray
     extent = " to ".join(f"{end:.{AXIS_DIGITS + 1}g}" for end in sorted(set(ends)))
     if name in RELATIVE:
         return f"{extent} of flutter"
-    return f"{word(name)} {extent} {unit}".rstrip()
+    return f"{quantity_words(name)} {extent} {unit}".rstrip()
 
 
 def _unit(view: View, name: str) -> str:
@@ -167,8 +167,8 @@ def _numbers(values: np.ndarray, errors: np.ndarray) -> str:
 
 
 def wrapped(text: str) -> list[str]:
-    """`text` as indented lines of at most WIDTH characters; no line ends at a no-break space."""
-    lines = textwrap.wrap(text, WIDTH - 2, break_long_words=False, break_on_hyphens=False)
+    """`text` as indented lines of at most SI_LINE_WIDTH characters; no line ends at a no-break space."""
+    lines = textwrap.wrap(text, SI_LINE_WIDTH - 2, break_long_words=False, break_on_hyphens=False)
     return ["  " + line.replace("\xa0", " ") for line in lines]
 
 

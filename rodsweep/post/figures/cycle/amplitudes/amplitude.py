@@ -14,14 +14,16 @@ from .....config.task.limit_cycle import LONGEST
 from .....errors import InputError
 from .....results.file.view import View
 from .....results.layouts.limit_cycle import CYCLE_WORDS
-from ...style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, plain, require, scale
+from ...style import BLUE, GREEN, LABELS, SYMBOLS, VERMILION, heading, legend_below, plain, require, scale
 from ..selection import shared_and_own, shared_and_own_of_arms
 from ..units import units_over
 from .branches import AmplitudeBranch, abscissa, branches_of
 from .hopf_marks import draw_laws, mark_hopf_points
 
 BRANCH_LOOKS = tuple(
-    zip((FIRST, SECOND, THIRD, "#CC79A7", "#56B4E9", "#000000"), ("o", "s", "^", "D", "v", "P"), strict=True)
+    zip(
+        (BLUE, VERMILION, GREEN, "#CC79A7", "#56B4E9", "#000000"), ("o", "s", "^", "D", "v", "P"), strict=True
+    )
 )
 """(colour, marker) of each line, with colours from Okabe and Ito's palette."""
 MIN_ARROW_POINTS = 4

@@ -17,7 +17,7 @@ HOPF_WORDS = {"hopf": f"${HOPF_SYMBOL}$", "restabilization": "restabilization"}
 """Legend entry of a Hopf point by kind: as F grows, the straight rod becomes unstable, or stable again."""
 HOPF_DIGITS = 6
 """Number of significant digits of a Hopf point in a legend."""
-DOTTED: dict[str, Any] = {"ls": ":", "lw": 1.1}
+HOPF_LINE_LOOK: dict[str, Any] = {"ls": ":", "lw": 1.1}
 """Line style of a vertical line at a Hopf point."""
 SHARED_GREY = "0.3"
 """Colour of a Hopf point that several lines share."""
@@ -49,13 +49,13 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange
         for point, colours in places:
             colour = colours.pop() if len(colours) == 1 else SHARED_GREY
             for axes in panels:
-                axes.axvline(point.position, color=colour, zorder=0.5, **DOTTED)
+                axes.axvline(point.position, color=colour, zorder=0.5, **HOPF_LINE_LOOK)
         if len(places) == 1:
             equals = f"{word} = " if kind == "hopf" else rf"{word} at $\tilde F$ = "
             label = f"{equals}{places[0][0].position:.{HOPF_DIGITS}g}"
-            handles.append(Line2D([], [], color=colour, label=label, **DOTTED))
+            handles.append(Line2D([], [], color=colour, label=label, **HOPF_LINE_LOOK))
         elif places:
-            handles.append(Line2D([], [], color=SHARED_GREY, label=word, **DOTTED))
+            handles.append(Line2D([], [], color=SHARED_GREY, label=word, **HOPF_LINE_LOOK))
     return handles
 
 

@@ -13,11 +13,11 @@ import numpy as np
 from .....arrays import Array
 from ....hopf_points import LocatedChange
 
-FARTHEST_FITTED = 0.1
+MAX_FITTED_DISTANCE = 0.1
 """Largest |F - F**|/|F**| of a cycle to which a law is fitted. Farther away higher-order terms matter."""
-LARGEST_DEPARTURE = 0.2
+MAX_LAW_DEVIATION = 0.2
 """Largest relative difference between the amplitudes and a law in the range in which the law is drawn."""
-SAFETY = 2.0
+ERROR_SAFETY_FACTOR = 2.0
 """Factor from the change of a coefficient by one more cycle to its error estimate."""
 MIN_ERRORS_AWAY = 100
 """Least distance of a fitted cycle from F**, in units of the error of F**; the distance is then known to one
@@ -37,8 +37,8 @@ class SquareRootLaw:
     end: float
     """F farthest from F** at which the amplitude follows the law."""
     error: float
-    """Error estimate of a, in L: SAFETY times its change by a third cycle; with two cycles, its change by
-    extrapolation to F**."""
+    """Error estimate of a, in L: ERROR_SAFETY_FACTOR times the change of a by a third cycle; with two cycles,
+    times its change by extrapolation to F**."""
 
     def curve(self, points: int = 100) -> tuple[Array, Array]:
         """(F, amplitude) of the law from F** to `end`, (points,) each; dense near F**."""
@@ -74,20 +74,20 @@ def _law(F: Array, amplitude: Array, point: LocatedChange, side: int) -> SquareR
     gap = np.flatnonzero(~(size > 0))  # another branch begins behind a gap
     distance = distance[: gap[0] if gap.size else None]
     size = size[: gap[0] if gap.size else None]
-    if len(size) < 2 or distance[1] > FARTHEST_FITTED:
+    if len(size) < 2 or distance[1] > MAX_FITTED_DISTANCE:
         return None
     q = size[:2] ** 2 / distance[:2]
     square = q[0] - distance[0] * (q[1] - q[0]) / (distance[1] - distance[0])
     if square <= 0:
         return None
-    follows = np.abs(np.sqrt(square * distance) / size - 1) <= LARGEST_DEPARTURE
+    follows = np.abs(np.sqrt(square * distance) / size - 1) <= MAX_LAW_DEVIATION
     if not follows[:2].all():
         return None
     last = len(size) if follows.all() else int(np.argmin(follows))
     end = point.position + side * abs(point.position) * float(distance[last - 1])
     third = size[:3] ** 2 / distance[:3]
-    better = _at_zero(distance[:3], third) if len(third) > 2 and distance[2] <= FARTHEST_FITTED else q[0]
-    error = SAFETY * abs(sqrt(max(better, 0.0)) - sqrt(square))
+    better = _at_zero(distance[:3], third) if len(third) > 2 and distance[2] <= MAX_FITTED_DISTANCE else q[0]
+    error = ERROR_SAFETY_FACTOR * abs(sqrt(max(better, 0.0)) - sqrt(square))
     return SquareRootLaw(point.position, sqrt(square), side > 0, end, error)
 
 
