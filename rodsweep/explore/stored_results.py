@@ -20,7 +20,7 @@ from .solving.branches import drawn_branches
 from .solving.diagrams import Dataset, words_of
 from .state import PageState
 
-Found = dict[str, Any]
+AnswerVariables = dict[str, Any]
 """Variables of an answer, by name."""
 CONTROL_DIGITS = (5, 6)
 """Numbers of significant digits to which controls round values. A rounded value in a control matches the
@@ -40,7 +40,7 @@ class StoredResults:
     state: state with which the page opens. diagram: answer to the question "diagram" for this state, or None.
     """
 
-    def __init__(self, path: Path, data: Dataset, state: PageState, diagram: Found | None):
+    def __init__(self, path: Path, data: Dataset, state: PageState, diagram: AnswerVariables | None):
         self.path = path
         self.data = data
         self.state = state
@@ -50,7 +50,7 @@ class StoredResults:
         self.has_cycles = "tip_y_max" in data and data["tip_y_max"].dims == self.dims
         """Whether each point has one cycle."""
 
-    def answer(self, kind: str, state: PageState) -> Found | None:
+    def answer(self, kind: str, state: PageState) -> AnswerVariables | None:
         """Stored answer to a question of the kind `kind` for a state of the page; None if the
         file has none.
         """
@@ -119,7 +119,7 @@ class StoredResults:
             {POINT_DIMENSION: numbers}
         )
 
-    def _cycle(self, state: PageState) -> Found | None:
+    def _cycle(self, state: PageState) -> AnswerVariables | None:
         """Stored cycle of the rod of `state`; None if the file does not store its shapes."""
         numbers = self._points(state)
         if len(numbers) == 0 or "shape_x" not in self.data:
@@ -131,7 +131,7 @@ class StoredResults:
         is_drawn = np.isfinite(point["shape_x"].values).all()
         if status == "missing" or (not is_drawn and not (state.law == "linear" and "taper" not in point)):
             return None
-        found: Found = {str(name): array.values for name, array in point.variables.items()}
+        found: AnswerVariables = {str(name): array.values for name, array in point.variables.items()}
         u = point["u"].values
         return found | {
             "status": status, "sentence": sentences_in(self.data.attrs).get(status, ""),
@@ -140,7 +140,7 @@ class StoredResults:
             "x": (1 - F / k1) * u, "y": np.zeros(len(u)),
         }  # fmt: skip
 
-    def _cycles_over_force(self, state: PageState) -> Found | None:
+    def _cycles_over_force(self, state: PageState) -> AnswerVariables | None:
         """Stored cycles of the rod of `state` at all forces; None if the file has fewer than two forces."""
         numbers = self._points(state, (state.load,))
         if len(numbers) < 2:
@@ -154,7 +154,7 @@ class StoredResults:
         cycles = {"F": line["F"].values[known], "y": y[known], "stable": stable}
         return {"pieces": [], "special": [], "cycles": cycles, **self._found()}
 
-    def _branch(self, state: PageState) -> Found | None:
+    def _branch(self, state: PageState) -> AnswerVariables | None:
         """Stored branches of the rod of `state` along the force; None if the file has none."""
         numbers = self._points(state, (state.load,))
         if len(numbers) == 0 or "branch_F" not in self.data:
@@ -166,7 +166,7 @@ class StoredResults:
         stop = float(json.loads(self.data.attrs["config_resolved"])["branch"]["stop"])
         return drawn_branches(RodBranches(view_of(self.data, self.path), rod), stop) | self._found()
 
-    def _found(self) -> Found:
+    def _found(self) -> AnswerVariables:
         return {"status": "ok", "sentence": "", "source": f"stored in {self.path.name}"}
 
 

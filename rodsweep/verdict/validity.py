@@ -28,7 +28,8 @@ MAX_THINNING_ITERATIONS = 20
 """Maximum number of iterations of `thickness_factor`. Ten suffice if inertia of arm and fluid are
 comparable."""
 VISCOSITY_TARGET = 0.995
-"""Ratio of required to actual viscosity at which the iteration of `thickness_factor` aims."""
+"""Ratio of required to actual viscosity at which an iteration of `thickness_factor` aims; below 1, so that
+inertia ends within its limit."""
 MIN_VISCOSITY_RATIO = 0.99
 """Stopping criterion of `thickness_factor`: a ratio of required to actual viscosity between this number and
 1. The thickness then has two correct digits."""

@@ -25,7 +25,7 @@ from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS, class_alon
 from rodsweep.post.figures.stability.diagram_curves import mark_cycles_on_rows
 from rodsweep.post.figures.stability.regions import PIXEL_COUNT, ClassifiedPoints, pixel_classes
 from rodsweep.post.figures.stability.threshold_lines import _alike
-from rodsweep.post.figures.style import INVERSE_DRAG, LABELS, number, scale
+from rodsweep.post.figures.style import INVERSE_DRAG_LABEL, LABELS, number, scale
 from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.file.view import View, read_view
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -218,7 +218,7 @@ def test_powers_of_ten_are_written_as_such(value, written):
 
 
 def test_labels_of_dimensionless_parameters_have_no_unit():
-    assert not any("[" in label for label in [*LABELS.values(), INVERSE_DRAG])
+    assert not any("[" in label for label in [*LABELS.values(), INVERSE_DRAG_LABEL])
 
 
 def test_flutter_is_marked_at_its_threshold_however_coarse_the_forces_are(command):

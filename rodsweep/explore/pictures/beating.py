@@ -22,7 +22,7 @@ from .card import (
     empty_source,
     new_figure,
     sentence_of,
-    show_range,
+    set_axis_range,
 )
 
 PERIOD_SECONDS = 2.0
@@ -145,8 +145,8 @@ class BeatingPicture:
         """
         factor = self.length.factor
         reach = 1.15 * max(0.3 * factor, float(np.abs(y).max()))
-        show_range(self.card.figure.y_range, -reach, reach)
-        show_range(self.card.figure.x_range, min(0.0, float(x.min())) - 0.1 * factor, 1.1 * factor)
+        set_axis_range(self.card.figure.y_range, -reach, reach)
+        set_axis_range(self.card.figure.x_range, min(0.0, float(x.min())) - 0.1 * factor, 1.1 * factor)
 
 
 def source_of(x: Array, y: Array) -> dict[str, Any]:

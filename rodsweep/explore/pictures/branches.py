@@ -18,7 +18,7 @@ from .card import (
     empty_source,
     limits,
     new_figure,
-    show_range,
+    set_axis_range,
     vertical_line,
 )
 
@@ -93,8 +93,8 @@ class BranchPicture:
             drawn = [*(piece[:2] for piece in pieces), (cycles["F"], cycles["y"])]
             all_F, all_y = (np.concatenate([each[i] for each in drawn]) for i in range(2))
             margin = SIDE_MARGIN if len(cycles["F"]) else 0.0
-            show_range(self.card.figure.x_range, *limits(all_F * load.factor, margin))
-            show_range(self.card.figure.y_range, *limits(all_y * length.factor))
+            set_axis_range(self.card.figure.x_range, *limits(all_F * load.factor, margin))
+            set_axis_range(self.card.figure.y_range, *limits(all_y * length.factor))
             self.card.figure.xaxis.axis_label = load.label
             self.card.figure.yaxis.axis_label = f"largest tip deflection ({length.label})"
         special = [(F * load.factor, y * length.factor, *rest) for F, y, *rest in found["special"]]

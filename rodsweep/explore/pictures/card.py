@@ -74,7 +74,7 @@ def limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
     return low - pad, high + pad
 
 
-def show_range(axis: Range1d, start: float, end: float) -> None:
+def set_axis_range(axis: Range1d, start: float, end: float) -> None:
     """Sets the ends of an axis, now and after a click on the reset button of the figure."""
     axis.update(start=start, end=end, reset_start=start, reset_end=end)
 

@@ -23,7 +23,7 @@ from .card import (
     Card,
     empty_source,
     new_figure,
-    show_range,
+    set_axis_range,
 )
 
 BOUNDARY_COLOURS = {"double": NEUTRAL_COLOUR, "onset": NEUTRAL_COLOUR, "hopf": UNSTABLE_COLOUR}
@@ -159,8 +159,8 @@ class DiagramPicture:
             "colour": [BOUNDARY_COLOURS.get(kind, STABLE_COLOUR) for kind in kinds],
         }
         figure = self.card.figure
-        show_range(figure.x_range, float(x[0]), float(x[-1]))
-        show_range(figure.y_range, float(grid[0].bottom), float(grid[-1].top))
+        set_axis_range(figure.x_range, float(x[0]), float(x[-1]))
+        set_axis_range(figure.y_range, float(grid[0].bottom), float(grid[-1].top))
         figure.xaxis.axis_label = load.label
         figure.yaxis.axis_label = second.label
         self.card.reveal()

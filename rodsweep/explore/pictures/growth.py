@@ -16,7 +16,7 @@ from .card import (
     empty_source,
     limits,
     new_figure,
-    show_range,
+    set_axis_range,
     vertical_line,
 )
 from .numbers import SI_NAMES
@@ -76,8 +76,8 @@ class GrowthPicture:
         F = found["F"] * load.factor
         self.rates.data = columns(F=F, **{name: rates[:, i] for i, name in enumerate(names)})
         leading = rates[:, 0]
-        show_range(self.card.figure.y_range, *limits(np.append(leading[np.isfinite(leading)], 0.0)))
-        show_range(self.card.figure.x_range, F[0], F[-1])
+        set_axis_range(self.card.figure.y_range, *limits(np.append(leading[np.isfinite(leading)], 0.0)))
+        set_axis_range(self.card.figure.x_range, F[0], F[-1])
         self.card.figure.xaxis.axis_label = load.label
         self.card.figure.yaxis.axis_label = f"growth rate ({found['unit']})"
         self.card.reveal()

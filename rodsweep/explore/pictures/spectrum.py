@@ -15,7 +15,7 @@ from .card import (
     limits,
     new_figure,
     sentence_of,
-    show_range,
+    set_axis_range,
     vertical_line,
 )
 from .numbers import SI_NAMES
@@ -51,8 +51,8 @@ class SpectrumPicture:
         colour_script = np.where(growth > 0, UNSTABLE_COLOUR, STABLE_COLOUR)
         self.source.data = columns(growth=growth, frequency=frequency, colour=colour_script)
         figure = self.card.figure
-        show_range(figure.x_range, *limits(np.append(growth, 0.0)))
-        show_range(figure.y_range, *limits(frequency))
+        set_axis_range(figure.x_range, *limits(np.append(growth, 0.0)))
+        set_axis_range(figure.y_range, *limits(frequency))
         figure.xaxis.axis_label, figure.yaxis.axis_label = (
             f"{word} ({found['units'][name]})"
             for word, name in zip(("growth rate", "frequency"), names, strict=True)
@@ -98,5 +98,5 @@ class ModePicture:
             self.card.say(sentence_of(found))
             return
         self.source.data = columns(u=found["u"], real=real, imaginary=imaginary)
-        show_range(self.card.figure.y_range, *limits(np.append(real, imaginary)))
+        set_axis_range(self.card.figure.y_range, *limits(np.append(real, imaginary)))
         self.card.reveal()

@@ -23,7 +23,7 @@ from .branches import drawn_branches
 from .diagrams import Dataset, cycle_diagram, diagram, words_of
 from .letting_go import Tip, bent, motion, motion_film_answer
 
-Found = dict[str, Any]
+AnswerVariables = dict[str, Any]
 """Variables of an answer, by name: arrays; text for `status`, `sentence` and `message`."""
 MODE_COUNT = 6
 """Number of eigenvalues in the picture of the spectrum."""
@@ -59,35 +59,35 @@ class Reply(NamedTuple):
     """
 
     outcome: str
-    content: Found
+    content: AnswerVariables
     seconds: float
 
 
-def variables(answer: Answer) -> Found:
+def variables(answer: Answer) -> AnswerVariables:
     """All variables of the result `answer` by name, with its status, the meaning of the status, message and
     units.
     """
-    found: Found = {str(name): array.values for name, array in answer.data.variables.items()}
+    found: AnswerVariables = {str(name): array.values for name, array in answer.data.variables.items()}
     return found | {
         "status": str(answer.status), "sentence": answer.sentence, "message": answer.message,
         "units": answer.units,
     }  # fmt: skip
 
 
-def spectrum(state: PageState) -> Found:
+def spectrum(state: PageState) -> AnswerVariables:
     """Leading eigenvalues of the straight rod with the number of unstable modes, and the shapes
     of the modes.
     """
     return variables(state.subject().spectrum(modes=MODE_COUNT, vectors=True, progress=False))
 
 
-def thresholds(state: PageState) -> Found:
+def thresholds(state: PageState) -> AnswerVariables:
     """Forces at which the stability of the straight rod changes; `kinds`: words of `crossing_kind`."""
     answer = state.subject().thresholds(F_max=state.largest_force(), progress=False)
     return variables(answer) | {"kinds": words_of(answer.data["crossing_kind"]).tolist()}
 
 
-def growth(state: PageState) -> Found:
+def growth(state: PageState) -> AnswerVariables:
     """Growth rates of the leading modes over F; `unit`: "1/tau2" for a rod, "1/s" for an arm."""
     subject = state.subject()
     tau2 = subject.tau2 if isinstance(subject, Arm) else 1.0
@@ -104,12 +104,12 @@ def growth(state: PageState) -> Found:
     return {"F": F, "growth_rate": rates, "unit": unit, "unstable_count": count}
 
 
-def cycle(state: PageState) -> Found:
+def cycle(state: PageState) -> AnswerVariables:
     """Limit cycle with shapes of the arm over a period; x, y: shape of the straight arm."""
     return variables(state.subject().cycle(shapes=SHAPE_COUNT, progress=False)) | bent(state, None)
 
 
-def film(state: PageState) -> Found:
+def film(state: PageState) -> AnswerVariables:
     """Film of the limit cycle, as made by `rodsweep plot`: the content of a GIF file, under the name `gif`.
     Raises InputError for a rod without a cycle.
     """
@@ -119,12 +119,12 @@ def film(state: PageState) -> Found:
     return film_of(answer)
 
 
-def film_of(cycle: Answer | Dataset) -> Found:
+def film_of(cycle: Answer | Dataset) -> AnswerVariables:
     """Film of a limit cycle with solved shapes: the content of a GIF file, under the name `gif`."""
     return {"gif": plot(cycle, what="animation").image}
 
 
-def branch(state: PageState) -> Found:
+def branch(state: PageState) -> AnswerVariables:
     """Branches of cycles over F.
 
     pieces: (F, y, stability) of each part of a branch or of the straight rod; stability is 1, 0, or -1 if
@@ -143,7 +143,7 @@ def crushing_force(rod: Mapping[str, float]) -> float:
     return rod["k1"] * min(1.0, rod.get("taper", DEFAULTS.get("taper", 1.0))) ** 2
 
 
-ANSWERS: dict[str, Callable[[PageState], Found]] = {
+ANSWERS: dict[str, Callable[[PageState], AnswerVariables]] = {
     "spectrum": spectrum,
     "thresholds": thresholds,
     "growth": growth,
@@ -154,7 +154,7 @@ ANSWERS: dict[str, Callable[[PageState], Found]] = {
     "film": film,
 }
 """Function that answers each kind of question about the state of the page."""
-ANSWERS_TO_TIP: dict[str, Callable[[PageState, Tip], Found]] = {
+ANSWERS_TO_TIP: dict[str, Callable[[PageState, Tip], AnswerVariables]] = {
     "bent": bent,
     "motion": motion,
     "film": motion_film_answer,
@@ -162,7 +162,7 @@ ANSWERS_TO_TIP: dict[str, Callable[[PageState, Tip], Found]] = {
 """Function that answers each kind of question about a dragged tip."""
 
 
-def answer_to(question: Question) -> Found:
+def answer_to(question: Question) -> AnswerVariables:
     """Answer to a question: variables by name. Raises InputError for invalid values in the state
     of the page.
     """

@@ -11,14 +11,20 @@ from .cycle.energy import draw_energy
 from .cycle.maps import draw_maps
 from .cycle.point_map import is_map, point_map, varied_parameters
 from .cycle.portrait import draw_portrait
-from .cycle.selection import ENERGY_VARIABLES, MAX_CYCLES, SHAPE_VARIABLES, TRACE_VARIABLES, chosen_cycles
+from .cycle.selection import (
+    ENERGY_BUDGET_VARIABLES,
+    MAX_CYCLES,
+    SHAPE_VARIABLES,
+    TRACE_VARIABLES,
+    chosen_cycles,
+)
 from .cycle.transient import draw_transients
 from .layout.fitting import MAP_ASPECT, STRIP_ASPECT
 from .request import KINDS_OF_TASK, FigureRequest
 
 ALL_POINT_FIGURES = {"amplitude": "amplitudes", "maps": "maps"}
 """Kinds of figures that show all points of a file, with their names in a sentence."""
-NEEDED_VARIABLES = {"cycle": SHAPE_VARIABLES, "animation": SHAPE_VARIABLES, "energy": ENERGY_VARIABLES}
+NEEDED_VARIABLES = {"cycle": SHAPE_VARIABLES, "animation": SHAPE_VARIABLES, "energy": ENERGY_BUDGET_VARIABLES}
 """Variables of a cycle without which a kind of figure cannot be drawn."""
 FEW_POINT_FIGURES = {"cycle": draw_portrait, "energy": draw_energy, "transient": draw_transients}
 """Function of each kind of figure that shows a few points."""

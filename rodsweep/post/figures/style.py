@@ -19,9 +19,9 @@ SYMBOLS = {name: parameter.symbol for name, parameter in PARAMETERS.items()}
 """Symbols of the parameters in TeX, by name."""
 LABELS = {name: f"{p.meaning} ${p.symbol}$" for name, p in PARAMETERS.items()}
 """Labels of axes, by parameter. A tilde marks a dimensionless symbol, which needs no unit."""
-CRITICAL_FORCE = f"critical force ${SYMBOLS['F']}$"
+CRITICAL_FORCE_LABEL = f"critical force ${SYMBOLS['F']}$"
 """Label of an axis of critical forces."""
-INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$"
+INVERSE_DRAG_LABEL = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$"
 """Label of an axis of 1/gamma3."""
 BLUE = "#0072B2"
 """Blue of Okabe and Ito's palette, whose colours colour-blind readers can distinguish."""

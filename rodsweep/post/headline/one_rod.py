@@ -129,8 +129,8 @@ class OneRod:
         return found
 
     def preferred(self, digits: ColumnTexts, name: str) -> str:
-        """Name of the variable that is printed for `name`: its SI variable if the table has one, else `name`
-        itself.
+        """Name of the variable that is printed for `name`: its SI variable if `digits` has such a column,
+        else `name` itself.
         """
         return self.si.get(name, name) if self.si.get(name) in digits.columns else name
 

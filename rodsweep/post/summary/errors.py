@@ -23,7 +23,7 @@ RELATIVE_ERRORS = {
     "transient_growth": "growth_error",
     "longitudinal_rate": "longitudinal_error",
 }
-"""Variable with the relative error, by variable."""
+"""Name of the variable with the relative error, by name of the variable."""
 ABSOLUTE_ERRORS = {
     "growth_rate": "error_estimate",
     "frequency": "error_estimate",
@@ -34,15 +34,15 @@ ABSOLUTE_ERRORS = {
     "crossing_at": "crossing_error",
     "crossing_frequency": "crossing_frequency_error",
 }
-"""Variable with the absolute error, by variable. `frequency` has this error only in files without
-a period."""
+"""Name of the variable with the absolute error, by name of the variable. `frequency` has this error only in
+files without a period."""
 COMPLEX_VARIABLES = ("landau", "growth_slope")
 """Complex variables, stored as real and imaginary part, with an error relative to the modulus."""
 EXTREMA_VARIABLES = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretch")
 """Variables of a cycle whose stored error is in units of tip_y_max."""
 MAX_DIP_BETWEEN_NODES = 1e-3
 """Bound on how far h1 between nodes lies below its least nodal value, as a fraction of |1 - h1|."""
-POWER_VARIABLES = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
+CYCLE_POWER_VARIABLES = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
 """Mean powers and rms fluctuations, whose errors follow from the errors of amplitude, period and energy
 balance."""
 UNKNOWN_FROM_ERROR = 0.5
@@ -69,7 +69,7 @@ def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     values = np.abs(v[name])
     if name in STRAIGHT_EIGENVALUE:
         return EIGENVALUE_ERROR * np.hypot(*(v[part] for part in STRAIGHT_EIGENVALUE))
-    if name in POWER_VARIABLES and "amplitude_error" in v:
+    if name in CYCLE_POWER_VARIABLES and "amplitude_error" in v:
         return values * power_error(v, fluctuation=name.endswith("rms"))
     if name in EXTREMA_VARIABLES and "extrema_error" in v:
         beside = MAX_DIP_BETWEEN_NODES * np.abs(1 - v[name]) if name == "least_stretch" else 0.0

@@ -14,7 +14,7 @@ from matplotlib.ticker import EngFormatter, MaxNLocator
 
 from ....model.arm.quantities import SCALE_OF, UNITS
 from ....results.file.view import View
-from ..style import CRITICAL_FORCE, LABELS
+from ..style import CRITICAL_FORCE_LABEL, LABELS
 
 SCALES_WITH_SECOND_AXIS = ("linear", "log")
 """Scales of an axis for which matplotlib places the ticks of a second scale correctly."""
@@ -35,7 +35,7 @@ def add_si_scales(figure: Figure, views: Sequence[View]) -> None:
     for axes in list(figure.axes):
         for which in ("x", "y"):
             label, scale = (getattr(axes, f"get_{which}{what}")() for what in ("label", "scale"))
-            if label in (LABELS["F"], CRITICAL_FORCE) and scale in SCALES_WITH_SECOND_AXIS:
+            if label in (LABELS["F"], CRITICAL_FORCE_LABEL) and scale in SCALES_WITH_SECOND_AXIS:
                 _add(_outermost(axes, which), which, unit, load)
 
 

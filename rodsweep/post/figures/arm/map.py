@@ -47,7 +47,7 @@ DRAG = "drag"
 BAND_OPACITY = 0.25
 """Opacity of the band between the smallest and the largest value over all drags."""
 EMPTY_CELL_LOOK: dict[str, Any] = {"fc": "#E8EDF2"}
-"""Look of cells with a rod but without a value, such as a rod without flutter."""
+"""Look of cells whose arm corresponds to a rod but has no result, such as a rod without flutter."""
 MAP_HATCH_COLOUR = "0.35"
 """Grey of hatches, and of the edges of covered cells."""
 
@@ -132,8 +132,8 @@ def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], place: An
 
 
 def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[Artist]:
-    """Draws a panel as lines over one quantity; returns legend entries. place: index of the drawn points in
-    the grid.
+    """Draws a panel as lines over the quantity `name`; returns legend entries. place: index of the drawn
+    points in the grid.
     """
     x, label = _axis(view, name)
     colours = (style.VERMILION, style.BLUE, style.GREEN)
@@ -153,7 +153,9 @@ def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[
 
 
 def _band(axes: Axes, view: View, x: str, values: Array, place: Any, colour: str) -> list[Artist]:
-    """Draws the range of a result over the drags as a band over the values x; returns its legend entry."""
+    """Draws the range of a result over the drags as a band; returns its legend entry. x: name of the quantity
+    on the horizontal axis.
+    """
     if DRAG not in view.over or x == DRAG or len(view.variables[DRAG]) < 2:
         return []
     drag = view.over.index(DRAG)

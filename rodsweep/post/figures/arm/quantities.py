@@ -55,7 +55,7 @@ def at_point(view: View, name: str, number: int) -> float:
     return float(values.ravel()[number - 1])
 
 
-def replaced(view: View, number: int) -> dict[str, float]:
+def replaced_parameters(view: View, number: int) -> dict[str, float]:
     """Parameters at a point that the config gives instead of the arm's own, by name; number: from 1."""
     given: dict[str, Any] = {name: at_point(view, name, number) for name in given_quantities(view)}
     if "drag" in given:

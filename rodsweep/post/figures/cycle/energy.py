@@ -12,7 +12,7 @@ from ...summary.errors import power_error
 from ...summary.ranges import rounded
 from ..arm.quantities import NO_BREAK
 from ..style import BLUE, GREEN, VERMILION, legend_below
-from .selection import ENERGY_VARIABLES, StoredCycle, chosen_cycles, in_tex
+from .selection import ENERGY_BUDGET_VARIABLES, StoredCycle, chosen_cycles, in_tex
 
 RATE_MARK_COUNT = 24
 """Number of times at which marks of dU/dt are drawn over the curve of injection minus dissipation."""
@@ -25,7 +25,7 @@ def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tupl
     The marks of dU/dt are derivatives of the stored energy U, computed independently of the curve on which
     they must lie. narrow: whether the page is narrow.
     """
-    selection = chosen_cycles(view, points, ENERGY_VARIABLES)
+    selection = chosen_cycles(view, points, ENERGY_BUDGET_VARIABLES)
     cycles = selection.cycles
     figure = Figure(figsize=(3.6 * len(cycles) + 1.0, 6.4), layout="constrained")
     rows = figure.subplots(
@@ -61,7 +61,9 @@ def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     top, middle, bottom = column
     phase = np.linspace(0, 1, 401, dtype=np.float64)
     time = phase * cycle.period
-    energy, injection, dissipation = (resampled(cycle.values[name], phase) for name in ENERGY_VARIABLES)
+    energy, injection, dissipation = (
+        resampled(cycle.values[name], phase) for name in ENERGY_BUDGET_VARIABLES
+    )
     top.plot(time, energy, color="k", lw=1.5)
     mean = float(cycle.values["injection_mean"])
     middle.axhline(mean, color="0.6", lw=0.9, ls=":", label="mean injection", zorder=1)

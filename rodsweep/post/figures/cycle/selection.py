@@ -14,7 +14,7 @@ from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
 from ...summary.ranges import rounded
-from ..arm.quantities import at_point, given_quantities, quantity_text, replaced
+from ..arm.quantities import at_point, given_quantities, quantity_text, replaced_parameters
 from ..style import heading, parameter_text
 from .units import PLAIN_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_of
 
@@ -22,7 +22,7 @@ MAX_CYCLES = 3
 """Largest number of cycles that fit side by side into one figure."""
 SHAPE_VARIABLES = ("shape_x", "shape_y", "shape_theta")
 """Names of the variables with the shapes over a period."""
-ENERGY_VARIABLES = ("energy", "injection", "dissipation")
+ENERGY_BUDGET_VARIABLES = ("energy", "injection", "dissipation")
 """Names of the variables with the energy budget over a period."""
 TRACE_VARIABLES = ("transient_time", "transient_x", "transient_y")
 """Names of the variables with the motion from the initial state."""
@@ -182,7 +182,7 @@ def _refuse_bad_points(view: View, points: Sequence[int]) -> None:
             raise InputError(f"--point {number}: {view.path} has the points 1 to {count}")
 
 
-def shared_and_own(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:
+def shared_and_own_texts(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:
     """(text of the parameters with equal values in all mappings, text of the other parameters of each
     mapping).
     """
@@ -198,7 +198,7 @@ def shared_and_own_of_points(view: View, numbers: Sequence[int]) -> tuple[str, l
     if all(name in view.quantities for name in REQUIRED_QUANTITIES):
         return shared_and_own_of_arms(view, numbers)
     columns = view.point_columns
-    return shared_and_own([{name: float(columns[name][n - 1]) for name in columns} for n in numbers])
+    return shared_and_own_texts([{name: float(columns[name][n - 1]) for name in columns} for n in numbers])
 
 
 def shared_and_own_of_arms(
@@ -213,7 +213,9 @@ def shared_and_own_of_arms(
     texts = []
     for number in numbers:
         given = {n: quantity_text(view, n, at_point(view, n, number)) for n in given_quantities(view)}
-        own = {name: parameter_text({name: value}) for name, value in replaced(view, number).items()}
+        own = {
+            name: parameter_text({name: value}) for name, value in replaced_parameters(view, number).items()
+        }
         texts.append({name: text for name, text in (given | own).items() if name not in without})
     shared = {name: text for name, text in texts[0].items() if all(each[name] == text for each in texts)}
     labels = [", ".join(text for name, text in each.items() if name not in shared) for each in texts]

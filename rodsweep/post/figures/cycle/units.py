@@ -19,9 +19,9 @@ CYCLE_LENGTH_VARIABLES = ("tip_x_min", "tip_x_max", "tip_y_max")
 """Names of variables that are lengths, with one value for each cycle."""
 TIME_VARIABLES = ("period", "transient_time")
 """Names of variables that are times."""
-ENERGY_NAMES = ("energy",)
+ENERGY_VARIABLES = ("energy",)
 """Names of variables that are energies."""
-POWER_NAMES = ("injection", "dissipation", "injection_mean", "dissipation_mean")
+POWER_VARIABLES = ("injection", "dissipation", "injection_mean", "dissipation_mean")
 """Names of variables that are powers."""
 SHORT_PERIOD = 0.1
 """Period, in s, below which times have a prefix, such as ms; longer times are in seconds."""
@@ -100,8 +100,8 @@ class CycleUnits:
         factors: dict[str, Factor] = (
             dict.fromkeys((*LENGTH_VARIABLES, *CYCLE_LENGTH_VARIABLES), self.length)
             | dict.fromkeys(TIME_VARIABLES, self.time)
-            | dict.fromkeys(ENERGY_NAMES, self.energy)
-            | dict.fromkeys(POWER_NAMES, self.power)
+            | dict.fromkeys(ENERGY_VARIABLES, self.energy)
+            | dict.fromkeys(POWER_VARIABLES, self.power)
         )
         return {name: value * factors[name] if name in factors else value for name, value in values.items()}
 

@@ -71,8 +71,8 @@ def _thin_powers(axis: Axis, shown: int) -> bool:
 
 
 def _thin_decades(axis: Axis, locator: LogLocator) -> bool:
-    """Labels only 1 and 3 of each decade, or 1 alone, if two labels remain; returns whether labels were
-    removed.
+    """Labels fewer numbers of each decade: 1 and 3, 1 alone, or 2 alone; returns whether labels
+    were removed.
     """
     low, high = sorted(axis.get_view_interval())
     for subs in ((1.0, 3.0), (1.0,), (2.0,)):

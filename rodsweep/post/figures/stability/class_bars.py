@@ -24,7 +24,7 @@ from ..lists import number_points, shared_parameters
 from ..style import BLUE, GREEN, LABELS, SYMBOLS, VERMILION, heading, legend_below, parameter_text, require
 
 CLASS_WORDS = {"class": CLASSES, "stable_states": STABLE_STATES}
-"""(integer, word) pairs of each variable with classes."""
+"""(code, word) of every value of the variables `class` and `stable_states`, by variable."""
 STABILITY_CROSSINGS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
 """Codes of the kinds of crossings at which the stability of the straight rod may change."""
 CHANGE_TOLERANCE = 1e-9

@@ -30,7 +30,7 @@ CYCLE_MARKS = {
     "period_doubling": ("period doublings", "v"),
 }
 """(legend entry, marker) of special points of cycles on rows that lie on no curve, by kind."""
-ON_CURVE = 1e-3
+CURVE_TOLERANCE = 1e-3
 """Largest distance of a point from its curve, as a fraction of the axis; drawn chords deviate as much."""
 CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", GREEN)}
 """(legend entry, colour) of curves of special points of cycles, by kind."""
@@ -152,7 +152,7 @@ def _on_curves(view: View, kind: int, line: str, row: str, x: Array, y: Array) -
         share = np.divide(before, before - after, out=np.zeros_like(before), where=before != after)
         places = along[:-1, None] + share * np.diff(along)[:, None]
         off = np.where(before * after <= 0, np.abs(places - x), np.inf)
-        near |= off.min(axis=0, initial=np.inf) <= ON_CURVE * np.ptp(v[line])
+        near |= off.min(axis=0, initial=np.inf) <= CURVE_TOLERANCE * np.ptp(v[line])
     return near
 
 

@@ -55,7 +55,7 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
             for value, shade in zip(view.axes[other].tolist(), shades, strict=True)
         ]
     _label(axes, view, along, table)
-    axes.set_ylabel(style.CRITICAL_FORCE)
+    axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=3)
     figure.suptitle(style.heading(view, style.fixed_text(view, *long), searched))
     words = f"critical forces against {along}" + (f" for every {other}" if other else "")
@@ -77,7 +77,7 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
     if style.is_logarithmic(forces):
         style.scale(axes, "y", forces)
         axes.set_ylim(forces[0] / HEADROOM, forces[-1] * HEADROOM)
-    axes.set_ylabel(style.CRITICAL_FORCE)
+    axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=2)
     figure.suptitle("\n".join(filter(None, (style.fixed_text(longest, along), searched))))
     return figure, f"critical forces against {along} of {len(views)} files" + _left_out(longest, [along])
@@ -94,7 +94,7 @@ def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str)
     for panel, along, other in zip(panels, long, reversed(long), strict=True):
         drawn.append(f"{_some_lines(panel, view, along, other)} of {len(view.axes[other])} values of {other}")
         if narrow or panel is panels[0]:
-            panel.set_ylabel(style.CRITICAL_FORCE)
+            panel.set_ylabel(style.CRITICAL_FORCE_LABEL)
     handles = [
         Line2D([], [], color=colour, marker=marker, ms=3, lw=1.2, label=word)
         for name, word, colour, marker, _ in CRITICAL_FORCES
@@ -165,7 +165,7 @@ def _label(axes: Axes, view: View, along: str, table: Array) -> None:
     """Labels the horizontal axis and sets its scale. The axis of forces starts at 0."""
     x = _abscissa(view, along)
     style.scale(axes, "x", np.sort(x[np.isfinite(x)]))
-    axes.set_xlabel(style.INVERSE_DRAG if along == "gamma3" else style.LABELS[along])
+    axes.set_xlabel(style.INVERSE_DRAG_LABEL if along == "gamma3" else style.LABELS[along])
     highest = max(float(np.nanmax(table, initial=0.0)) * HEADROOM, axes.get_ylim()[1] if axes.lines else 0.0)
     axes.set_ylim(0, highest or 1.0)
 

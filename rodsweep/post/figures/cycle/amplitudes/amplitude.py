@@ -15,7 +15,7 @@ from .....errors import InputError
 from .....results.file.view import View
 from .....results.layouts.limit_cycle import CYCLE_WORDS
 from ...style import BLUE, GREEN, LABELS, SYMBOLS, VERMILION, heading, legend_below, plain, require, scale
-from ..selection import shared_and_own, shared_and_own_of_arms
+from ..selection import shared_and_own_of_arms, shared_and_own_texts
 from ..units import units_over
 from .branches import AmplitudeBranch, abscissa, branches_of
 from .hopf_marks import draw_laws, mark_hopf_points
@@ -148,7 +148,7 @@ def _names(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[st
     if branches[0].units.in_si and all(branch.view is view for branch in branches):
         along = {name, *(quantity for quantity, moved in CHANGED_PARAMETER.items() if moved == name)}
         return shared_and_own_of_arms(view, [branch.first for branch in branches], along)
-    return shared_and_own([branch.parameters for branch in branches])
+    return shared_and_own_texts([branch.parameters for branch in branches])
 
 
 def _label(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:
