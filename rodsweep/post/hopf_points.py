@@ -63,7 +63,7 @@ class BracketedChange:
     """`hopf` if the rod is unstable above the interval, `restabilization` if it is stable."""
 
 
-def place_of(change: LocatedChange | BracketedChange) -> float:
+def sort_position(change: LocatedChange | BracketedChange) -> float:
     """Parameter value by which changes are sorted: the position, or the lower end of the
     bracketing interval.
     """
@@ -111,7 +111,7 @@ class StoredChanges:
 
     def up_to(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
         """Changes on a line and at smaller values of the parameter, as far down as the search reached."""
-        return sorted({*self.on(line), *self._stored(line, -inf)}, key=place_of)
+        return sorted({*self.on(line), *self._stored(line, -inf)}, key=sort_position)
 
     def _stored(self, line: ParameterLine, low: float) -> list[LocatedChange]:
         """Located changes between the parameter value `low` and the last point of a line."""
@@ -139,7 +139,7 @@ class StoredChanges:
             high = float(x[i + 1])
             if sum(_within(point, low, high) for point in changes) % 2 == 0:
                 found.append(BracketedChange(low, high, "hopf" if grows[i + 1] else "restabilization"))
-        return sorted(found, key=place_of)
+        return sorted(found, key=sort_position)
 
 
 def _within(point: LocatedChange, low: float, high: float) -> bool:

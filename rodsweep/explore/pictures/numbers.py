@@ -7,7 +7,7 @@ import numpy as np
 
 from ..texts import PageText
 
-ROWS = {
+TABLE_ROWS = {
     "spectrum": {
         "growth_rate": "growth rate", "growth_rate_si": "growth rate", "frequency": "frequency",
         "frequency_hz": "frequency", "unstable_count": "unstable modes",
@@ -53,13 +53,13 @@ class NumbersTable:
         """Replaces the rows for a kind of question by the numbers of the answer `found`; None removes the
         rows.
         """
-        if kind not in ROWS:
+        if kind not in TABLE_ROWS:
             return
         if found is None:
             self.found.pop(kind, None)
         else:
             self.found[kind] = found
-        parts = [_rows(name, self.found[name]) for name in ROWS if name in self.found]
+        parts = [_rows(name, self.found[name]) for name in TABLE_ROWS if name in self.found]
         self.root.text = f"<table>{''.join(parts)}</table>"
 
 
@@ -75,7 +75,7 @@ def number_text(value: Any, factor: float = 1.0) -> str:
 
 def _rows(kind: str, found: dict[str, Any]) -> str:
     rows = []
-    for name, meaning in ROWS[kind].items():
+    for name, meaning in TABLE_ROWS[kind].items():
         if name not in found or SI_NAMES.get(name, f"{name}_si") in found:
             continue
         unit, factor = TABLE_UNITS.get(found["units"][name], (found["units"][name], 1.0))

@@ -8,7 +8,7 @@ FORMULA = re.compile(r"\$(.+?)(?<!\\)\$")
 """Formula between two dollar signs."""
 DERIVATIVE = re.compile(r"\\dot\s*(?:\{([^{}]*)\}|(\w))")
 """TeX command for a time derivative, a dot above its argument."""
-WITH_ARGUMENT = re.compile(r"\\(?:mathrm|text|tilde|mathit)\s*(?:\{([^{}]*)\}|(\w))")
+COMMAND_WITH_ARGUMENT = re.compile(r"\\(?:mathrm|text|tilde|mathit)\s*(?:\{([^{}]*)\}|(\w))")
 """TeX command that is replaced by its argument: upright text, or a mark above a letter."""
 SUBSCRIPT = re.compile(r"_(?:\{([^{}]*)\}|(.))")
 """TeX subscript."""
@@ -41,7 +41,7 @@ def _formula(tex: str) -> str:
     previous = None
     while previous != tex:  # arguments may contain commands
         previous = tex
-        tex = WITH_ARGUMENT.sub(lambda found: found[1] or found[2] or "", tex)
+        tex = COMMAND_WITH_ARGUMENT.sub(lambda found: found[1] or found[2] or "", tex)
     tex = SUBSCRIPT.sub(lambda found: found[1] or found[2], tex)
     tex = POWER.sub(lambda found: _power(found[1] or found[2]), tex)
     return COMMAND.sub(lambda found: _sign(found[1]), tex).replace("{", "").replace("}", "")

@@ -10,8 +10,8 @@ from ...wording import counted, is_or_are, some_of
 from ..branch_curves import Range, RodBranches, StoredBranch, ends_of, followed_parameter
 from .errors import span_of
 from .ranges import listed, rounded, span, to_error
-from .summary_lines import SummaryLines, at_point, completeness, first_lines
-from .thresholds import not_known
+from .summary_lines import SummaryLines, at_point, first_lines, proof_clause
+from .thresholds import unknown_clause
 
 LIST_TOO_SHORT = "they have more special points than the list holds; raise branch.special"
 """Reason why branches are not shown, and remedy."""
@@ -186,7 +186,7 @@ def _rods_with(
         for rod, own in zip(rods, ranges, strict=True)
         if own
     ]
-    yield f"{words} at {some_of(len(having), len(rods), 'rod')}{not_known(unknown)}"
+    yield f"{words} at {some_of(len(having), len(rods), 'rod')}{unknown_clause(unknown)}"
     yield from first_lines(having, "rod")
 
 
@@ -196,6 +196,6 @@ def _searched(view: View, done: np.ndarray) -> str:
     along = followed_parameter(view)
     proved = some_of(view.variables["certified"][done].sum(), done.sum(), "rod")
     return (
-        f"followed in {along} from {start:g} to {stop:g}; the list of Hopf points {completeness(view)} at "
+        f"followed in {along} from {start:g} to {stop:g}; the list of Hopf points {proof_clause(view)} at "
         f"{proved}; cycles that lie on no branch from a Hopf point are not found"
     )

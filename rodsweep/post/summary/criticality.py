@@ -11,8 +11,8 @@ from ...wording import counted, some_of
 from .arm.arm import crossings_of_arm
 from .errors import errors_of
 from .ranges import number_and_error, rounded, span
-from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, region
-from .thresholds import ENDED_EARLY, not_known, not_known_beyond, not_stored
+from .summary_lines import SummaryLines, TextTable, in_brackets, proof_clause, region
+from .thresholds import ENDED_EARLY, unknown_beyond_clause, unknown_clause, unstored_clause
 
 CRITICALITY_WORDS = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Word for the criticality of a Hopf point, by sign of Re c."""
@@ -40,7 +40,7 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
             none = f"no Hopf point up to F = {span(v['F_end'])}"
         of_rod = view.of_point(0)
         lines = list(_hopf_lines(of_rod)) or [none]
-        lines[0] += not_known_beyond(view, float(of_rod["F_end"]))
+        lines[0] += unknown_beyond_clause(view, float(of_rod["F_end"]))
         trust = [_searched(view, done)]
         return SummaryLines(lines, trust, of_arm=crossings_of_arm(view), numbers=_hopf_table(of_rod))
     side = v["criticality"][done]
@@ -49,7 +49,9 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
     with_hopf = v["crossing_count"] > 0
     where = in_brackets(region(view, done & with_hopf)) if (done & with_hopf).any() else ""
     unknown = int(((v["crossing_count"] < 0) | (view.with_status(ENDED_EARLY) & ~with_hopf))[done].sum())
-    lines = [f"Hopf points at {some_of(with_hopf[done].sum(), done.sum(), 'rod')}{where}{not_known(unknown)}"]
+    lines = [
+        f"Hopf points at {some_of(with_hopf[done].sum(), done.sum(), 'rod')}{where}{unknown_clause(unknown)}"
+    ]
     if not known.any():
         return SummaryLines(lines, [_searched(view, done)])
     a, b = (
@@ -153,8 +155,8 @@ def _searched(view: View, done: np.ndarray) -> str:
     rods = int(done.sum())
     hidden = int(v["crossing_count"][done].clip(min=0).sum() - (v["crossing_kind"][done] > 0).sum())
     return (
-        f"searched up to F = {span(v['F_end'][done])}; the list of Hopf points {completeness(view)} at "
-        f"{some_of(certified, rods, 'rod')}{not_stored(hidden)}"
+        f"searched up to F = {span(v['F_end'][done])}; the list of Hopf points {proof_clause(view)} at "
+        f"{some_of(certified, rods, 'rod')}{unstored_clause(hidden)}"
     )
 
 

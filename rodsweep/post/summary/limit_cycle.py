@@ -14,7 +14,7 @@ from .arm.arm import region_of_arms
 from .errors import errors_of, span_of
 from .ranges import error_text, number_and_error, span
 from .stability import stability_lines
-from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, region, varied
+from .summary_lines import SummaryLines, TextTable, in_brackets, proof_clause, region, varied
 
 OUTCOME_WORDS = {"cycle": "beats", "straight": "stays straight"}
 """Words for the outcome at a point, by status; an unlisted status is a word itself."""
@@ -98,7 +98,7 @@ def _proof_lines(view: View) -> list[str]:
     if not lines:
         return []
     proved = some_of(int(v["hopf_lines_proved"]), lines, "line")
-    return [f"the list of Hopf points between the points {completeness(view)} on {proved}"]
+    return [f"the list of Hopf points between the points {proof_clause(view)} on {proved}"]
 
 
 def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:

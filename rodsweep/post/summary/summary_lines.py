@@ -93,6 +93,8 @@ def in_brackets(text: str) -> str:
     return f" ({text})" if text else ""
 
 
-def completeness(view: View) -> str:
-    """Sentence on how far the list of crossings in a file is proved complete."""
+def proof_clause(view: View) -> str:
+    """Predicate on the list of crossings in a file: proved complete for uniform linear rods, else confirmed
+    by counts of modes.
+    """
     return "is proved complete" if has_covering(view.config) else "is confirmed by counts of unstable modes"

@@ -12,7 +12,7 @@ from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted, plural, some_of
 from .arm.arm import crossings_of_arm
 from .ranges import error_text, number_and_error, rounded, span
-from .summary_lines import SummaryLines, TextTable, at_point, completeness, in_brackets
+from .summary_lines import SummaryLines, TextTable, at_point, in_brackets, proof_clause
 
 FIRST_THRESHOLD_WORDS = {
     "hopf": ("F** (straight rod starts to beat)", "hopf_frequency", "frequency", ANGULAR_UNIT),
@@ -50,7 +50,7 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
     rods = int(done.sum())
     searched = v["crossing_count"].ravel() >= 0
     decided = searched & ~np.isfinite(v["open_from"].ravel()) & ~view.with_status(ENDED_EARLY).ravel()
-    unknown = not_known(int((done.ravel() & ~found & ~decided).sum()))
+    unknown = unknown_clause(int((done.ravel() & ~found & ~decided).sum()))
     if not found.any():
         return f"{words}: at none of {counted(rods, 'rod')}{unknown}"
     low = int(np.nanargmin(F))
@@ -62,7 +62,7 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
     return f"{words}: F = {forces}, at {where}{unknown}; {noun} {span(v[rate][done])} {unit}"
 
 
-def not_known_beyond(view: View, F: float) -> str:
+def unknown_beyond_clause(view: View, F: float) -> str:
     """Clause on the forces beyond F, for a single rod whose search stopped early at F; empty for a complete
     search.
     """
@@ -81,7 +81,7 @@ def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
 def crossing_lines(view: View) -> list[str]:
     """Lines about the number of crossings of the only rod in a file, and the meaning of their kinds."""
     v = view.of_point(0)
-    end = f"F = {v['F_end']:.15g}{not_known_beyond(view, float(v['F_end']))}"
+    end = f"F = {v['F_end']:.15g}{unknown_beyond_clause(view, float(v['F_end']))}"
     if kinds := [CROSSING_KINDS[int(kind)] for kind in v["crossing_kind"][v["crossing_kind"] > 0]]:
         firsts = {word: v[f"F_{event}"] for event, word in FIRST_CROSSING_WORDS.items()}
         words = ", ".join(f"{word} F = {F:.6g}" for word, F in firsts.items() if np.isfinite(F))
@@ -122,18 +122,20 @@ def trust_of_one(view: View) -> list[str]:
     hidden = int(v["crossing_count"]) - int((v["crossing_kind"] > 0).sum())
     proof = "proved complete" if has_covering(view.config) else "confirmed by counts of unstable modes"
     proof = proof if v["certified"] else f"not {proof}"
-    lines = [f"searched up to F = {v['F_end']:.15g}; the list of crossings is {proof}{not_stored(hidden)}"]
+    lines = [
+        f"searched up to F = {v['F_end']:.15g}; the list of crossings is {proof}{unstored_clause(hidden)}"
+    ]
     if np.isfinite(v["open_from"]):
         lines.append(f"undecided: F = {v['open_from']:.9g} to {v['open_to']:.9g}")
     return lines
 
 
-def not_known(count: int) -> str:
+def unknown_clause(count: int) -> str:
     """Clause on the number of rods whose search failed or left a range of F unsearched; empty for 0."""
     return f", not known at {counted(count, 'rod')}" if count else ""
 
 
-def not_stored(hidden: int) -> str:
+def unstored_clause(hidden: int) -> str:
     """Clause on the number of crossings for which the list had no room; empty for 0."""
     verb = "is" if hidden == 1 else "are"
     return f"; {hidden} more {verb} not stored, raise the option crossings" if hidden > 0 else ""
@@ -187,9 +189,9 @@ def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
     window = f"; a range stays undecided on {counted(undecided, noun)}" if undecided else ""
     hidden = int((v["crossing_count"][done] - stored).clip(min=0).sum())
     return [
-        f"the list of crossings {completeness(view)} on {proved}{window}",
+        f"the list of crossings {proof_clause(view)} on {proved}{window}",
         f"crossings stored: {int(stored.sum())}, at most {int(stored.max())} on a {noun}{worst}"
-        f"{not_stored(hidden)}",
+        f"{unstored_clause(hidden)}",
     ]
 
 
@@ -203,11 +205,12 @@ def cost_lines(view: View, done: np.ndarray) -> list[str]:
     v = view.variables
     boxes, solves = (v[name][done] for name in ("boxes", "solves"))
     return [
-        f"cost of a search: {spans(boxes, 'evaluation')} of D over a box, {spans(solves, 'eigenproblem')}"
+        f"cost of a search: {count_range(boxes, 'evaluation')} of D over a box, "
+        f"{count_range(solves, 'eigenproblem')}"
     ]
 
 
-def spans(values: np.ndarray, noun: str) -> str:
-    """Range of the integers `values`, (n,), as text, with the noun for what is counted."""
+def count_range(values: np.ndarray, noun: str) -> str:
+    """Range of the integer counts `values`, (n,), as text. noun: what is counted."""
     text = span(values)
     return f"{text} {noun if text == '1' else plural(noun)}"

@@ -86,7 +86,7 @@ def _writer(output: Path, rate: int) -> AbstractMovieWriter:
 
 
 class MovingArm:
-    """Animated arm in one panel, with its tip, force and earlier shapes."""
+    """Animated arm in one panel, with its follower force, earlier shapes in grey, and the running time."""
 
     def __init__(self, axes: Axes, cycle: StoredCycle) -> None:
         self.axes = axes
