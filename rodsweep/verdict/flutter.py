@@ -132,8 +132,9 @@ def flutter_range(arm: SlenderArm) -> FlutterRange:
 
 
 def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, FlutterForces]:
-    """(end of the search, changes of stability up to the end). The end exceeds the first flutter force and
-    the load by the factor MIN_SEARCH_RATIO.
+    """(end of the search, changes of stability up to the end). For an arm that is not uniform or not of
+    linear material, the end exceeds the first flutter force and the load by the factor MIN_SEARCH_RATIO, if
+    possible.
     """
     known_load = arm.load is not None and arm.share_of_flutter is None
     for end in SEARCH_ENDS_OF_VARIED if arm.shape.varies else (SEARCH_END,):

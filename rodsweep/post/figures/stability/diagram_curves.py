@@ -31,7 +31,7 @@ CYCLE_MARKS = {
 }
 """(legend entry, marker) of special points of cycles on rows that lie on no curve, by kind."""
 CURVE_TOLERANCE = 1e-3
-"""Largest distance of a point from its curve, as a fraction of the axis; drawn chords deviate as much."""
+"""Distance, as a fraction of the axis, up to which a point lies on a curve drawn by chords."""
 CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", GREEN)}
 """(legend entry, colour) of curves of special points of cycles, by kind."""
 CHORD_ROUNDING = 1e-6
