@@ -12,8 +12,8 @@ from ..wording import counted, duration, plural
 
 
 def time_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
-    """Lines about the computing time of the points in the mask `done`; an empty list if no point
-    is computed.
+    """Lines about the computing time of the points in the mask `done`, of any shape; empty if no point is
+    computed.
     """
     if not done.any():
         return []

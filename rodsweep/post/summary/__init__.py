@@ -127,7 +127,7 @@ def _print_numbers(console: Console, table: TextTable) -> None:
 
 def _answer(view: View, done: np.ndarray, summary: SummaryLines) -> list[str]:
     """Lines of the answer; for an arm first in SI units, then dimensionless. done: mask of the computed
-    points.
+    points, of the points' shape.
     """
     if not view.quantities or not done.any():
         return [*summary.answer]

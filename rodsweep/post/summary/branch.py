@@ -39,7 +39,7 @@ BRANCH_END_WORDS = {
 
 
 def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary of branches. done: mask of the computed points."""
+    """Lines of the summary of branches. done: mask of the computed points, of the points' shape."""
     if done.size == 1:
         return SummaryLines(list(_one_rod(RodBranches(view))), [_searched(view, done)])
     v = view.variables

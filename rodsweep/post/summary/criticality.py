@@ -32,7 +32,7 @@ HOPF_NUMBERS = {
 
 
 def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary of Hopf points. done: mask of the computed points."""
+    """Lines of the summary of Hopf points. done: mask of the computed points, of the points' shape."""
     v = view.variables
     if done.size == 1:
         none = "its Hopf points are not known"

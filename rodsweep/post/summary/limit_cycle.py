@@ -28,7 +28,7 @@ CYCLE_NUMBERS = (
 
 
 def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary of limit cycles. done: mask of the computed points."""
+    """Lines of the summary of limit cycles. done: mask of the computed points, of the points' shape."""
     v = view.variables
     beats = done & view.with_status("cycle")
     orbit = done & view.with_status(*CYCLE_WORDS)
@@ -57,8 +57,8 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
 def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarray], str]) -> str:
     """Line on the number of points with each outcome, and on the region in which they lie.
 
-    done: mask of the computed points. region: function of the view and a mask that describes the points in
-    the mask.
+    done: mask of the computed points, of the points' shape. region: function that describes the points of a
+    mask.
     """
     status = view.variables["status"]
     whole = counted(int(done.sum()), "point")

@@ -30,7 +30,7 @@ GRID_RESOLUTION = 1e-8
 
 
 def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary of a phase diagram. done: mask of the computed rows."""
+    """Lines of the summary of a phase diagram. done: mask of the computed rows, of the rows' shape."""
     v = view.variables
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next(name for name in view.parameters if len(view.axes[name]) > 1)
@@ -56,7 +56,7 @@ def count_lines(found: np.ndarray) -> list[str]:
 def saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
     """Line on the cost of the rows compared with a uniform grid; an empty list if the cost is not stored.
 
-    done: mask of the computed rows. line: parameter that varies along a row.
+    done: mask of the computed rows, of the rows' shape. line: parameter that varies along a row.
     """
     if not has_covering(view.config):
         return []
@@ -74,7 +74,7 @@ def saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
 
 def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     """Lines about the fraction of the plane with each stable state, and changes of cycles. done: mask of the
-    computed rows.
+    computed rows, of the rows' shape.
     """
     v = view.variables
     of_row = view.point_columns[row].reshape(done.shape)
@@ -108,7 +108,7 @@ def share_lines(found: np.ndarray) -> list[str]:
 
 def start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
     """Line on the classes at the starts of the rows; an empty list if all are monotone. done: mask of the
-    computed rows.
+    computed rows, of the rows' shape.
     """
     start = view.variables["class"][done][:, 0]
     words = [f"{word} on {int((start == n).sum())}" for n, word in CLASSES if (start == n).any()]
@@ -156,7 +156,7 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
 
 def crossings_of_arms(view: View, done: np.ndarray) -> list[str]:
     """Lines about the changes of the straight arm along F, in the arm's units. done: mask of the computed
-    rows.
+    rows, of the rows' shape.
     """
     if not view.quantities or "F" in view.parameters:
         return []

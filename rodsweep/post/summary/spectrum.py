@@ -25,7 +25,7 @@ PROOF_WORDS = {True: "proved by a winding number", False: "not proved"}
 
 
 def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary of spectra. done: mask of the computed points."""
+    """Lines of the summary of spectra. done: mask of the computed points, of the points' shape."""
     if done.size == 1:
         return SummaryLines([count_line(view)], [], unknowns_lines(view, done), [], eigenvalue_table(view))
     lines, how, of_arm = threshold_lines(view)
@@ -35,7 +35,7 @@ def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def stable_line(view: View, done: np.ndarray) -> str:
-    """Line on how many straight rods are stable. done: mask of the computed points."""
+    """Line on how many straight rods are stable. done: mask of the computed points, of the points' shape."""
     unstable = view.variables["unstable_count"]
     masks = {"stable": unstable == 0, "unstable": unstable > 0, "not known": unstable < 0}
     found = {word: done & mask for word, mask in masks.items() if (done & mask).any()}
@@ -47,7 +47,7 @@ def stable_line(view: View, done: np.ndarray) -> str:
 
 
 def leading_line(view: View, done: np.ndarray) -> str:
-    """Line on the leading eigenvalues. done: mask of the computed points."""
+    """Line on the leading eigenvalues. done: mask of the computed points, of the points' shape."""
     v = view.variables
     rate, frequency = (
         span(v[name][done][:, 0], v["error_estimate"][done][:, 0]) for name in ("growth_rate", "frequency")
@@ -87,7 +87,7 @@ def count_line(view: View) -> str:
 
 
 def error_lines(view: View, done: np.ndarray) -> list[str]:
-    """Line on the errors of the eigenvalues. done: mask of the computed points."""
+    """Line on the errors of the eigenvalues. done: mask of the computed points, of the points' shape."""
     v = view.variables
     size = np.hypot(v["growth_rate"][done], v["frequency"][done])
     relative = v["error_estimate"][done] / size
@@ -97,7 +97,7 @@ def error_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
-    """Line on the number of unknowns of the mesh. done: mask of the computed points."""
+    """Line on the number of unknowns of the mesh. done: mask of the computed points, of the points' shape."""
     v = view.variables
     unknowns = 3 * v["elements"][done].astype(int) * v["order"][done]
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
@@ -107,7 +107,7 @@ def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def stability_line(view: View, done: np.ndarray) -> str:
-    """Line on how often the number of unstable modes is proved. done: mask of the computed points."""
+    """Line on how often the number of unstable modes is proved. done: mask of the points' shape."""
     unstable = view.variables["unstable_count"][done]
     points = int(done.sum())
     certified = int(view.variables["certified"][done].sum())

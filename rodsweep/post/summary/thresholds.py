@@ -31,7 +31,7 @@ FIRST_CROSSING_WORDS = {
 
 
 def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary of thresholds. done: mask of the computed points."""
+    """Lines of the summary of thresholds. done: mask of the computed points, of the points' shape."""
     if done.size == 1:
         details = cost_lines(view, done)
         of_arm = crossings_of_arm(view)
@@ -42,7 +42,9 @@ def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def event_line(view: View, done: np.ndarray, event: str) -> str:
-    """Line on the forces at the first threshold of the kind `event`. done: mask of the computed points."""
+    """Line on the forces at the first threshold of the kind `event`. done: mask of the computed points, of
+    their shape.
+    """
     words, rate, noun, unit = FIRST_THRESHOLD_WORDS[event]
     v = view.variables
     F = np.where(done, v[f"F_{event}"], np.nan).ravel()
@@ -174,8 +176,9 @@ def monotony_lines(view: View) -> list[str]:
 
 
 def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
-    """Lines about completeness and errors of the searches. done: mask of the computed points. noun: name of a
-    point.
+    """Lines about completeness and errors of the searches. noun: name of a point.
+
+    done: mask of the computed points, of the points' shape.
     """
     v = view.variables
     searches = int(done.sum())
@@ -196,7 +199,7 @@ def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
 
 
 def cost_lines(view: View, done: np.ndarray) -> list[str]:
-    """Line on the cost of the searches. done: mask of the computed points.
+    """Line on the cost of the searches. done: mask of the computed points, of the points' shape.
 
     An empty list for searches that count unstable modes, which store no cost.
     """
