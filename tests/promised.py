@@ -20,7 +20,7 @@ from rodsweep.cli import commands
 from rodsweep.cli.run.running import STOPPED_STATUS
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
-from rodsweep.post.tables.contents import DEFAULT_TABLE, NAMES
+from rodsweep.post.tables.contents import DEFAULT_TABLE, TABLE_NAMES
 
 STORED = Path(__file__).parent / "reference" / "promises.json"
 DOCS = Path(__file__).parents[1] / "docs"
@@ -83,7 +83,7 @@ def promised() -> dict[str, dict[str, dict[str, str]]]:
                 "to be continued": str(STOPPED_STATUS),
             }
         },
-        "tables": {"": dict.fromkeys(NAMES.values(), ""), "first": dict(DEFAULT_TABLE)},
+        "tables": {"": dict.fromkeys(TABLE_NAMES.values(), ""), "first": dict(DEFAULT_TABLE)},
         "commands": {
             name: {
                 word: "" for each in command.params if isinstance(each, click.Option) for word in each.opts

@@ -67,9 +67,9 @@ class Arm(SlenderArm):
         """Report on the arm: verdict, numbers with formulas and sources, and effects that the model
         neglects.
         """
-        from ..verdict.arm import report_on
+        from ..verdict.arm import arm_report
 
-        return report_on(self)
+        return arm_report(self)
 
     @in_sentences('arm.replace(length="12 cm")')
     def replace(self, **changed: Given | None) -> "Arm":

@@ -19,11 +19,11 @@ def describe_arm(given: dict[str, str | None], poisson: float, segments: tuple[s
     of the options.
     """
     from ..model.arm.arm import SlenderArm
-    from ..verdict.arm import report_on
+    from ..verdict.arm import arm_report
 
     quantities: dict[str, Any] = {name: text for name, text in given.items() if text is not None}
     try:
-        report = report_on(SlenderArm(**quantities, poisson=poisson, segments=segments or None))
+        report = arm_report(SlenderArm(**quantities, poisson=poisson, segments=segments or None))
     except InputError as error:
         raise InputError(as_options(str(error))) from None
     console = Console(highlight=False, soft_wrap=True)

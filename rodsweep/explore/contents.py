@@ -1,4 +1,6 @@
-"""Contents of a page: controls, pictures, numbers and texts, and the pictures that each answer fills."""
+"""Contents of a page: controls, pictures, tables and texts, and the pictures that each kind of
+answer fills.
+"""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -7,8 +9,8 @@ from bokeh.document import Document
 from bokeh.events import DocumentReady, Pan, Tap
 from bokeh.models import Button
 
-from .controls import Changed, Controls
-from .look import colours, read, sheet
+from .controls import ChangeCallback, Controls
+from .look import colour_script, style_sheet, template_text
 from .pictures.beating import BeatingPicture
 from .pictures.branches import BranchPicture
 from .pictures.card import Card
@@ -18,20 +20,21 @@ from .pictures.numbers import NumbersTable
 from .pictures.spectrum import ModePicture, SpectrumPicture
 from .scales import SCALES, length_axis, load_axis
 from .sharing import Sharing
-from .solving.diagrams import has_cycle_curves
+from .solving.diagrams import can_follow_cycle_curves
 from .state import PageState
 from .texts import SolvingSign, show_texts
 
 
 class PageContents:
-    """All Bokeh models of a page.
+    """All Bokeh models of a page: controls, pictures, table, texts and buttons.
 
-    changed: callback of the controls. loaded: callback for a config that the user loads, with its text.
+    changed: callback for a change of a control. loaded: callback for the text of a config file that the user
+    loads.
     """
 
-    def __init__(self, changed: Changed, loaded: Callable[[str], None]):
-        widgets = sheet("widgets.css")
-        texts = sheet("text.css")
+    def __init__(self, changed: ChangeCallback, loaded: Callable[[str], None]):
+        widgets = style_sheet("widgets.css")
+        texts = style_sheet("text.css")
         self.controls = Controls(changed, widgets)
         self.spectrum = SpectrumPicture()
         self.mode = ModePicture()
@@ -57,12 +60,14 @@ class PageContents:
 
     @property
     def cards(self) -> list[Card]:
-        """The cards of all pictures."""
+        """Cards of all pictures, each a figure that a sentence can replace."""
         pictures = (self.spectrum, self.mode, self.growth, self.beating, self.branches, self.diagram)
         return [picture.card for picture in pictures]
 
     def connect(self, document: Document, react: Mapping[str, Callable[..., None]]) -> None:
-        """Adds all models to a document. react: callbacks for clicks, by button or picture."""
+        """Adds all models to a Bokeh document. react: callback by button, or by picture that the
+        user clicks.
+        """
         for kind, button in self.buttons.items():
             button.on_click(react[kind])
         for event in (Tap, Pan):
@@ -78,11 +83,11 @@ class PageContents:
             ):  # fmt: skip
                 document.add_root(root)
             show_texts(document, (self.sign, self.numbers.root))
-        document.js_on_event(DocumentReady, colours([card.figure for card in self.cards]))
+        document.js_on_event(DocumentReady, colour_script([card.figure for card in self.cards]))
         document.js_on_event(DocumentReady, self.beating.animation())
         document.title = "rodsweep explore"
-        document.template = read("page.html")
-        document.template_variables["page_css"] = read("page.css")
+        document.template = template_text("page.html")
+        document.template_variables["page_css"] = template_text("page.css")
 
     def show_point(self, state: PageState, F: float) -> None:
         """Marks the point of the state in all pictures, and updates address, config and Python lines."""
@@ -97,11 +102,11 @@ class PageContents:
         y = second.value(state.values[state.second])
         if x is not None and y is not None:
             self.diagram.move_point(x, y)
-        self.buttons["cycles"].visible = has_cycle_curves(state)
+        self.buttons["cycles"].visible = can_follow_cycle_curves(state)
         self.sharing.show(state)
 
     def show(self, kind: str, found: dict[str, Any], state: PageState) -> None:
-        """Fills the pictures of a kind of question with its answer `found`."""
+        """Draws the answer `found` to a question of the kind `kind` in all pictures that depend on it."""
         if kind == "spectrum":
             self.spectrum.show(found)
             self.mode.show(found)
@@ -125,7 +130,7 @@ class PageContents:
         self.numbers.show(kind, found)
 
     def say(self, kind: str, sentence: str) -> None:
-        """Shows a sentence instead of the pictures of a kind of question."""
+        """Shows a sentence in place of the pictures that a question of the kind `kind` fills."""
         self.numbers.show(kind, None)
         if kind == "cycle":
             self.beating.stop()

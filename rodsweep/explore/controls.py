@@ -1,4 +1,6 @@
-"""Sliders and fields of the page, which report every change as name and text."""
+"""Sliders, text fields and menus of the page. Every change is reported as the name and the new text of a
+value.
+"""
 
 from collections.abc import Callable
 from functools import partial
@@ -7,18 +9,18 @@ from typing import Any
 from bokeh.models import Column, InlineStyleSheet, Select, Slider, TabPanel, Tabs, TextInput
 from bokeh.models.css import StyleSheet
 
-from ..post.summary.arm.arm import word
+from ..post.summary.arm.arm import quantity_words
 from .scales import SCALES, ControlScale, PictureAxis
-from .state import ACROSS, LAW_NAMES, TABS, PageState
+from .state import LAW_NAMES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 
 LARGEST_FORCE = "Largest force F (k3/L^2)"
-STEPS = 400
+SLIDER_STEP_COUNT = 400
 """Number of steps of a slider from end to end."""
-Changed = Callable[..., None]
+ChangeCallback = Callable[..., None]
 
 
 class SliderField:
-    """A text field with a slider. A change of either calls `changed(name, text)`."""
+    """Text field and slider for the same value. A change of either calls `changed(name, text)`."""
 
     def __init__(self, scale: ControlScale, changed: Callable[[str, str], None], sheets: list[StyleSheet]):
         self.scale = scale
@@ -28,7 +30,7 @@ class SliderField:
             title=scale.label, name=f"{scale.name}_field", sizing_mode="stretch_width", stylesheets=sheets
         )  # fmt: skip
         self.slider = Slider(
-            start=start, end=end, value=start, step=(end - start) / STEPS, show_value=False,
+            start=start, end=end, value=start, step=(end - start) / SLIDER_STEP_COUNT, show_value=False,
             name=f"{scale.name}_slider", sizing_mode="stretch_width", stylesheets=sheets,
         )  # fmt: skip
         self.text.on_change("value", self._typed)
@@ -39,7 +41,9 @@ class SliderField:
         self._sliding = False
 
     def show(self, text: str) -> None:
-        """Shows a text, and moves the slider unless the user is sliding."""
+        """Shows `text` in the field, and moves the slider to its value unless the user is dragging the
+        slider.
+        """
         self._is_shown = True
         try:
             self.text.value = text
@@ -64,12 +68,16 @@ class SliderField:
 
 
 class Controls:
-    """All controls. changed: callback with fields of `PageState`, or `values`, texts of the tab by name."""
+    """All controls of the page.
 
-    def __init__(self, changed: Changed, sheet: InlineStyleSheet):
+    changed: called with the changed fields of `PageState`, or with `values`, the changed texts of the tab by
+    name.
+    """
+
+    def __init__(self, changed: ChangeCallback, style_sheet: InlineStyleSheet):
         self._changed = changed
         self._is_shown = False
-        sheets: list[StyleSheet] = [sheet]
+        sheets: list[StyleSheet] = [style_sheet]
         self.fields = {
             tab: {name: SliderField(scale, self._field_changed, sheets) for name, scale in scales.items()}
             for tab, scales in SCALES.items()
@@ -96,14 +104,14 @@ class Controls:
         )
 
     def show(self, state: PageState) -> None:
-        """Sets all controls to a state."""
+        """Sets all controls to the values of `state`."""
         self._is_shown = True
         try:
-            self.tabs.active = list(TABS).index(state.tab)
+            self.tabs.active = list(TAB_DEFAULTS).index(state.tab)
             for name, field in self.fields[state.tab].items():
                 field.show(state.values[name])
             self.law.value = state.law
-            self.across.options = [(name, word(name)) for name in ACROSS[state.tab]]
+            self.across.options = [(name, quantity_words(name)) for name in SECOND_PARAMETERS[state.tab]]
             self.across.value = state.second
             self.F_max.value = state.F_max
         finally:
@@ -119,7 +127,7 @@ class Controls:
 
     def _tab_changed(self, attribute: str, old: int, new: int) -> None:
         if not self._is_shown:
-            self._changed(tab=list(TABS)[new])
+            self._changed(tab=list(TAB_DEFAULTS)[new])
 
     def _choice_changed(self, key: str, attribute: str, old: Any, new: Any) -> None:
         if not self._is_shown:

@@ -1,4 +1,4 @@
-"""Template and style sheets of the page, light or dark according to the browser's preference."""
+"""Template, style sheets and scripts of the page. Its colours are light or dark as the browser prefers."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -7,18 +7,23 @@ from bokeh.models import CustomJS, InlineStyleSheet
 from bokeh.plotting import figure
 
 TEMPLATES = Path(__file__).parent / "templates"
+"""Directory of the templates, style sheets and scripts."""
 
 
-def read(name: str) -> str:
-    """Text of a template."""
+def template_text(name: str) -> str:
+    """Text of the file `name` in TEMPLATES."""
     return (TEMPLATES / name).read_text(encoding="utf-8")
 
 
-def sheet(name: str) -> InlineStyleSheet:
-    """A style sheet for widgets, which inherit colours, but not style sheets, from the page."""
-    return InlineStyleSheet(css=read(name))
+def style_sheet(name: str) -> InlineStyleSheet:
+    """Style sheet for Bokeh's widgets from the file `name`. Widgets inherit colours, but no style sheet, from
+    the page.
+    """
+    return InlineStyleSheet(css=template_text(name))
 
 
-def colours(figures: Sequence[figure]) -> CustomJS:
-    """Code of the browser that colours the figures, now and whenever the colour scheme changes."""
-    return CustomJS(args={"figures": list(figures)}, code=read("colours.js"))
+def colour_script(figures: Sequence[figure]) -> CustomJS:
+    """Browser script that colours the figures for the light or dark colour scheme, now and after every change
+    of the scheme.
+    """
+    return CustomJS(args={"figures": list(figures)}, code=template_text("colours.js"))

@@ -1,4 +1,4 @@
-"""A page in a browser tab: state, questions being solved, and pictures."""
+"""A page in a browser tab: its state, its pictures, and the questions being solved for it."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,25 +11,24 @@ from ..errors import InputError
 from .contents import PageContents
 from .scales import SCALES
 from .sharing import state_of_text
-from .solving.diagrams import Dataset, uniform
+from .solving.diagrams import Dataset, has_uniform_rods
 from .solving.letting_go import Tip
-from .solving.needs import AT_ONCE, OF_TIP, ON_REQUEST, STOPPABLE, WHEN_IDLE, Needs, needs
+from .solving.needs import IDLE_KINDS, INSTANT_KINDS, MANUAL_KINDS, STOPPABLE_KINDS, TIP_KINDS, Needs, needs
 from .solving.questions import Question, Reply
-from .solving.sign import in_words, sign
+from .solving.sign import progress_text, solving_text
 from .solving.solvers import Solvers
 from .state import PageState, from_address, rod_of
 from .stored_results import StoredResults
 
 STOPPED_SENTENCE = "Stopped. A change of the rod starts it again."
-"""Sentence in place of a picture whose solve the user has stopped."""
+"""Sentence shown in place of a picture after the user has stopped its solve."""
 IDLE_MILLISECONDS = 900
-"""Milliseconds without a change after which the slow questions are asked."""
+"""Time without a change of the controls after which questions that take seconds are sent, in milliseconds."""
 
 
 class Page:
-    """Connects controls, solvers and pictures of a session.
-
-    session: name of the session. stored: answers from a result file, or None.
+    """Page in a browser tab. stored: answers of a result file, used instead of solves; None
+    without a file.
     """
 
     def __init__(
@@ -43,9 +42,9 @@ class Page:
         self.is_open = True
         self.solving: set[str] = set()
         self.progress: dict[str, str] = {}
-        """Progress of long solves in words, by kind."""
+        """Progress of every long solve, as text, by kind of question."""
         self.asked: dict[str, Needs] = {}
-        """The part of the state, `needs`, that the latest question of each kind depends on."""
+        """Part of the state, see `needs`, on which the latest question of each kind depends."""
         self.contents = PageContents(self.change, self.load)
         self._idle: Callable[[], None] | None = None
         self.contents.connect(document, self._connections())
@@ -55,7 +54,7 @@ class Page:
             self.contents.show("diagram", stored.diagram, state)
 
     def open(self, query: str) -> None:
-        """Shows the state of an address; query: the address after "?"."""
+        """Shows the state that an address encodes; query: the part of the address after "?"."""
         try:
             self._change_to(from_address(query, self.state))
         except InputError as error:
@@ -63,24 +62,24 @@ class Page:
             self._refuse(str(error))
 
     def load(self, text: str) -> None:
-        """Shows the rod or arm of a config; text: the config in YAML."""
+        """Shows the rod or the arm of a config; text: the config in YAML."""
         try:
             self._change_to(state_of_text(text))
         except InputError as error:
             self._refuse(str(error))
 
     def close(self) -> None:
-        """Cancels all questions of this page."""
+        """Cancels all questions of this page that are not answered yet."""
         self.is_open = False
         self.solvers.forget(self.session)
 
     def change(self, values: dict[str, str] | None = None, **changed: Any) -> None:
-        """Applies a change of the controls. values: texts by name. changed: other fields of the state."""
+        """Changes the controls. values: changed texts of the tab. changed: further fields of the state."""
         state = replace(self.state, **changed)
         self._change_to(state.with_values(**values) if values else state)
 
     def solve(self, kind: str, tip: Tip | None = None) -> None:
-        """Asks a question now, even if its answer is already shown."""
+        """Sends a question of the kind `kind` to its solver process, even if its answer is already shown."""
         if kind == "cycles" and "diagram" in self.solving:
             self._drop("diagram")
         self._drop(kind)
@@ -88,26 +87,26 @@ class Page:
         self._show_solving()
 
     def stop(self) -> None:
-        """Cancels the long solves; their pictures say so, and a bent arm moves on as before it was bent."""
-        for kind in STOPPABLE:
+        """Cancels long solves; their pictures say so. A bent arm returns to its motion before the drag."""
+        for kind in STOPPABLE_KINDS:
             if kind in self.solving:
                 self._drop(kind)
-                if kind in OF_TIP:
+                if kind in TIP_KINDS:
                     self.contents.beating.let_go()
-                elif kind not in ON_REQUEST:
+                elif kind not in MANUAL_KINDS:
                     self.contents.say(kind, STOPPED_SENTENCE)
         self._show_solving()
 
     def drag(self, kind: str, tip: Tip) -> None:
-        """Bends the arm until the tip is at a place, in L, or releases it there; kind: one of `OF_TIP`."""
-        for other in OF_TIP:
+        """Solves for the arm with its tip dragged to `tip`, in L, or released; kind: see `TIP_KINDS`."""
+        for other in TIP_KINDS:
             if other != kind:
                 self._drop(other)
         self._ask(kind, tip)
         self._show_solving()
 
     def _drop(self, kind: str) -> None:
-        """Drops a question; an answer that still arrives is ignored."""
+        """Cancels the question of the kind `kind`; an answer that still arrives is ignored."""
         self.asked.pop(kind, None)
         if kind in self.solving:
             self.solving.discard(kind)
@@ -136,19 +135,19 @@ class Page:
         except InputError as error:
             self._refuse(str(error))
             return
-        for kind in (*OF_TIP, *ON_REQUEST):
+        for kind in (*TIP_KINDS, *MANUAL_KINDS):
             self._drop(kind)
-        for kind in AT_ONCE:
+        for kind in INSTANT_KINDS:
             self._ask(kind)
         self.contents.show_point(state, F)
         self._show_solving()
         self._rest()
 
     def _refuse(self, sentence: str) -> None:
-        """Shows a sentence instead of all pictures except a drawn diagram, and cancels all solves."""
-        for kind in (*OF_TIP, *ON_REQUEST):
+        """Shows an error message instead of all pictures but a drawn diagram, and cancels all solves."""
+        for kind in (*TIP_KINDS, *MANUAL_KINDS):
             self._drop(kind)
-        for kind in (*AT_ONCE, *WHEN_IDLE):
+        for kind in (*INSTANT_KINDS, *IDLE_KINDS):
             if kind != "diagram" or kind in self.solving:
                 self._drop(kind)
             if kind != "diagram" or not self.contents.diagram.is_drawn:
@@ -156,7 +155,7 @@ class Page:
         self._show_solving()
 
     def _rest(self) -> None:
-        """Schedules the slow questions after `IDLE_MILLISECONDS`; a further change restarts the pause."""
+        """Schedules slow questions `IDLE_MILLISECONDS` after the last change of the controls."""
         if self._idle is not None:
             self.document.remove_timeout_callback(self._idle)
         self._idle = self.document.add_timeout_callback(self._rested, IDLE_MILLISECONDS)
@@ -164,10 +163,10 @@ class Page:
     def _rested(self) -> None:
         self._idle = None
         self.contents.sharing.write()
-        for kind in WHEN_IDLE:
+        for kind in IDLE_KINDS:
             if needs(Question(kind, self.state)) == self.asked.get(kind):
                 continue
-            if self.state.tab == "rod" and not uniform(self.state):
+            if self.state.tab == "rod" and not has_uniform_rods(self.state):
                 self.asked.pop(kind, None)
                 self.contents.say(kind, "This takes a minute for such an arm: press the button below.")
                 continue
@@ -175,7 +174,7 @@ class Page:
         self._show_solving()
 
     def _ask(self, kind: str, tip: Tip | None = None, is_solved_again: bool = False) -> None:
-        """Asks a question that is not asked yet. A stored answer is shown instead, unless solved again."""
+        """Sends a question not yet sent. A stored answer replaces the solve, unless `is_solved_again`."""
         question = Question(kind, self.state, tip, self._cycle_to_film(kind, tip))
         wanted = needs(question)
         if self.asked.get(kind) == wanted:
@@ -196,13 +195,13 @@ class Page:
         self.solvers.ask(self.session, question, receive, receive)
 
     def _cycle_to_film(self, kind: str, tip: Tip | None) -> Dataset | None:
-        """The stored cycle that a film shows; None if the film needs a solve, or for another question."""
+        """The stored cycle that a film shows; None if the film needs a solve, or if `kind` is no film."""
         if kind != "film" or tip is not None or self.stored is None:
             return None
         return self.stored.cycle_to_film(self.state)
 
     def _receive(self, question: Question, reply: Reply) -> None:
-        """Passes a reply to the document's event loop, because only code there may change the document."""
+        """Passes a reply to the event loop of the document, where alone the document may change."""
         if self.is_open:
             self.document.add_next_tick_callback(lambda: self._answered(question, reply))
 
@@ -214,12 +213,12 @@ class Page:
         is_newest = newest == needs(question)
         if reply.outcome == "progress":
             if is_newest and kind in self.solving:
-                self.progress[kind] = in_words(**reply.content)
+                self.progress[kind] = progress_text(**reply.content)
                 self._show_solving()
             return
         if is_newest:
             self.solving.discard(kind)
-        elif kind in OF_TIP:
+        elif kind in TIP_KINDS:
             return
         if reply.outcome == "answer":
             if kind == "cycles":
@@ -230,9 +229,9 @@ class Page:
         self._show_solving()
 
     def _show_solving(self) -> None:
-        kinds = [kind for kind in (*AT_ONCE, *WHEN_IDLE, *ON_REQUEST) if kind in self.solving]
-        is_stoppable = any(kind in STOPPABLE for kind in kinds)
-        self.contents.sign.update(text=sign(kinds, self.progress), is_stoppable=is_stoppable)
+        kinds = [kind for kind in (*INSTANT_KINDS, *IDLE_KINDS, *MANUAL_KINDS) if kind in self.solving]
+        is_stoppable = any(kind in STOPPABLE_KINDS for kind in kinds)
+        self.contents.sign.update(text=solving_text(kinds, self.progress), is_stoppable=is_stoppable)
 
     def _move_in_diagram(self, event: Tap | Pan) -> None:
         if event.x is None or event.y is None or event.y <= 0:
@@ -241,7 +240,7 @@ class Page:
         self.change({name: SCALES[self.state.tab][name].text(value) for name, value in at.items()})
 
     def _move_load(self, event: Tap) -> None:
-        """Moves the load to the x of a click."""
+        """Sets the load to the horizontal position of a click."""
         if event.x is not None:
             at = event.x if self.stored is None else self.stored.load_near(self.state, event.x)
             self.change({self.state.load: SCALES[self.state.tab][self.state.load].text(at)})

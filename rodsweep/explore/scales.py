@@ -1,4 +1,4 @@
-"""Scale of each control: unit, range, linear or logarithmic."""
+"""Scales of the sliders: unit, range, and whether linear or logarithmic; and axes of the pictures."""
 
 from dataclasses import dataclass
 from math import inf, isfinite, isnan, log10
@@ -8,38 +8,38 @@ from ..errors import InputError
 from ..model.arm.quantities import QUANTITIES
 from ..model.parameters import PARAMETERS
 from ..model.units import in_si
-from ..post.summary.arm.arm import word
+from ..post.summary.arm.arm import quantity_words
 from .state import PageState, number, rod_of
 
 
 @dataclass(frozen=True, kw_only=True)
 class ControlScale:
-    """Scale of the control of one parameter or quantity.
+    """Scale of the slider for one parameter of a rod, or one quantity of an arm.
 
-    low, high: ends of the slider, in the unit of the control.
+    low, high: values at the ends of the slider, in `unit`.
     """
 
     name: str
     label: str
-    """Text above the control, with the unit."""
+    """Text above the slider, with the unit."""
     low: float
     high: float
     logarithmic: bool = True
     """Whether the slider is logarithmic."""
     unit: str = ""
-    """Unit of a quantity, empty for a rod's parameter."""
+    """Unit of an arm's quantity; empty for a rod's parameter, which is dimensionless."""
     factor: float = 1.0
-    """Conversion factor from SI units to the unit."""
+    """Factor that converts a value from SI units to `unit`."""
     has_inf: bool = False
-    """Whether the upper end of the slider means inf."""
+    """Whether the upper end of the slider stands for inf."""
 
     def text(self, value: float) -> str:
-        """Text of a value, with unit, in the control."""
+        """`value`, given in `unit`, as text with the unit."""
         written = f"{value:.5g}"
         return f"{written} {self.unit}" if self.unit else written
 
     def value(self, text: str) -> float | None:
-        """Value in the control's unit of a text like "10 cm"; None for an invalid text."""
+        """Value in `unit` of a text that the user typed, such as "10 cm"; None for an invalid text."""
         try:
             if self.unit:
                 quantity = QUANTITIES[self.name]
@@ -51,11 +51,13 @@ class ControlScale:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Positions of the slider's ends."""
+        """Positions of the slider at its ends: `low` and `high`, or their logarithms."""
         return (log10(self.low), log10(self.high)) if self.logarithmic else (self.low, self.high)
 
     def position(self, text: str) -> float | None:
-        """Position of the slider for a text, clipped to the ends; None for an invalid text or NaN."""
+        """Position of the slider for a text that the user typed, clipped to the ends; None for an invalid
+        text or NaN.
+        """
         value = self.value(text)
         start, end = self.ends
         if value is None or isnan(value):
@@ -67,7 +69,7 @@ class ControlScale:
         return min(max(value, start), end)
 
     def at(self, position: float) -> str:
-        """Text for a position of the slider."""
+        """Text of the value at a position of the slider."""
         if self.has_inf and position >= self.ends[1]:
             return "inf"
         value = 10**position if self.logarithmic else position
@@ -76,14 +78,16 @@ class ControlScale:
 
 
 class PictureAxis(NamedTuple):
-    """An axis of a picture. label: text with the unit. factor: from dimensionless values to the unit."""
+    """Label, with the unit, and the factor that converts dimensionless values to this unit, for an axis of a
+    picture.
+    """
 
     label: str
     factor: float
 
 
 def load_axis(state: PageState) -> PictureAxis:
-    """Axis of the load: F of a rod, pressure of an arm in kPa."""
+    """Axis of the load: the force F for a rod, the pressure in kPa for an arm."""
     if state.tab == "rod":
         return PictureAxis("force F (k3/L^2)", 1.0)
     subject = state.with_values(pressure="1 kPa").subject()
@@ -91,7 +95,7 @@ def load_axis(state: PageState) -> PictureAxis:
 
 
 def length_axis(state: PageState) -> PictureAxis:
-    """Axis of lengths: in L for a rod, in cm for an arm."""
+    """Axis of a length: in units of L for a rod, in cm for an arm."""
     scale = SCALES["arm"]["length"]
     length = scale.value(state.arm["length"]) if state.tab == "arm" else None
     return PictureAxis("L", 1.0) if length is None else PictureAxis(scale.unit, length)
@@ -109,7 +113,7 @@ def _of_rod(
 def _of_arm(
     name: str, low: float, high: float, unit: str, factor: float, logarithmic: bool = True
 ) -> ControlScale:
-    label = f"{word(name)} ({unit})"
+    label = f"{quantity_words(name)} ({unit})"
     return ControlScale(
         name=name, label=label, low=low, high=high, unit=unit, factor=factor, logarithmic=logarithmic
     )
@@ -138,4 +142,4 @@ SCALES = {
         )
     },
 }
-"""Scales by tab and name."""
+"""Scale of every slider, by tab and by name of the parameter or quantity."""

@@ -1,4 +1,4 @@
-"""The server of the page, for browsers on this machine only."""
+"""Web server of the page. It accepts browsers on this machine only."""
 
 import asyncio
 import signal
@@ -26,30 +26,35 @@ from .state import PageState
 from .stored_results import StoredResults
 
 ADDRESS = "127.0.0.1"
+"""IP address on which the server listens."""
 HOSTS = (ADDRESS, "localhost")
-"""Names under which a browser on this machine may open the page."""
-UNUSED_SESSION = 5000
-"""Milliseconds after which the session of a closed page ends."""
+"""Host names under which a browser on this machine may open the page."""
+UNUSED_SESSION_MILLISECONDS = 5000
+"""Time after which the session of a closed page ends, in milliseconds."""
 
 
 class UndelayedServer(HTTPServer):
-    """An HTTP server without Nagle's delay: each small change of a page is sent at once."""
+    """HTTP server without Nagle's algorithm, so that small messages are sent at once."""
 
     def handle_stream(self, stream: IOStream, address: Any) -> None:
-        """Handles a new connection."""
+        """Accepts a new connection and switches off its delay."""
         stream.set_nodelay(True)
         super().handle_stream(stream, address)
 
 
 class BatchConnection(ServerConnection):
-    """A connection that sends all changes of a callback in one message, not in one message each."""
+    """Connection to a page that sends all changes made by one callback in a single message. Bokeh sends a
+    message each.
+    """
 
     def __init__(self, *arguments: Any):
         super().__init__(*arguments)
         self._changes: list[DocumentPatchedEvent] = []
 
     def send_patch_document(self, event: DocumentPatchedEvent) -> Awaitable[None]:
-        """Queues a change. The session awaits the results after the callback; the first sends all changes."""
+        """Queues a change of the document. Bokeh awaits all returned results after the callback; the first
+        sends the queue.
+        """
         self._changes.append(event)
         return self._send_all()
 
@@ -60,19 +65,19 @@ class BatchConnection(ServerConnection):
 
 
 class BatchTornado(BokehTornado):
-    """Bokeh's application with a `BatchConnection` for each page."""
+    """Bokeh's web application, with a `BatchConnection` for each page."""
 
     def new_connection(self, *arguments: Any) -> ServerConnection:
-        """Makes the connection of a page that opens."""
+        """Creates the connection for a page that a browser opens."""
         connection = BatchConnection(*arguments)
         self._clients.add(connection)
         return connection
 
 
 class ExploreServer:
-    """Server and solvers of the page. port: 0 for any free port.
+    """Web server of the page, and its solver processes.
 
-    Raises InputError if the port is in use.
+    port: TCP port; 0 for any free port. Raises InputError if the port is in use.
     """
 
     def __init__(self, state: PageState, stored: StoredResults | None = None, port: int = 0):
@@ -85,8 +90,8 @@ class ExploreServer:
         tornado = BatchTornado(
             {"/": application},
             extra_websocket_origins=[f"{host}:{self.port}" for host in HOSTS],
-            unused_session_lifetime_milliseconds=UNUSED_SESSION,
-            check_unused_sessions_milliseconds=UNUSED_SESSION,
+            unused_session_lifetime_milliseconds=UNUSED_SESSION_MILLISECONDS,
+            check_unused_sessions_milliseconds=UNUSED_SESSION_MILLISECONDS,
         )
         self.http = UndelayedServer(tornado)
         self.http.add_sockets(sockets)
@@ -94,16 +99,16 @@ class ExploreServer:
 
     @property
     def url(self) -> str:
-        """Address of the page."""
+        """Address of the page, for a browser."""
         return f"http://{ADDRESS}:{self.port}/"
 
     def start(self) -> None:
-        """Starts the solvers. The server answers browsers once the event loop runs again."""
+        """Starts the server and the solver processes. Browsers get answers once the event loop runs."""
         self.server.start()
         self.solvers.warm_up()
 
     def stop(self) -> None:
-        """Ends all sessions and all processes."""
+        """Ends all sessions and all solver processes."""
         self.solvers.close()
         self.server.stop()
         self.http.stop()
@@ -117,7 +122,9 @@ class ExploreServer:
 
 
 def _query(arguments: dict[str, list[bytes]]) -> str:
-    """The query of an address from the arguments of a request, without arguments of bokeh."""
+    """Query string of an address, without Bokeh's own arguments. arguments: values by name, from the HTTP
+    request.
+    """
     from urllib.parse import urlencode
 
     own = {name: values[-1].decode(errors="replace") for name, values in arguments.items()}

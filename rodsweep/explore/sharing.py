@@ -1,4 +1,4 @@
-"""Export and import of a page: address, config, Python lines, pictures."""
+"""Texts and files that leave the page or enter it: address, config, Python lines, pictures, films."""
 
 from base64 import b64decode, b64encode
 from collections.abc import Callable, Sequence
@@ -12,56 +12,68 @@ from bokeh.models import Button, Column, CustomJS, Div, FileInput, GlyphRenderer
 from ..config.document.parsing import parse
 from ..config.document.reading import validated
 from ..errors import InputError
-from .look import read, sheet
+from .look import style_sheet, template_text
 from .pictures.card import Card
 from .state import PageState
 from .stored import state_of
 
-SHOW_ADDRESS = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
-"""Code of the browser that writes the state into the address."""
+ADDRESS_SCRIPT = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
+"""Browser script that writes the state of the page into the address bar."""
 SAVE_SCRIPT = 'download(new Blob([lines.config], {type: "application/yaml"}), "explore.yaml")'
-DOWNLOAD_FILM = """
+"""Browser script that saves the config as a file."""
+FILM_SCRIPT = """
 const bytes = Uint8Array.from(atob(film.tags[0]), (letter) => letter.charCodeAt(0))
 if (bytes.length > 0) download(new Blob([bytes], {type: "image/gif"}), "explore.gif")
 """
+"""Browser script that saves a new film as a file."""
 COPY_SCRIPT = "navigator.clipboard.writeText(lines.{})"
-TASKS = ["limit_cycle", "spectrum", "thresholds", "branch"]
-"""Tasks to choose from for the config; the first is the default."""
+"""Browser script that copies a text to the clipboard; format argument: field of `SharedLines`."""
+CONFIG_TASKS = ["limit_cycle", "spectrum", "thresholds", "branch"]
+"""Tasks for which the page writes a config; the first is the default."""
 FILM_COMMANDS = """# the film of the arm:
 # rodsweep run explore.yaml --set limit_cycle.shapes=48
 # rodsweep plot explore.h5 --what animation -o explore.gif
 """
+"""Comment at the end of a `limit_cycle` config: shell commands that make a film."""
 
 
 class SharedLines(DataModel):
-    """What the buttons copy and save, up to date with every change; no part of the layout."""
+    """Config and Python lines that the buttons copy and save. They follow every change of the controls,
+    because no layout of the page depends on them.
+    """
 
     config = String(default="")
     python = String(default="")
 
 
 class Sharing:
-    """Texts and buttons for sharing.
+    """Texts and buttons with which the user exports and imports the state of the page.
 
-    arm: the animated line. loaded: callback for a config that the user loads, with its text.
+    arm: animated line of the arm. loaded: callback for the text of a config file that the user loads.
     """
 
     def __init__(self, cards: Sequence[Card], arm: GlyphRenderer, loaded: Callable[[str], None]):
         self._loaded = loaded
         self._state = PageState()
-        widgets = sheet("widgets.css")
-        texts = sheet("text.css")
+        widgets = style_sheet("widgets.css")
+        texts = style_sheet("text.css")
         self.address, self.yaml, self.python = (
             Div(name=name, sizing_mode="stretch_width", stylesheets=[texts])
             for name in ("address", "yaml", "python")
         )
         self.lines = SharedLines()
         self.task = Select(
-            title="Config of the task", name="task", options=TASKS, value=TASKS[0], stylesheets=[widgets]
+            title="Config of the task",
+            name="task",
+            options=CONFIG_TASKS,
+            value=CONFIG_TASKS[0],
+            stylesheets=[widgets],
         )
         self.task.on_change("value", self._choose_task)
         save = Button(label="Save the config", name="save_button", stylesheets=[widgets])
-        save.js_on_click(CustomJS(args={"lines": self.lines}, code=read("download.js") + SAVE_SCRIPT))
+        save.js_on_click(
+            CustomJS(args={"lines": self.lines}, code=template_text("download.js") + SAVE_SCRIPT)
+        )
         self.file = FileInput(title="Load a config", name="load", accept=".yaml,.yml", stylesheets=[widgets])
         self.file.on_change("value", self._take)
         copies = [
@@ -72,22 +84,24 @@ class Sharing:
             button.js_on_click(CustomJS(args={"lines": self.lines}, code=COPY_SCRIPT.format(name)))
         self.film = Div(name="film", tags=[""], visible=False)
         self.film.js_on_change(
-            "tags", CustomJS(args={"film": self.film}, code=read("download.js") + DOWNLOAD_FILM)
+            "tags", CustomJS(args={"film": self.film}, code=template_text("download.js") + FILM_SCRIPT)
         )
-        self.address.js_on_change("tags", CustomJS(args={"address": self.address}, code=SHOW_ADDRESS))
+        self.address.js_on_change("tags", CustomJS(args={"address": self.address}, code=ADDRESS_SCRIPT))
         self.root = Column(
             self.address, self.task, self.yaml, Row(copies[0], save), self.file, self.python, copies[1],
             *_picture_buttons(cards, arm), self.film, name="sharing", sizing_mode="stretch_width",
         )  # fmt: skip
 
     def show(self, state: PageState) -> None:
-        """Takes the state; `write` shows it."""
+        """Updates the texts that the buttons copy and save; `write` updates the visible texts."""
         self._state = state
         self.lines.update(config=self._config(), python=state.python())
 
     def write(self) -> None:
-        """Writes the texts of the latest state. Each is a new layout of the page, for which pictures that
-        follow a slider must not wait. Browsers refuse to change an address more than six times a second.
+        """Writes the visible texts of the latest state.
+
+        Each visible text causes a new layout of the page, which would delay pictures that follow a slider.
+        Browsers also refuse to change an address more than six times a second.
         """
         address = self._state.address()
         self.address.update(text=f'<a href="?{escape(address)}">This page as an address</a>', tags=[address])
@@ -95,7 +109,7 @@ class Sharing:
             shown.text = f"<pre>{escape(lines)}</pre>"
 
     def give_film(self, gif: bytes) -> None:
-        """Lets the browser save a film."""
+        """Makes the browser save a film; gif: content of the file."""
         self.film.tags = [b64encode(gif).decode()]
         # Half a megabyte need not stay in the page; taken away in the same message, nothing would be saved.
         self.film.document.add_next_tick_callback(lambda: self.film.update(tags=[""]))
@@ -105,24 +119,26 @@ class Sharing:
         self.write()
 
     def _config(self) -> str:
-        """The config of the chosen task."""
+        """Config for the task that the user has chosen."""
         text = self._state.yaml(self.task.value)
-        return text + FILM_COMMANDS if self.task.value == TASKS[0] else text
+        return text + FILM_COMMANDS if self.task.value == CONFIG_TASKS[0] else text
 
     def _take(self, attribute: str, old: str, new: str) -> None:
         self._loaded(b64decode(new).decode(errors="replace"))
 
 
 def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select | Row]:
-    """A menu of pictures, and a button for each file format."""
-    widgets = sheet("widgets.css")
+    """Menu of the pictures, and a button for each file format in which the browser saves the
+    chosen picture.
+    """
+    widgets = style_sheet("widgets.css")
     figures = {card.root.name: card.figure for card in cards}
     names = list(figures)
     choice = Select(title="Picture", name="picture", options=names, value=names[0], stylesheets=[widgets])
     buttons = []
     for kind in ("png", "svg"):
         button = Button(label=kind.upper(), name=f"{kind}_button", stylesheets=[widgets])
-        code = read("download.js") + read("picture.js")
+        code = template_text("download.js") + template_text("picture.js")
         arguments = {"figures": figures, "choice": choice, "type": kind, "animated": arm}
         button.js_on_click(CustomJS(args=arguments, code=code))
         buttons.append(button)
@@ -130,7 +146,9 @@ def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select |
 
 
 def state_of_text(text: str) -> PageState:
-    """The page state for the text of a config; InputError, as on the command line, for an invalid config."""
+    """State of the page for a config in YAML. Raises the same InputError as the command line for an invalid
+    config.
+    """
     where = "the loaded file"
     tree = parse(text, where)
     if not isinstance(tree, dict):

@@ -1,17 +1,17 @@
-"""Starts the page for a result file, a config, or nothing."""
+"""Start of the page for a result file, for a config, or without a file."""
 
 import asyncio
 from pathlib import Path
 
 from ..errors import InputError
-from .solving.forks import prepare
+from .solving.forks import start_fork_server
 
 
 def explore(source: Path | None, port: int, is_opened: bool) -> None:
-    """Serves the page until Ctrl-C.
+    """Serves the page until the user presses Ctrl-C.
 
-    source: a result file or a config with the first rod to show. is_opened: whether to open a browser. Raises
-    InputError if bokeh is missing, the source is invalid, or the port is in use.
+    source: result file or config with the first rod to show; None for a default rod. is_opened: whether to
+    open a browser. Raises InputError if bokeh is missing, the file is invalid, or the port is in use.
     """
     try:
         import bokeh  # noqa: F401 - only to check that bokeh is installed
@@ -19,10 +19,10 @@ def explore(source: Path | None, port: int, is_opened: bool) -> None:
         raise InputError(
             "the page needs bokeh, which is not installed; pip install 'rodsweep[explore]' brings it"
         ) from None
-    prepare()
+    start_fork_server()
     from .server import serve
     from .state import PageState
-    from .stored import opened
+    from .stored import page_state_of_file
 
-    state, stored = (PageState(), None) if source is None else opened(source)
+    state, stored = (PageState(), None) if source is None else page_state_of_file(source)
     asyncio.run(serve(state, stored, port, is_opened))

@@ -1,4 +1,4 @@
-"""The state of the page, as texts of the controls; can be saved, loaded, and sent as an address."""
+"""State of the page: the texts of all controls. It can be written as an address, a config or Python lines."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -20,61 +20,75 @@ LAWS: dict[str, dict[str, str]] = {
     "fixed": {"law": "neo_hookean", "section": "fixed"},
     "swelling": {"law": "neo_hookean", "section": "swelling"},
 }
-"""Keys of the section `material` for each choice of the law."""
+"""Keys of the config section `material`, by choice of the constitutive law on the page."""
 LAW_NAMES = {
     "linear": "linear",
     "fixed": "neo-Hookean, fixed section",
     "swelling": "neo-Hookean, swelling section",
 }
-ROD = {"F": "50", "k1": "1e4", "k2": "100", "gamma3": "0.01", "gamma1": "1", "taper": "1"}
-"""The first rod to show: the rod of the paper's Fig. 5, which flutters."""
-ARM = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "12 Pa s", "pressure": "4 kPa"}
-"""The first arm to show: silicone in silicone oil."""
-TABS = {"rod": ROD, "arm": ARM}
-ACROSS = {"rod": ("k2", "k1", "gamma3", "taper"), "arm": ("length", "radius", "young", "viscosity")}
-"""Second parameter of the diagram, beside the load; the first is the default."""
+"""Words for each choice of the constitutive law on the page."""
+DEFAULT_ROD = {"F": "50", "k1": "1e4", "k2": "100", "gamma3": "0.01", "gamma1": "1", "taper": "1"}
+"""Parameters of the rod with which the page opens: the rod of the paper's Fig. 5, which flutters."""
+DEFAULT_ARM = {
+    "length": "10 cm",
+    "radius": "5 mm",
+    "young": "100 kPa",
+    "viscosity": "12 Pa s",
+    "pressure": "4 kPa",
+}
+"""Quantities of the arm with which the page opens: silicone in silicone oil."""
+TAB_DEFAULTS = {"rod": DEFAULT_ROD, "arm": DEFAULT_ARM}
+"""First values of each tab, as texts by name."""
+SECOND_PARAMETERS = {
+    "rod": ("k2", "k1", "gamma3", "taper"),
+    "arm": ("length", "radius", "young", "viscosity"),
+}
+"""Choices of the diagram's second parameter on each tab; the first is the default."""
 DEFAULT_F_MAX = "200"
+"""Largest force with which the page opens, in k3/L^2."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PageState:
-    """Values of the controls, in the user's notation."""
+    """Values of all controls of the page, as texts in the user's notation."""
 
     tab: str = "rod"
-    """The tab to solve: "rod" or "arm"."""
-    rod: Mapping[str, str] = field(default_factory=lambda: dict(ROD))
-    """Texts of the tab "rod" by name."""
-    arm: Mapping[str, str] = field(default_factory=lambda: dict(ARM))
-    """Texts of the tab "arm" by name."""
+    """The visible tab, whose rod or arm is solved: "rod" or "arm"."""
+    rod: Mapping[str, str] = field(default_factory=lambda: dict(DEFAULT_ROD))
+    """Texts on the tab "rod", by name of the parameter."""
+    arm: Mapping[str, str] = field(default_factory=lambda: dict(DEFAULT_ARM))
+    """Texts on the tab "arm", by name of the quantity."""
     law: str = "linear"
     """Constitutive law, a key of `LAWS`."""
     across: str = ""
-    """Second parameter of the diagram."""
+    """Second parameter of the diagram as chosen by the user; empty for the default of the tab."""
     F_max: str = DEFAULT_F_MAX
-    """Largest force of thresholds, branches and diagram."""
+    """Largest force of thresholds, branches and diagram, in k3/L^2."""
 
     @property
     def values(self) -> Mapping[str, str]:
-        """Texts of the current tab by name."""
+        """Texts on the visible tab, by name."""
         return self.rod if self.tab == "rod" else self.arm
 
     @property
     def second(self) -> str:
-        """Second parameter of the diagram."""
-        return self.across if self.across in ACROSS[self.tab] else ACROSS[self.tab][0]
+        """Second parameter of the diagram, on the vertical axis."""
+        return self.across if self.across in SECOND_PARAMETERS[self.tab] else SECOND_PARAMETERS[self.tab][0]
 
     @property
     def load(self) -> str:
-        """Name of the load on the current tab."""
+        """Name of the load on the visible tab."""
         return "F" if self.tab == "rod" else "pressure"
 
     def with_values(self, **changed: str) -> "PageState":
-        """A copy with changed texts on the current tab."""
+        """Copy of the state with changed texts on the visible tab."""
         values = {**self.values, **changed}
         return replace(self, rod=values) if self.tab == "rod" else replace(self, arm=values)
 
     def subject(self) -> SoftRod | Arm:
-        """The rod or the arm; InputError, as on the command line, for invalid values."""
+        """Rod or arm of the visible tab. Raises the same InputError as the command line for
+        invalid values.
+        """
         material: dict[str, Any] = dict(LAWS[self.law])
         if self.tab == "arm":
             return Arm(**{name: text.strip() for name, text in self.arm.items()}, **material)
@@ -84,12 +98,14 @@ class PageState:
         return SoftRod(**self.parameters(), **material)
 
     def parameters(self) -> dict[str, Any]:
-        """Parameters of the rod's tab by name, without a taper of 1; an invalid number stays a text."""
+        """Parameters of the tab "rod" by name, without a taper of 1. A text that is no number
+        stays a text.
+        """
         found = {name: number(text) for name, text in self.rod.items()}
         return {name: value for name, value in found.items() if name != "taper" or value != 1}
 
     def largest_force(self) -> float:
-        """`F_max` as a number; InputError unless it is finite and above 0."""
+        """`F_max` as a number. Raises InputError unless it is finite and above 0."""
         value = number(self.F_max)
         if not (isinstance(value, float) and 0 < value < float("inf")):
             raise InputError(
@@ -98,12 +114,12 @@ class PageState:
         return value
 
     def address(self) -> str:
-        """The query of the page's address, which `from_address` reads."""
+        """Query string that encodes the state in the page's address; `from_address` reads it."""
         keys = {"tab": self.tab, **self.values, "law": self.law, "across": self.second, "F_max": self.F_max}
         return urlencode(keys)
 
     def yaml(self, task: str) -> str:
-        """A config of `rodsweep run` with this rod or arm."""
+        """Config in YAML for `rodsweep run` with this rod or arm and the given task."""
         taken = (*CONFIGS[task].taken_of_a_rod({}), *OPTIONAL_PARAMETERS)
         values: dict[str, Any] = {n: v for n, v in self.parameters().items() if n in taken}
         if self.tab == "arm":
@@ -113,7 +129,7 @@ class PageState:
         return yaml_of(tree)
 
     def python(self) -> str:
-        """Python lines that solve this rod or arm."""
+        """Python lines that solve this rod or arm with `rodsweep`."""
         made = f"{self.tab} = rs.{self.subject()!r}"
         return f"import rodsweep as rs\n\n{made}\n" + "".join(
             f"print({self.tab}.{method}())\n" for method in ("spectrum", "thresholds", "cycle")
@@ -121,12 +137,12 @@ class PageState:
 
 
 def rod_of(subject: SoftRod | Arm) -> Mapping[str, float]:
-    """Dimensionless parameters of a rod or an arm."""
+    """Dimensionless parameters, by name, of a rod or an arm."""
     return subject.parameters if isinstance(subject, SoftRod) else SoftRod(arm=subject).parameters
 
 
 def number(text: str) -> Any:
-    """A text as a number, or the text itself for a later error message."""
+    """`text` as a number; the text itself if it is no number, for an error message later."""
     try:
         value = float(text)
     except ValueError:
@@ -135,15 +151,17 @@ def number(text: str) -> Any:
 
 
 def from_address(query: str, default: PageState | None = None) -> PageState:
-    """The state of an address; InputError for an unknown key or choice."""
+    """State of the page from the query string of its address. Raises InputError for an unknown name or
+    choice.
+    """
     state = default or PageState()
     given = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))
-    tab = _choice("tab", given.pop("tab", state.tab), TABS)
+    tab = _choice("tab", given.pop("tab", state.tab), TAB_DEFAULTS)
     state = replace(state, tab=tab)
     law = _choice("law", given.pop("law", state.law), LAWS)
-    across = _choice("across", given.pop("across", state.second), ACROSS[tab])
+    across = _choice("across", given.pop("across", state.second), SECOND_PARAMETERS[tab])
     state = replace(state, law=law, across=across, F_max=given.pop("F_max", state.F_max))
-    known = TABS[tab]
+    known = TAB_DEFAULTS[tab]
     for name in given:
         if name not in known:
             raise InputError(f"unknown key {short(name)} in the address; {hint_of(name, list(known))}")
@@ -151,7 +169,7 @@ def from_address(query: str, default: PageState | None = None) -> PageState:
 
 
 def _choice(key: str, given: str, known: Any) -> str:
-    """Checks that a word is known; InputError otherwise."""
+    """Returns `given` if it is one of `known`; raises InputError otherwise."""
     if given not in known:
         raise InputError(f"{key} = {short(given)} is not allowed; it must be {' or '.join(known)}")
     return given

@@ -1,4 +1,4 @@
-"""The page for a result file or a config: its first rod, and the diagram stored in a result file."""
+"""State of the page for a result file or a config: its first rod, and the diagram of a result file."""
 
 import json
 from collections.abc import Mapping
@@ -13,21 +13,22 @@ from ..config.schema import Config
 from ..errors import InputError
 from .scales import SCALES
 from .solving.diagrams import Dataset, of_arms, of_phases, of_rows
-from .state import ACROSS, ARM, DEFAULT_F_MAX, LAWS, ROD, PageState
+from .state import DEFAULT_ARM, DEFAULT_F_MAX, DEFAULT_ROD, LAWS, SECOND_PARAMETERS, PageState
 from .stored_results import StoredResults
 
-RESULTS = (".h5", ".hdf5", ".nc")
-"""Suffixes of result files; all other files are configs."""
-NOT_SHOWN = ("density_difference", "fluid_density", "law", "section")
-"""Quantities of an arm without effect on the page, or with a control outside the arm's tab."""
+RESULT_SUFFIXES = (".h5", ".hdf5", ".nc")
+"""Suffixes of result files; a file with any other suffix is read as a config."""
+HIDDEN_QUANTITIES = ("density_difference", "fluid_density", "law", "section")
+"""Quantities of an arm that have no effect on the page, or whose control is outside the tab of the arm."""
 
 
-def opened(path: Path) -> tuple[PageState, StoredResults | None]:
-    """(state of the first page, answers from the file; None for a config) of a result file or a config.
+def page_state_of_file(path: Path) -> tuple[PageState, StoredResults | None]:
+    """(state with which the page opens, stored answers) for a result file or a config; the answers of a
+    config are None.
 
-    Raises InputError for any other file, and for arms that the page cannot show.
+    Raises InputError for any other file, and for an arm that the page cannot show.
     """
-    if path.suffix not in RESULTS:
+    if path.suffix not in RESULT_SUFFIXES:
         return state_of(load_config(path)[0], path), None
     data = open_result(path)
     try:
@@ -38,9 +39,10 @@ def opened(path: Path) -> tuple[PageState, StoredResults | None]:
 
 
 def state_of(config: Config, path: Path) -> PageState:
-    """The page state for a config.
+    """State of the page for a config.
 
-    Each axis has its middle value; the axis with most values, except the load, is the diagram's second.
+    Every axis takes its middle value. The axis with most values, other than the load, is the second parameter
+    of the diagram.
     """
     if config.parameters.arm is not None:
         return _state_of_arm(config, path)
@@ -48,7 +50,7 @@ def state_of(config: Config, path: Path) -> PageState:
     axes = {name: axis.array() for name, axis in config.parameters.axes.items()}
     if not axes:
         raise InputError(f"{path}: a list of points has no diagram; the page needs axes of parameters")
-    rod = {name: _text(axes[name]) if name in axes else text for name, text in ROD.items()}
+    rod = {name: _text(axes[name]) if name in axes else text for name, text in DEFAULT_ROD.items()}
     across = _across("rod", axes)
     F = axes.get("F", np.zeros(1))
     largest = f"{F.max():g}" if len(F) > 1 and F.max() > 0 else DEFAULT_F_MAX
@@ -59,13 +61,14 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
     section: Any = config.parameters.arm
     given = {name: getattr(section, name) for name in type(section).model_fields}
     given = {name: value for name, value in given.items() if value is not None}
-    left_out = [name for name in given if name not in (*ARM, *NOT_SHOWN)]
+    left_out = [name for name in given if name not in (*DEFAULT_ARM, *HIDDEN_QUANTITIES)]
     if left_out:
         raise InputError(
-            f"{path}: the page cannot show an arm with {left_out[0]}; its controls are {', '.join(ARM)}"
+            f"{path}: the page cannot show an arm with {left_out[0]}; "
+            f"its controls are {', '.join(DEFAULT_ARM)}"
         )
-    texts = dict(ARM)
-    axes = {name: given[name].array() for name in ARM if name in given}
+    texts = dict(DEFAULT_ARM)
+    axes = {name: given[name].array() for name in DEFAULT_ARM if name in given}
     for name, values in axes.items():
         scale = SCALES["arm"][name]
         texts[name] = scale.text(scale.factor * float(values[len(values) // 2]))
@@ -73,16 +76,15 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
 
 
 def _across(tab: str, axes: Mapping[str, np.ndarray]) -> str:
-    """Name of the second parameter of a tab's diagram: the possible axis with most values; "" without one.
-
-    Values: (values,) each.
+    """Possible second parameter of a tab's diagram with most values in `axes`; "" without one. Values:
+    (values,) each.
     """
-    several = [name for name in ACROSS[tab] if name in axes and len(axes[name]) > 1]
+    several = [name for name in SECOND_PARAMETERS[tab] if name in axes and len(axes[name]) > 1]
     return max(several, key=lambda name: len(axes[name]), default="")
 
 
 def _law(config: Config, path: Path) -> str:
-    """Key of `LAWS` of a config."""
+    """Constitutive law of a config, as a key of `LAWS`."""
     build = config.build
     if build.profile is not None:
         raise InputError(f"{path}: the page cannot show an arm with a profile, only uniform arms and cones")
@@ -95,7 +97,9 @@ def _text(values: np.ndarray) -> str:
 
 
 def stored_diagram(data: Dataset, state: PageState) -> dict[str, Any] | None:
-    """The stored diagram of a file over the load and the state's second parameter; None without a diagram."""
+    """Diagram of a result file over the load and the second parameter of `state`; None if the
+    file has none.
+    """
     second = state.second
     dims = set(data["status"].dims)
     if second not in dims or data.sizes[second] < 2:

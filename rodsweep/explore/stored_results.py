@@ -1,4 +1,4 @@
-"""Answers from a result file, so that nothing is solved again: diagram, cycles and branches."""
+"""Answers read from a result file instead of solved: diagram, cycles and branches."""
 
 import json
 from collections.abc import Collection
@@ -20,25 +20,27 @@ from .solving.branches import drawn_branches
 from .solving.diagrams import Dataset, words_of
 from .state import PageState
 
-Found = dict[str, Any]
-DIGITS = (5, 6)
-"""Significant digits to which controls round values of a file; a rounded value stands for the stored one."""
-EQUAL = 1e-12
-"""Relative difference between equal values, as conversion of units leaves it."""
-POINT = "number_of_point"
-"""Dimension along which chosen points lie."""
-NEAR = 0.25
-"""Distance within which a click means a stored load, as a fraction of the distance between stored loads."""
+AnswerVariables = dict[str, Any]
+"""Variables of an answer, by name."""
+CONTROL_DIGITS = (5, 6)
+"""Numbers of significant digits to which controls round values. A rounded value in a control matches the
+stored value."""
+EQUALITY_TOLERANCE = 1e-12
+"""Relative difference up to which two values are equal; conversion of units causes rounding errors."""
+POINT_DIMENSION = "number_of_point"
+"""Name of the dimension along which selected points of the file lie."""
+CLICK_TOLERANCE = 0.25
+"""Distance of a click from a stored load within which the click selects this load, as a fraction of the
+spacing of stored loads."""
 
 
 class StoredResults:
-    """A result file of rods or of arms.
+    """Answers to questions of the page from a result file of rods or arms.
 
-    state: state of the page opened by the file. diagram: answer to the question `diagram` in this state, or
-    None.
+    state: state with which the page opens. diagram: answer to the question "diagram" for this state, or None.
     """
 
-    def __init__(self, path: Path, data: Dataset, state: PageState, diagram: Found | None):
+    def __init__(self, path: Path, data: Dataset, state: PageState, diagram: AnswerVariables | None):
         self.path = path
         self.data = data
         self.state = state
@@ -48,8 +50,10 @@ class StoredResults:
         self.has_cycles = "tip_y_max" in data and data["tip_y_max"].dims == self.dims
         """Whether each point has one cycle."""
 
-    def answer(self, kind: str, state: PageState) -> Found | None:
-        """The stored answer to a question about a state; None if the file does not hold it."""
+    def answer(self, kind: str, state: PageState) -> AnswerVariables | None:
+        """Stored answer to a question of the kind `kind` for a state of the page; None if the
+        file has none.
+        """
         if state.tab != self.state.tab or state.law != self.state.law:
             return None
         if kind == "cycle":
@@ -59,7 +63,9 @@ class StoredResults:
         return None
 
     def cycle_to_film(self, state: PageState) -> Dataset | None:
-        """The stored cycle of a rod, with axes of length 1, if it has enough shapes for a film; else None."""
+        """Stored cycle of the rod of `state`, with axes of length 1; None if there is none, or too few shapes
+        for a film.
+        """
         numbers = self._points(state)
         is_other = state.tab != self.state.tab or state.law != self.state.law
         if is_other or not self.has_cycles or len(numbers) == 0 or "shape_x" not in self.data:
@@ -70,7 +76,9 @@ class StoredResults:
         return point if is_filmed else None
 
     def load_near(self, state: PageState, at: float) -> float:
-        """The stored load, in the unit of its control, that a click at a load means, or the load itself."""
+        """Stored load nearest to `at` if a click there selects it, else `at`; both in the unit of the
+        control.
+        """
         if state.tab != self.state.tab or not self.has_cycles:
             return at
         stored = np.unique(self._values(state.tab, state.load)[self._points(state, (state.load,))])
@@ -78,10 +86,12 @@ class StoredResults:
             return at
         nearest = float(stored[np.argmin(np.abs(stored - at))])
         spacing = float(np.min(np.diff(stored)))
-        return nearest if abs(nearest - at) < NEAR * spacing else at
+        return nearest if abs(nearest - at) < CLICK_TOLERANCE * spacing else at
 
     def _values(self, tab: str, name: str) -> Array:
-        """Values of a parameter or of an arm's quantity at all points, (points,), in the control's unit."""
+        """Values of a parameter or of an arm's quantity at all points of the file, (points,), in the unit of
+        the control.
+        """
         default = PARAMETERS[name].default if name in PARAMETERS else None
         missing = nan if default is None else default
         own = self.data[name] if name in self.data.variables else missing
@@ -90,7 +100,9 @@ class StoredResults:
         return values
 
     def _points(self, state: PageState, free: Collection[str] = ()) -> NDArray[np.integer]:
-        """Numbers of the points of a state with any value of the free parameters."""
+        """Indices of the points of the file whose parameters equal those of `state`, except for the
+        parameters in `free`.
+        """
         same = np.ones(self.data["status"].size, dtype=bool)
         for name, text in state.values.items():
             if name not in free:
@@ -100,24 +112,26 @@ class StoredResults:
         return np.flatnonzero(same)
 
     def _at(self, numbers: NDArray[np.integer]) -> Dataset:
-        """Points by number, along the dimension `POINT`."""
+        """Points of the file with the given indices, along the dimension `POINT_DIMENSION`."""
         if not self.dims:
-            return self.data.expand_dims(POINT)
-        return self.data.stack({POINT: self.dims}, create_index=False).isel({POINT: numbers})
+            return self.data.expand_dims(POINT_DIMENSION)
+        return self.data.stack({POINT_DIMENSION: self.dims}, create_index=False).isel(
+            {POINT_DIMENSION: numbers}
+        )
 
-    def _cycle(self, state: PageState) -> Found | None:
-        """The stored cycle of a rod, if its shapes are stored too."""
+    def _cycle(self, state: PageState) -> AnswerVariables | None:
+        """Stored cycle of the rod of `state`; None if the file does not store its shapes."""
         numbers = self._points(state)
         if len(numbers) == 0 or "shape_x" not in self.data:
             return None
-        point = self._at(numbers[:1]).isel({POINT: 0})
+        point = self._at(numbers[:1]).isel({POINT_DIMENSION: 0})
         status = str(words_of(point["status"]))
         F = float(point["F"])
         k1 = float(point["k1"])
         is_drawn = np.isfinite(point["shape_x"].values).all()
         if status == "missing" or (not is_drawn and not (state.law == "linear" and "taper" not in point)):
             return None
-        found: Found = {str(name): array.values for name, array in point.variables.items()}
+        found: AnswerVariables = {str(name): array.values for name, array in point.variables.items()}
         u = point["u"].values
         return found | {
             "status": status, "sentence": sentences_in(self.data.attrs).get(status, ""),
@@ -126,8 +140,8 @@ class StoredResults:
             "x": (1 - F / k1) * u, "y": np.zeros(len(u)),
         }  # fmt: skip
 
-    def _cycles_over_force(self, state: PageState) -> Found | None:
-        """The stored cycles of a rod at all forces, at least two."""
+    def _cycles_over_force(self, state: PageState) -> AnswerVariables | None:
+        """Stored cycles of the rod of `state` at all forces; None if the file has fewer than two forces."""
         numbers = self._points(state, (state.load,))
         if len(numbers) < 2:
             return None
@@ -140,23 +154,27 @@ class StoredResults:
         cycles = {"F": line["F"].values[known], "y": y[known], "stable": stable}
         return {"pieces": [], "special": [], "cycles": cycles, **self._found()}
 
-    def _branch(self, state: PageState) -> Found | None:
-        """The stored branches of a rod along the force."""
+    def _branch(self, state: PageState) -> AnswerVariables | None:
+        """Stored branches of the rod of `state` along the force; None if the file has none."""
         numbers = self._points(state, (state.load,))
         if len(numbers) == 0 or "branch_F" not in self.data:
             return None
         rod = int(numbers[0])
-        point = self._at(numbers[:1]).isel({POINT: 0})
+        point = self._at(numbers[:1]).isel({POINT_DIMENSION: 0})
         if words_of(point["status"]) == "missing":
             return None
         stop = float(json.loads(self.data.attrs["config_resolved"])["branch"]["stop"])
         return drawn_branches(RodBranches(view_of_dataset(self.data, self.path), rod), stop) | self._found()
 
-    def _found(self) -> Found:
+    def _found(self) -> AnswerVariables:
         return {"status": "ok", "sentence": "", "source": f"stored in {self.path.name}"}
 
 
 def _stands_for(value: float, stored: float) -> bool:
-    """Whether a control's value is a stored one, or the stored one rounded."""
-    rounded = [float(f"{stored:.{digits}g}") for digits in DIGITS]
-    return any(each == value or abs(each - value) <= EQUAL * abs(each) for each in (stored, *rounded))
+    """Whether a control's value equals the stored value, possibly after rounding the stored value to
+    CONTROL_DIGITS.
+    """
+    rounded = [float(f"{stored:.{digits}g}") for digits in CONTROL_DIGITS]
+    return any(
+        each == value or abs(each - value) <= EQUALITY_TOLERANCE * abs(each) for each in (stored, *rounded)
+    )

@@ -1,5 +1,5 @@
-"""Texts that change with every answer, in elements outside of Bokeh's layout: each change of a `Div` is a new
-layout of the whole page.
+"""Texts of the page that change with every answer. They are outside Bokeh's layout, because each change of a
+Bokeh `Div` causes a new layout of the whole page.
 """
 
 from collections.abc import Sequence
@@ -10,26 +10,26 @@ from bokeh.events import DocumentReady
 from bokeh.model import DataModel
 from bokeh.models import CustomJS
 
-from .look import read
+from .look import template_text
 
 
 class PageText(DataModel):
-    """HTML of the element in which the template embeds this model."""
+    """HTML text that the browser inserts where the template embeds this model."""
 
     text = String(default="")
 
 
 class SolvingSign(PageText):
-    """The sign "solving ..."; `is_stoppable`: whether the button "Stop" is shown beside it."""
+    """The text "solving ..."; is_stoppable: whether the button "Stop" is visible next to it."""
 
     is_stoppable = Bool(default=False)
 
 
 def show_texts(document: Document, texts: Sequence[PageText]) -> None:
-    """Adds texts to a document, with the code of the browser that shows them."""
+    """Adds texts to a Bokeh document, with a browser script that displays every change."""
     for text in texts:
         document.add_root(text)
-        shown = CustomJS(args={"text": text}, code=read("text.js"))
+        shown = CustomJS(args={"text": text}, code=template_text("text.js"))
         for name in text.properties() & {"text", "is_stoppable"}:
             text.js_on_change(name, shown)
         document.js_on_event(DocumentReady, shown)

@@ -1,1 +1,3 @@
-"""Summaries and figures from result files. The only importer of matplotlib; knows no solver."""
+"""Summaries, tables, figures and reports from result files. Only this package imports matplotlib. It contains
+no solver.
+"""

@@ -1,8 +1,8 @@
-"""Branches of cycles in a file of the task branch: curves, stability, and ranges of the parameter.
+"""Branches of cycles in a result file of the task `branch`: curves, stability, and ranges of the parameter.
 
-A branch is a curve through cycles and special points. At a crossing of the unit circle by multipliers the
-branch has a special point. A cycle with a multiplier on the circle, within the error, therefore has the
-stability of all cycles between the same two special points, if equal.
+A branch is a curve through cycles and special points, at which Floquet multipliers cross the unit circle. A
+cycle with a multiplier on the circle, within the error, therefore takes the stability of the other cycles
+between the same two special points, if all agree.
 """
 
 from collections.abc import Iterable, Iterator
@@ -20,17 +20,18 @@ from ..results.file.view import View
 from ..results.layouts.branch import END_REASONS, SPECIAL_KINDS
 
 HOPF, FOLD, END = (SPECIAL_KINDS.index(kind) for kind in ("hopf", "fold", "end"))
-STOPPED = ("no_cycle_found", "list_full")
-"""Reasons for an end beyond which a branch goes on."""
+"""Codes of the kinds of special points in a result file."""
+STOP_REASONS = ("no_cycle_found", "list_full")
+"""Reasons why following a branch stopped before the branch ended."""
 RANGE_GAP_TOLERANCE = 1e-9
-"""Largest relative distance between two ranges that are joined."""
+"""Largest relative gap between two ranges that are joined to one."""
 Range = tuple[float, float]
-"""(smallest, largest) value of the parameter."""
+"""(smallest, largest) value of the followed parameter."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoredSpecialPoint:
-    """Special point of a branch as the file stores it."""
+    """Special point of a branch of cycles: its variables in a result file, without the prefix `special_`."""
 
     kind: str
     at: float
@@ -47,42 +48,41 @@ class StoredSpecialPoint:
 
 @dataclass(frozen=True, slots=True)
 class StoredBranch:
-    """Branch of cycles through n vertices: stored cycles and special points.
+    """Branch of cycles: a curve through n vertices, which are stored cycles and special points.
 
-    at, y, period: parameter, largest tip y and period at the vertices, (n,).
+    at, y, period: followed parameter, largest y of the tip, and period at the vertices, (n,).
     """
 
     at: Array
     y: Array
     period: Array
     stable: NDArray[np.integer]
-    """Stability of the pieces between the vertices, (n - 1,): 1 stable, 0 unstable, -1 unknown."""
+    """Stability between neighbouring vertices, (n - 1,): 1 stable, 0 unstable, -1 unknown."""
     cycles: NDArray[np.bool_]
     """Whether a vertex is a stored cycle, (n,)."""
     special: tuple[StoredSpecialPoint, ...]
 
     @property
     def stable_ranges(self) -> list[Range]:
-        """Ranges of the parameter in which a cycle of the branch is stable."""
+        """Ranges of the parameter in which the branch has a stable cycle."""
         pieces = np.flatnonzero(self.stable == 1)
         return union((min(self.at[i : i + 2]), max(self.at[i : i + 2])) for i in pieces)
 
     @property
     def errors(self) -> dict[float, float]:
-        """Absolute errors of the special points, by their positions."""
+        """Absolute error of each special point, by its parameter value."""
         return {float(special.at): special.error for special in self.special}
 
     @property
     def is_decided(self) -> bool:
-        """Whether the branch is followed to its end, and the stability of all its cycles is known."""
-        return self.special[-1].reason not in STOPPED and bool((self.stable >= 0).all())
+        """Whether the branch was followed to its end and the stability of all its cycles is known."""
+        return self.special[-1].reason not in STOP_REASONS and bool((self.stable >= 0).all())
 
     def near_hopf_points(self) -> list[tuple[Array, Array, NDArray[np.integer]]]:
-        """For each Hopf point at an end of the branch: (|at/at_H - 1|, y/|a|, stability) up to the first
-        fold.
+        """For each Hopf point at an end: (|at/at_H - 1|, y/|a|, stability) up to the first fold.
 
-        at_H and a: position and amplitude coefficient of the Hopf point, which itself is left out; Hopf
-        points without a are left out. Shapes (n,), (n,) and (n - 1,), n > 1.
+        at_H, a: parameter and amplitude coefficient of the Hopf point, which itself is left out, as are Hopf
+        points without a. Shapes (n,), (n,) and (n - 1,), n > 1.
         """
         found = []
         for special, order in ((self.special[0], slice(None)), (self.special[-1], slice(None, None, -1))):
@@ -99,21 +99,21 @@ class StoredBranch:
 
 
 def followed_parameter(view: View) -> str:
-    """Parameter along which the branches of a file are followed."""
+    """Name of the parameter along which the branches in a result file are followed."""
     return next(name for name in PARAMETERS if f"branch_{name}" in view.variables)
 
 
 def ends_of(view: View) -> Range:
-    """(start, stop) of the followed parameter."""
+    """(start, stop) of the range in which the branches in a result file are followed."""
     options = view.config["branch"]
     return float(options["start"]), float(options["stop"])
 
 
 class RodBranches:
-    """Branches of a rod, and the ranges of the parameter in which its states are stable.
+    """Branches of cycles of one rod, and ranges of the parameter in which its states are stable.
 
-    rod: place among all points. curves: branches with all special points stored. hidden: number of the
-    others.
+    rod: index among the points of the file. curves: branches whose special points are all stored. hidden:
+    number of all other branches.
     """
 
     def __init__(self, view: View, rod: int = 0):
@@ -130,36 +130,36 @@ class RodBranches:
 
     @property
     def errors(self) -> dict[float, float]:
-        """Absolute errors of the special points, by their positions."""
+        """Absolute error of each special point of all branches, by its parameter value."""
         return {at: error for curve in self.curves for at, error in curve.errors.items()}
 
     @property
     def stable_cycles(self) -> list[Range]:
-        """Ranges with a stable cycle."""
+        """Ranges of the parameter in which the rod has a stable cycle."""
         return union(piece for curve in self.curves for piece in curve.stable_ranges)
 
     @property
     def two_cycles(self) -> list[Range]:
-        """Ranges in which cycles on two branches are stable."""
+        """Ranges of the parameter in which stable cycles exist on two branches."""
         pairs = combinations([curve.stable_ranges for curve in self.curves], 2)
         return union(piece for one, other in pairs for piece in intersection(one, other))
 
     @property
     def coexistence(self) -> list[Range]:
-        """Ranges with a stable cycle and a stable straight rod."""
+        """Ranges of the parameter in which a stable cycle exists and the straight rod is stable."""
         return intersection(self.stable_cycles, self.straight_ranges(ends_of(self.view))[0])
 
     @property
     def coexistence_is_decided(self) -> bool:
-        """Whether the stability of all cycles and of the straight rod is known in the whole range."""
+        """Whether the stability of all cycles and of the straight rod is known in the followed range."""
         after = self._v["special_unstable_after"][self._v["special_kind"] == HOPF]
         straight = int(self._v["unstable_at_start"]) >= 0 and bool((after >= 0).all())
         return straight and all(curve.is_decided for curve in self.curves)
 
     def straight_ranges(self, ends: Range) -> tuple[list[Range], list[Range]]:
-        """(ranges of the stable straight rod, ranges of the unstable straight rod) between two ends.
+        """(ranges in which the straight rod is stable, ranges in which it is unstable) within `ends`.
 
-        Both are empty if the special points of some branch are not stored.
+        Both lists are empty if special points of some branch are not stored.
         """
         pieces = [] if self.hidden else self.straight_pieces(ends)
         stable, unstable = (union((low, high) for low, high, s in pieces if s == kind) for kind in (1, 0))
@@ -180,13 +180,13 @@ class RodBranches:
 
 
 def runs_of(stable: NDArray[np.integer]) -> Iterator[tuple[slice, int]]:
-    """Yields (vertices, stability) of each run of equal stability among the pieces of a curve, (n - 1,)."""
+    """Yields (vertices, stability) of each run of equal values in `stable`, (n - 1,), between vertices."""
     starts = [0, *(np.flatnonzero(np.diff(stable)) + 1), len(stable)]
     yield from ((slice(a, b + 1), int(stable[a])) for a, b in pairwise(starts) if b > a)
 
 
 def _stored_branch(v: dict[str, Array], along: str, number: int) -> StoredBranch:
-    """A branch of a rod, by its number from 1; v: variables of the rod."""
+    """Branch number `number`, from 1, of a rod. v: variables of the rod. along: followed parameter."""
     cycles = np.flatnonzero(v["branch"] == number)
     special = np.flatnonzero(v["special_branch"] == number)
     before = special[v["special_point"][special] == 0]
@@ -210,16 +210,16 @@ def _stored_branch(v: dict[str, Array], along: str, number: int) -> StoredBranch
 
 
 def _special_point(v: dict[str, Array], place: int) -> StoredSpecialPoint:
-    """Special point at a place of the stored list."""
+    """Special point at index `place` of the stored list. v: variables of the rod."""
     values = {field.name: v[f"special_{field.name}"][place].item() for field in fields(StoredSpecialPoint)}
     words = {"kind": SPECIAL_KINDS[values["kind"]], "reason": END_REASONS[values["reason"]]}
     return StoredSpecialPoint(**values | words)
 
 
 def stability_of_pieces(counts: list[int | None]) -> NDArray[np.integer]:
-    """Stability of the pieces between n vertices, (n - 1,): 1 stable, 0 unstable, -1 unknown.
+    """Stability between neighbouring vertices of a branch, (n - 1,): 1 stable, 0 unstable, -1 unknown.
 
-    counts: least number of unstable multipliers at each vertex, -1 if undecided, None at a special point.
+    counts: least number of unstable multipliers at n vertices; -1 if unknown, None at special points.
     """
     stable = [-1] * (len(counts) - 1)
     special = [i for i, count in enumerate(counts) if count is None]
@@ -233,7 +233,7 @@ def stability_of_pieces(counts: list[int | None]) -> NDArray[np.integer]:
 
 
 def union(ranges: Iterable[Range]) -> list[Range]:
-    """Union of ranges, in increasing order; ranges that touch or overlap are joined."""
+    """Union of ranges, in increasing order. Ranges that overlap or touch are joined."""
     found: list[Range] = []
     for low, high in sorted((float(a), float(b)) for a, b in ranges):
         if found and low <= found[-1][1] * (1 + RANGE_GAP_TOLERANCE):
@@ -244,6 +244,6 @@ def union(ranges: Iterable[Range]) -> list[Range]:
 
 
 def intersection(first: list[Range], second: list[Range]) -> list[Range]:
-    """Intersection of two unions of ranges."""
+    """Intersection of two unions of ranges; ranges of zero length are left out."""
     common = [(max(a, c), min(b, d)) for a, b in first for c, d in second]
     return [(low, high) for low, high in common if high > low * (1 + RANGE_GAP_TOLERANCE)]

@@ -1,4 +1,4 @@
-"""Export of a table as CSV: one row for each item, words for flags, empty cells for missing values."""
+"""Export of a table of results as CSV: words for flags, empty cells for missing values."""
 
 import csv
 from dataclasses import dataclass
@@ -13,17 +13,17 @@ from .tables import Table, Tables
 from .whole_file import written_whole
 
 SEPARATORS = {".csv": ",", ".tsv": "\t"}
-"""Separator of the columns, by the suffix of the file."""
-ROWS_AT_ONCE = 4096
-"""Number of rows converted to text at once, to bound the memory."""
+"""Character between two columns, by the suffix of the output file."""
+EXPORT_BATCH_ROWS = 4096
+"""Number of rows converted to text at a time, which bounds the memory."""
 
 
 @dataclass(frozen=True, slots=True)
 class ExportRequest:
-    """Request for the export of a table.
+    """Options for the export of a table.
 
-    table: by default the table that has the columns, or the first table of the task. columns: by default all.
-    units: whether headings have units. replace: whether an existing file is overwritten.
+    table: name; by default the table that has the columns, or the first table of the task. columns: names; by
+    default all. units: whether headings contain units. replace: whether to overwrite an existing file.
     """
 
     table: str | None = None
@@ -33,7 +33,9 @@ class ExportRequest:
 
 
 def export(view: View, output: Path, request: ExportRequest) -> str:
-    """Writes a table of a result; returns a sentence about it. Raises InputError for a bad name."""
+    """Writes one table of a result to a file and returns a sentence about it. Raises InputError for an
+    unknown table or column, and for a bad output name.
+    """
     if output.is_dir() or output.suffix not in SEPARATORS:
         endings = "; ".join((".csv separates columns by commas", ".tsv by tabs"))
         raise InputError(f"--output {output}: the name must end in .csv or .tsv ({endings})")
@@ -46,16 +48,16 @@ def export(view: View, output: Path, request: ExportRequest) -> str:
 
 
 def _write(table: Table, separator: str, units: bool, stream: TextIO) -> None:
-    """Writes a table, ROWS_AT_ONCE rows at a time."""
+    """Writes a table to `stream`, EXPORT_BATCH_ROWS rows at a time."""
     lines = csv.writer(stream, delimiter=separator, lineterminator="\n")
     lines.writerow(f"{c.name} [{c.unit}]" if units and c.unit != "1" else c.name for c in table.columns)
-    for start in range(0, table.rows, ROWS_AT_ONCE):
-        texts = [column.rows(slice(start, start + ROWS_AT_ONCE)).text() for column in table.columns]
+    for start in range(0, table.rows, EXPORT_BATCH_ROWS):
+        texts = [column.rows(slice(start, start + EXPORT_BATCH_ROWS)).text() for column in table.columns]
         lines.writerows(zip(*texts, strict=True))
 
 
 def _sentence(table: Table, view: View) -> str:
-    """Sentence on the written table, points without rows, and further tables."""
+    """Sentence on the written table: its size, points without a row, and the names of the other tables."""
     text = f"{counted(table.rows, 'row')} of {table.name} in {counted(len(table.columns), 'column')}"
     if table.empty_points:
         text += f"; {table.empty_points} of {counted(view.variables['status'].size, 'point')} without any"

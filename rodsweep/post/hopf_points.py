@@ -1,7 +1,7 @@
-"""Changes of the straight rod along a line of points of a file: located, or bracketed by two points.
+"""Changes of stability of the straight rod along a line of points of a result file, located or bracketed.
 
-The task has located the changes and stored them. Nothing is solved or interpolated here: a change not located
-by a solver is only known to lie between two points.
+The task has located the changes and stored them. Nothing is solved or interpolated here. A change that no
+solver has located is known only to lie between two points of the file.
 """
 
 from collections.abc import Mapping
@@ -17,57 +17,64 @@ from ..results.layouts.limit_cycle import HOPF_ALONG
 from ..results.layouts.thresholds import CROSSING_KINDS
 from ..sweep.points.points import ParameterLine
 
-ON_A_HOPF_POINT = 1e-9
-"""Relative distance of a point of a file from a Hopf point below which its growth rate is rounding error."""
+HOPF_POINT_TOLERANCE = 1e-9
+"""Relative distance of a point of the file from a Hopf point below which the growth rate at the point is
+rounding error."""
 STABILITY_CHANGES = {("hopf", 2), ("restabilization", 0)}
-"""(kind, number of growing modes beyond) of Hopf points at which the stability of the straight rod changes.
-At other Hopf points further modes become unstable or stable."""
+"""(kind, number of unstable modes beyond) of Hopf points at which the stability of the straight rod changes.
+At all other Hopf points the rod stays unstable."""
 
 
 @dataclass(frozen=True, slots=True)
 class LocatedChange:
-    """Change of the straight rod at a position along a parameter, with an error estimate in its unit.
+    """Change of the straight rod at a parameter value `position`, with an absolute error estimate.
 
-    kind: `hopf` if a pair crosses the imaginary axis and the rod is unstable above; `restabilization` if it
-    is stable above; `onset` if two real eigenvalues merge into a pair and the rod stays stable.
+    kind: `hopf` if a pair of eigenvalues crosses the imaginary axis and the rod is unstable above;
+    `restabilization` if the rod is stable above; `onset` if two real eigenvalues merge into a pair and the
+    rod stays stable.
     """
 
     position: float
     error: float
     kind: str
     frequency: float = nan
-    """Frequency of the modes that cross, in 1/tau2; NaN if unknown, and for an onset."""
+    """Angular frequency of the pair that crosses the imaginary axis, in 1/tau2; NaN if unknown, and for an
+    onset."""
 
     @property
     def is_hopf(self) -> bool:
-        """Whether the straight rod changes its stability."""
+        """Whether the stability of the straight rod changes."""
         return self.kind != "onset"
 
     def agrees(self, other: "LocatedChange") -> bool:
-        """Whether two changes may be the same: equal in kind, and in position within the errors."""
+        """Whether two located changes may be the same: equal kind, and equal position within the errors."""
         return self.kind == other.kind and abs(self.position - other.position) <= self.error + other.error
 
 
 @dataclass(frozen=True, slots=True)
 class BracketedChange:
-    """Two neighbouring points of a line with a change of stability of the straight rod in between."""
+    """Interval between two neighbouring points of a file, in which the stability of the straight
+    rod changes.
+    """
 
     low: float
     high: float
     kind: str
-    """`hopf` or `restabilization`."""
+    """`hopf` if the rod is unstable above the interval, `restabilization` if it is stable."""
 
 
-def place_of(change: LocatedChange | BracketedChange) -> float:
-    """Position by which changes along a line are ordered."""
+def sort_position(change: LocatedChange | BracketedChange) -> float:
+    """Parameter value by which changes are sorted: the position, or the lower end of the
+    bracketing interval.
+    """
     return change.position if isinstance(change, LocatedChange) else change.low
 
 
 class StoredChanges:
-    """Changes of the straight rod along lines over a parameter, as stored in a file.
+    """Changes of the straight rod along the parameter `name`, as stored in a result file.
 
-    Files of spectra and modes have changes over F, with onsets of oscillation; files of limit cycles have
-    Hopf points along any parameter. Both lie between points of lines.
+    Files of spectra and modes store changes along F, with onsets of oscillation. Files of limit cycles store
+    Hopf points along any parameter.
     """
 
     def __init__(self, view: View, name: str):
@@ -84,7 +91,9 @@ class StoredChanges:
             self._read(v, name, "change", np.ones(len(v["change_kind"]), bool))
 
     def _read(self, v: Mapping[str, np.ndarray], name: str, prefix: str, along: NDArray[np.bool_]) -> None:
-        """Reads the changes selected by `along` from variables with a prefix."""
+        """Reads the changes selected by the mask `along` from the variables whose names start
+        with `prefix`.
+        """
         rods = np.stack([v[f"{prefix}_{other}"] for other in self.others], axis=-1)
         fields = (name, "error", "frequency", "kind")
         at, error, frequency, kind = (v[f"{prefix}_{field}"] for field in fields)
@@ -101,20 +110,20 @@ class StoredChanges:
             self.by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
 
     def up_to(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
-        """Changes on a line and at smaller values of the parameter, as far as the search reached."""
-        return sorted({*self.on(line), *self._stored(line, -inf)}, key=place_of)
+        """Changes on a line and at smaller values of the parameter, as far down as the search reached."""
+        return sorted({*self.on(line), *self._stored(line, -inf)}, key=sort_position)
 
     def _stored(self, line: ParameterLine, low: float) -> list[LocatedChange]:
-        """Stored changes from a value to the last point of a line."""
+        """Located changes between the parameter value `low` and the last point of a line."""
         rod = tuple(line.parameters[other] for other in self.others)
         high = line.x.max(initial=-inf)
         return [point for point in self.by_rod.get(rod, []) if _within(point, low, high)]
 
     def on(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
-        """Changes on a line, in increasing order.
+        """Changes on a line, in increasing order of the parameter.
 
-        If the growth rates of two neighbours differ in sign and no stored change explains the difference,
-        because the search failed, the change is only known to lie between them.
+        If the growth rates at two neighbouring points differ in sign and no located change lies between,
+        because the search failed, the two points bracket a change.
         """
         if not len(line.x):
             return []
@@ -130,10 +139,10 @@ class StoredChanges:
             high = float(x[i + 1])
             if sum(_within(point, low, high) for point in changes) % 2 == 0:
                 found.append(BracketedChange(low, high, "hopf" if grows[i + 1] else "restabilization"))
-        return sorted(found, key=place_of)
+        return sorted(found, key=sort_position)
 
 
 def _within(point: LocatedChange, low: float, high: float) -> bool:
-    """Whether a change lies between two values, or on a value within rounding."""
-    margin = max(point.error, ON_A_HOPF_POINT * abs(point.position))
+    """Whether a located change lies between `low` and `high`, up to rounding error."""
+    margin = max(point.error, HOPF_POINT_TOLERANCE * abs(point.position))
     return bool(low - margin <= point.position <= high + margin)

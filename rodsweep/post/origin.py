@@ -1,4 +1,6 @@
-"""Lines about the cost and the origin of a result: computing time, ranks, dates, versions, BLAS kernels."""
+"""Lines about the cost and the provenance of a result: computing time, MPI ranks, dates, versions, BLAS
+kernels.
+"""
 
 from typing import Any
 
@@ -10,7 +12,9 @@ from ..wording import counted, duration, plural
 
 
 def time_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
-    """Lines about the time of the points in `done`, a mask of any shape; empty without a computed point."""
+    """Lines about the computing time of the points in the mask `done`, of any shape; empty if no point is
+    computed.
+    """
     if not done.any():
         return []
     seconds = view.variables["seconds"][done]
@@ -23,7 +27,7 @@ def time_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
 
 
 def origin_lines(a: dict[str, Any]) -> list[str]:
-    """Lines about the time, the versions and the BLAS kernels of the computation."""
+    """Lines about dates, versions of the software, and BLAS kernels. a: attributes of the result file."""
     return [
         f"computed {_when(a)}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "
         f"SLEPc {a.get('slepc_version')}, commit {str(a.get('git_commit'))[:12]}",
@@ -32,7 +36,9 @@ def origin_lines(a: dict[str, Any]) -> list[str]:
 
 
 def _when(a: dict[str, Any]) -> str:
-    """Period in which a file was computed; for a shard, also whether the run is complete."""
+    """Dates between which a file was computed. For the file of one shard, also whether the whole run is
+    complete.
+    """
     if "started" not in a:
         return "not finished yet"
     if "finished" in a:
@@ -42,7 +48,9 @@ def _when(a: dict[str, Any]) -> str:
 
 
 def rank_lines(a: dict[str, Any], noun: str) -> list[str]:
-    """Lines about the ranks of the last run: busy time and numbers of points."""
+    """Lines about the MPI ranks of the last run: time spent solving, and number of points. noun: name of a
+    point.
+    """
     if RANK_SHARES[0] not in a:
         return []
     points, busy, idle = (np.atleast_1d(a[name]) for name in RANK_SHARES)

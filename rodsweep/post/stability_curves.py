@@ -1,4 +1,6 @@
-"""Curves of Hopf points that bound the stable rods, as opposed to Hopf points of further modes."""
+"""Curves of Hopf points that bound the region of stable straight rods, and curves of Hopf points of further
+modes.
+"""
 
 import numpy as np
 
@@ -9,9 +11,10 @@ from .hopf_points import STABILITY_CHANGES
 
 
 def bounds_stability(view: View, line: str, row: str) -> dict[int, bool]:
-    """Whether changes of stability of rows lie on each curve of Hopf points, by the curve's number.
+    """Whether each curve of Hopf points bounds the region of stable rods, by number of the curve.
 
-    A change belongs to the curve nearest to it along its row.
+    A curve bounds the region if a change of stability on some row lies on it. A change lies on the curve
+    nearest along its row.
     """
     v = view.variables
     numbers = np.unique(v["curve_number"][v["curve_kind"] == 1]).astype(int).tolist()
@@ -30,7 +33,9 @@ def bounds_stability(view: View, line: str, row: str) -> dict[int, bool]:
 
 
 def _distance(x: Array, y: Array, at: float, height: float) -> float:
-    """Distance along a row, at a height, between a position and a curve with vertices x, y, (n,)."""
+    """Distance along the row at height `height` between the position `at` and a curve with vertices x, y,
+    (n,).
+    """
     low = np.minimum(y[:-1], y[1:])
     high = np.maximum(y[:-1], y[1:])
     pieces = np.flatnonzero((low <= height) & (height <= high))

@@ -1,4 +1,4 @@
-"""Names of written files, and atomic writing of text files."""
+"""Checks of output names, and atomic writing of text files."""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -10,7 +10,11 @@ from ..errors import InputError
 
 
 def require_name(output: Path, endings: Sequence[str], noun: str, inputs: Sequence[Path] = ()) -> None:
-    """Raises InputError unless the file, a `noun`, can be written under this name; inputs: files to keep."""
+    """Raises InputError unless a file can be written under the name `output`.
+
+    endings: allowed suffixes. noun: kind of file, for the message. inputs: files that must not be
+    overwritten.
+    """
     if output.suffix not in endings:
         raise InputError(f"--output {output}: the name must end in {', '.join(endings)}")
     if not output.parent.is_dir():
@@ -23,9 +27,9 @@ def require_name(output: Path, endings: Sequence[str], noun: str, inputs: Sequen
 
 @contextmanager
 def written_whole(output: Path) -> Iterator[TextIO]:
-    """Opens a text file for writing under a temporary name, and renames the complete file to `output`.
+    """Context manager that opens a text file under a temporary name and, at the end, renames it to `output`.
 
-    A killed process therefore leaves no partial file named `output`.
+    A killed process therefore leaves no incomplete file named `output`.
     """
     partial = output.with_name(f".{output.name}.partial")
     try:

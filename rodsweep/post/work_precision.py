@@ -1,4 +1,4 @@
-"""Figure of the errors of methods over their time, as measured by the benchmarks."""
+"""Work-precision figure: error of numerical methods over computing time, as measured by the benchmarks."""
 
 from math import ceil, sqrt
 from pathlib import Path
@@ -12,26 +12,27 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from ..errors import EnvironmentIncomplete
 from ..results.file.measurements import Table
-from .figures.style import FIRST, SECOND, STYLE, THIRD
+from .figures.style import BLUE, FIGURE_STYLE, GREEN, VERMILION
 
-GROUP_COLOURS = (FIRST, SECOND, THIRD, "black", "0.55")
-"""Colours of the groups, in order of appearance; the first group is drawn thick."""
+GROUP_COLOURS = (BLUE, VERMILION, GREEN, "black", "0.55")
+"""Colours of the groups of methods, in order of appearance. The first group has thicker lines."""
 METHOD_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
-"""Markers of the methods of a single group."""
-WIDE_RATIO = 1e3
-"""Ratio of the times above which only powers of ten have labels."""
+"""Markers that distinguish the methods within one group."""
+WIDE_TIME_RATIO = 1e3
+"""Ratio of the longest to the shortest time above which only powers of ten have tick labels."""
 MIN_DRAWN_ERROR = 1e-17
-"""Smallest drawn relative error; an error of exactly zero has no logarithm."""
+"""Relative error at which smaller errors are drawn; an error of zero has no logarithm."""
 PANEL_SIZE = 3.6
 """Width and height of a panel, in inches."""
 PANEL_TITLE_WIDTH = 36
-"""Largest length of a line of a panel's title, in characters."""
+"""Largest length of a line in the title of a panel, in characters."""
 
 
 def draw_work_precision(measured: Table, xlabel: str, target: float | None, output: Path) -> None:
-    """Writes the figure: a panel for each case, a curve for each method, and the target as a line.
+    """Writes a figure with a panel for each case, a curve for each method, and a horizontal line at the error
+    `target`.
 
-    measured: columns case, method, group, seconds and error; rows without a finite error are left out.
+    measured: columns case, method, group, seconds and error. Rows without a finite error are left out.
     """
     columns = {name: np.array(measured[name]) for name in ("case", "method", "group", "seconds", "error")}
     cases, methods, groups, seconds, errors = (
@@ -39,10 +40,10 @@ def draw_work_precision(measured: Table, xlabel: str, target: float | None, outp
     )
     looks = _looks(dict(zip(methods.tolist(), groups.tolist(), strict=True)))
     titles = list(dict.fromkeys(cases.tolist()))
-    wide = np.nanmax(seconds) > WIDE_RATIO * np.nanmin(seconds)
+    wide = np.nanmax(seconds) > WIDE_TIME_RATIO * np.nanmin(seconds)
     across = ceil(sqrt(len(titles)))
     down = ceil(len(titles) / across)
-    with matplotlib.rc_context(STYLE):
+    with matplotlib.rc_context(FIGURE_STYLE):
         figure = Figure(figsize=(PANEL_SIZE * across + 3.0, PANEL_SIZE * down + 0.5), layout="constrained")
         grid = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False)
         for axes, title in zip(grid.flat, titles, strict=False):
@@ -69,7 +70,9 @@ def draw_work_precision(measured: Table, xlabel: str, target: float | None, outp
 
 
 def _looks(groups: dict[str, str]) -> dict[str, dict]:
-    """Look of every method: colour by group, marker within the group."""
+    """Arguments of matplotlib for the curve of each method: colour by group, marker within the group. groups:
+    group by method.
+    """
     order = list(dict.fromkeys(groups.values()))
     looks = {}
     for method, group in groups.items():

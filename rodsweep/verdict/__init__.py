@@ -1,1 +1,3 @@
-"""Verdict on an arm from the solvers' numbers: thresholds over its range of drag, and sentences."""
+"""Verdict on an arm, in sentences: whether it flutters, at which load, and whether the model applies. All
+thresholds are solved for a range of drag coefficients.
+"""

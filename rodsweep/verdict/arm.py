@@ -1,4 +1,4 @@
-"""Report on an arm: warnings, verdict, numbers with formulas, checks of neglected effects."""
+"""Report on an arm: warnings, verdict, table of numbers with formulas, and checks of neglected effects."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,25 +14,26 @@ from .sentences import verdict_sentences
 from .table import NumberRow, number_rows
 from .validity import Assessment
 
-OVER_DRAG = "In brackets: the range over drag, which is known only up to a factor."
-"""Sentence below the table of numbers."""
-NUMBERS_BEGIN = 18
-"""Column of the values, right of the names."""
+BRACKETS_NOTE = "In brackets: the range over drag, which is known only up to a factor."
+"""Sentence below the table of numbers. It explains the brackets: no drag coefficient is known exactly."""
+VALUE_COLUMN = 18
+"""Column, in characters, at which the values of the table start; the names of the numbers stand
+left of it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmReport:
-    """Report on an arm: `lines` for a terminal, text without colours, a table in a notebook."""
+    """Report on an arm. `lines` and `str` give text for a terminal; a notebook shows HTML."""
 
     validity: Validity
-    """Whether the model applies at the threshold and under the load."""
+    """Whether the model applies to the arm, at the flutter threshold and under the load."""
     warnings: tuple[Check, ...]
-    """Checks that make the verdict doubtful, printed above the verdict."""
+    """Checks that make the verdict doubtful; the report shows them above the verdict."""
     verdict: tuple[str, ...]
     """Sentences of the verdict; the first is the headline."""
     rows: tuple[NumberRow, ...]
     checks: tuple[Check, ...]
-    """All other checks of neglected effects."""
+    """Checks of neglected effects that are not among `warnings`."""
 
     def __str__(self) -> str:
         return "\n".join(line for line, _ in self.lines())
@@ -40,20 +41,22 @@ class ArmReport:
     __repr__ = __str__
 
     def lines(self) -> Iterator[tuple[str, str]]:
-        """(text wrapped at 80 columns, style); the style is "warning", "headline" or ""."""
+        """Yields (text, style) of each paragraph, wrapped at 80 columns; style: "warning",
+        "headline" or "".
+        """
         for check in self.warnings:
             yield folded(check.text), "warning"
         for number, sentence in enumerate(self.verdict):
             yield folded(sentence), "" if number else "headline"
         yield "", ""
         for name, value, formula, source in self.rows:
-            place = " " * NUMBERS_BEGIN
-            yield f"{name:{NUMBERS_BEGIN}}{value}", ""
+            place = " " * VALUE_COLUMN
+            yield f"{name:{VALUE_COLUMN}}{value}", ""
             yield folded(f"{formula}; {source}", place, place + "  "), ""
-        yield OVER_DRAG, ""
+        yield BRACKETS_NOTE, ""
         yield "", ""
         for check in self.checks:
-            yield folded(check.text), "" if check.fine else "warning"
+            yield folded(check.text), "" if check.is_negligible else "warning"
 
     def _repr_html_(self) -> str:
         warnings = "".join(f"<p>{escape(check.text)}</p>" for check in self.warnings)
@@ -63,11 +66,13 @@ class ArmReport:
         cells = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in self.rows)
         table = f"<table><tr>{head}</tr>{''.join(f'<tr>{row}</tr>' for row in cells)}</table>"
         checks = "".join(f"<li>{escape(check.text)}</li>" for check in self.checks)
-        return f"{warnings}{verdict}{table}<p>{OVER_DRAG}</p><ul>{checks}</ul>"
+        return f"{warnings}{verdict}{table}<p>{BRACKETS_NOTE}</p><ul>{checks}</ul>"
 
 
-def report_on(arm: SlenderArm) -> ArmReport:
-    """Solves for the thresholds of an arm and reports. InputError if a relative load has no flutter."""
+def arm_report(arm: SlenderArm) -> ArmReport:
+    """Report on an arm; solves for the thresholds. Raises InputError if the load is given relative to the
+    flutter load and the arm does not flutter.
+    """
     planes = with_load(planes_of(arm))
     first = planes.first
     assessment = Assessment(first.arm, first.found)

@@ -1,4 +1,4 @@
-"""Checks of the effects that the model neglects for one arm: a sentence each, some with a warning."""
+"""Checks of the effects that the model neglects, for one arm. Each check is a sentence, or a warning."""
 
 from dataclasses import dataclass
 from math import isnan
@@ -13,45 +13,50 @@ if TYPE_CHECKING:
 
 MIN_SLENDERNESS = 20.0
 """Smallest ratio of length to radius at which slender-body theory is accurate to about ten percent."""
-LOWERED_BY_INERTIA = 0.64
-"""Relative decrease of the flutter threshold per radian of phase between drag and velocity by inertia."""
-SAG_OF_BUCKLING = SELF_BUCKLING / 8
-"""Sag over length, w L^3/(8 E I), of a horizontal arm with the weight that buckles an upright arm."""
-LARGEST_SAG = 0.25
-"""Largest sag over length at which the linear formula is accurate to some percent."""
+THRESHOLD_DECREASE_BY_INERTIA = 0.64
+"""Estimated relative decrease of the flutter threshold by inertia, per radian of phase between drag and
+velocity caused by inertia."""
+SAG_AT_SELF_BUCKLING = SELF_BUCKLING / 8
+"""Sag over length, w L^3/(8 E I), of a horizontal arm whose weight w L just buckles an upright arm."""
+MAX_STATED_SAG = 0.25
+"""Largest sag over length for which a check states the number. Beyond, the linear formula is inaccurate."""
 USUAL_POISSON = (0.3, 0.5)
-"""Poisson's ratios of rubbers and gels."""
+"""Range of Poisson's ratio of rubbers and gels; a check warns of a ratio outside."""
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """Check of one neglected effect, or of an assumption. validity: whether the model applies despite this
-    effect.
+    """Check of one neglected effect or one assumption of the model.
+
+    validity: whether the model applies despite the effect.
     """
 
     validity: Validity
     sentence: str
     of_verdict: bool = False
-    """Whether the effect can change the verdict, not only wide beating or the width of the range of drag."""
+    """Whether the effect can change the verdict. False for effects on beating of large amplitude, or on the
+    range of drag."""
 
     @property
     def doubts_the_verdict(self) -> bool:
-        """Whether to print the check above the verdict. The verdict states effects beyond the limit."""
+        """Whether the check makes the verdict doubtful. False beyond the model's limit, which the verdict
+        itself states.
+        """
         return self.of_verdict and self.validity == Validity.doubtful
 
     @property
-    def fine(self) -> bool:
-        """Whether the effect is small enough to be neglected."""
+    def is_negligible(self) -> bool:
+        """Whether the effect is small enough to neglect."""
         return self.validity == Validity.applies
 
     @property
     def text(self) -> str:
-        """The sentence, with the prefix "warning: " unless the effect is negligible."""
-        return self.sentence if self.fine else f"warning: {self.sentence}"
+        """The sentence, with the prefix "warning: " unless the effect is small enough to neglect."""
+        return self.sentence if self.is_negligible else f"warning: {self.sentence}"
 
 
 def checks_of(assessment: "Assessment") -> list[Check]:
-    """All checks of an arm, in the order of the report."""
+    """Checks of all neglected effects on an arm, in the order of the report."""
     arm = assessment.arm
     effects = {effect.name: effect for effect in assessment.at_flutter}
     return [
@@ -66,7 +71,7 @@ def checks_of(assessment: "Assessment") -> list[Check]:
 
 
 def slenderness(arm: SlenderArm) -> Check:
-    """Check of the ratio of length to radius."""
+    """Check of the ratio of the arm's length to its radius against MIN_SLENDERNESS."""
     ratio = arm.si.length / arm.shape.drag_radius
     fine = ratio >= MIN_SLENDERNESS
     why = (
@@ -78,7 +83,9 @@ def slenderness(arm: SlenderArm) -> Check:
 
 
 def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
-    """Check of F/k1, the compressive strain of the straight arm where it is weakest."""
+    """Check of F/k1, the compressive strain of the straight arm at its weakest section, at flutter and under
+    the load.
+    """
     if assessment.arm.law != LINEAR.law:
         return _compression_of_rubber(assessment)
     says = []
@@ -101,7 +108,9 @@ def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
 
 
 def _compression_of_rubber(assessment: "Assessment") -> Check:
-    """Check of the compression of rubber, which its law includes, so no effect is neglected."""
+    """Statement of the compressive strain of an arm of rubber. It always passes, because the law of rubber
+    includes the strain.
+    """
     arm = assessment.arm
     says = []
     flutter = assessment.force_at_flutter
@@ -116,23 +125,27 @@ def _compression_of_rubber(assessment: "Assessment") -> Check:
 
 
 def _shortening(arm: SlenderArm, F: float) -> float:
-    """Compressive strain of the weakest section under a force F, in k3/L^2."""
+    """Compressive strain of the arm's weakest section under the force F, in k3/L^2."""
     smallest = min(each.young * each.section.area for each in arm.shape.stations)
     largest = arm.shape.base.young * arm.cross_section.area
     return float(arm.build.constitutive_law.shortening(F / (arm.k1 * smallest / largest)))
 
 
-def stiffening(share: float) -> float:
-    """Relative increase of neo-Hookean tangent modulus E (1 + 2/stretch^3)/3; share: compressive strain."""
-    return float(2 * ((1 - share) ** -3 - 1) / 3)
+def stiffening(strain: float) -> float:
+    """Relative increase of the tangent modulus E (1 + 2/h^3)/3 of neo-Hookean rubber over E, at the stretch h
+    = 1 - `strain`.
+    """
+    return float(2 * ((1 - strain) ** -3 - 1) / 3)
 
 
 def inertia(of_arm: Effect, of_fluid: Effect) -> list[Check]:
-    """Check of inertia of arm and surrounding fluid at the threshold; empty without flutter."""
+    """Check of the inertia of the arm and of the fluid, at the flutter threshold; an empty list without
+    flutter.
+    """
     if isnan(of_arm.value):
         return []
     validity = max(map(_validity, (of_arm, of_fluid)))
-    lowered = 100 * LOWERED_BY_INERTIA * float(of_arm.value + of_fluid.value)
+    lowered = 100 * THRESHOLD_DECREASE_BY_INERTIA * float(of_arm.value + of_fluid.value)
     ending = (
         "neither matters",
         f"they lower the threshold of flutter by some {lowered:.1g} %",
@@ -146,7 +159,9 @@ def inertia(of_arm: Effect, of_fluid: Effect) -> list[Check]:
 
 
 def reynolds(number: Effect) -> list[Check]:
-    """Check of the Reynolds number for an amplitude of L/2 at the threshold's frequency."""
+    """Check of the Reynolds number of beating with amplitude L/2 at the frequency of flutter; an empty list
+    without flutter.
+    """
     if isnan(number.value):
         return []
     validity = _validity(number)
@@ -160,12 +175,16 @@ def reynolds(number: Effect) -> list[Check]:
 
 
 def wall(effect: Effect | None) -> list[Check]:
-    """Check of the flattening of a tube in wide beating; empty for other sections."""
+    """Check of the flattening of a tube's section in beating of large amplitude; an empty list for other
+    sections.
+    """
     return [] if effect is None else [wall_check(effect)]
 
 
 def wall_check(effect: Effect) -> Check:
-    """Check of a tube's wall from the effect of flattening."""
+    """Check of a tube's wall. effect: relative loss of bending stiffness by flattening, for a tip that moves
+    by L/2.
+    """
     lost = float(effect.value)
     loses = f"takes some {100 * lost:.2g} % of its bending stiffness" if lost < 1 else "folds the tube"
     validity = _validity(effect)
@@ -179,14 +198,18 @@ def wall_check(effect: Effect) -> Check:
 
 
 def weight(effect: Effect | None, arm: SlenderArm) -> Check:
-    """Check of weight minus buoyancy against bending stiffness."""
+    """Check of weight minus buoyancy against bending stiffness; `effect` is None if the density difference is
+    unknown.
+    """
     if effect is None:
         says = "Weight: left out, as if the arm floated; give a density difference to have it checked."
         return Check(Validity.applies, says)
     share = float(effect.value)
     validity = _validity(effect)
-    sag = SAG_OF_BUCKLING * share
-    level = f"a level arm sags by {sag:.2g} of its length" if sag < LARGEST_SAG else "a level arm hangs down"
+    sag = SAG_AT_SELF_BUCKLING * share
+    level = (
+        f"a level arm sags by {sag:.2g} of its length" if sag < MAX_STATED_SAG else "a level arm hangs down"
+    )
     ending = (
         "left out with reason",
         "it bends the arm a little, which the model leaves out",
@@ -198,7 +221,7 @@ def weight(effect: Effect | None, arm: SlenderArm) -> Check:
 
 
 def poisson(arm: SlenderArm) -> Check:
-    """Check of Poisson's ratio against the range of soft materials."""
+    """Check of Poisson's ratio against USUAL_POISSON."""
     fine = USUAL_POISSON[0] <= arm.poisson <= USUAL_POISSON[1]
     why = "usual for soft materials" if fine else "unusual: rubbers and gels are near 0.5"
     return Check(_doubt(not fine), f"Poisson's ratio: {arm.poisson:g}, {why}; it enters through shear only.")

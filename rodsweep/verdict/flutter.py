@@ -1,4 +1,6 @@
-"""Thresholds of an arm over the range of drag: flutter, frequency, restabilization. Forces in k3/L^2."""
+"""Thresholds of an arm for each drag of its range: flutter, its frequency, restabilization.
+Forces in k3/L^2.
+"""
 
 from dataclasses import dataclass, replace
 from math import inf, pi
@@ -8,43 +10,46 @@ from ..model.arm.drag import Drag
 from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, ThresholdStatus, solve_thresholds
 from ..solve.changes.unstable_modes import ChangeKind, Crossing
 from ..solve.exclusive import solving
-from .relative import ENDS_OF_VARIED, SEARCH_END, rod_with
+from .relative import SEARCH_END, SEARCH_ENDS_OF_VARIED, rod_with
 
 SEARCH_REQUEST = ThresholdsRequest(F_max=SEARCH_END, accuracy=1e-6, certify=True, crossings=1000)
-"""Search request for the thresholds of an arm: complete lists, thresholds to six digits."""
-BEYOND_FLUTTER = 2.0
-"""Smallest ratio of the last search's end to the first flutter and to the load, for an arm that varies."""
+"""Request for all thresholds of an arm, with relative accuracy 1e-6 and a proof that none is missing."""
+MIN_SEARCH_RATIO = 2.0
+"""Least ratio of the end of the search to the first flutter force and to the load, for an arm that is not
+uniform or not of linear material."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlutterForces:
-    """Thresholds of an arm with one drag. Forces in k3/L^2, frequencies in Hz; None without a change."""
+    """Thresholds of an arm for one drag. Forces are in k3/L^2, frequencies in Hz."""
 
     tau2: float
-    """Time scale, in s."""
+    """Viscous time scale of the arm, in s."""
     thresholds: Thresholds
 
     def first(self, kind: ChangeKind) -> Crossing | None:
-        """The first change of a kind along the force."""
+        """The change of stability of the given kind at the smallest force; None without one."""
         return next((c for c in self.thresholds.crossings if c.kind == kind), None)
 
     def frequency(self, kind: ChangeKind) -> float | None:
-        """Frequency at the first change of a kind, in Hz."""
+        """Frequency, in Hz, at the first change of stability of the given kind; None without one."""
         found = self.first(kind)
         return None if found is None else abs(found.frequency) / (2 * pi * self.tau2)
 
     def force(self, kind: ChangeKind) -> float | None:
-        """Force at the first change of a kind, in k3/L^2."""
+        """Force, in k3/L^2, at the first change of stability of the given kind; None without one."""
         found = self.first(kind)
         return None if found is None else found.at
 
     def unstable_at(self, F: float) -> bool:
-        """Whether the straight arm is unstable at F, or at the end of the search for larger F."""
+        """Whether the straight arm is unstable at the force F. Beyond the end of the search, the end counts
+        instead of F.
+        """
         before = [c.unstable_after for c in self.thresholds.crossings if c.at <= F]
         return bool(before) and before[-1] != 0
 
     def up_to(self, end: float) -> "FlutterForces":
-        """The thresholds without the changes beyond the force `end`."""
+        """A copy without the changes of stability at forces beyond `end`."""
         found = self.thresholds
         crossings = tuple(c for c in found.crossings if c.at <= end)
         cut = replace(found, transitions=replace(found.transitions, crossings=crossings), end=end)
@@ -53,64 +58,71 @@ class FlutterForces:
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """Smallest and largest value of a quantity over the range of drag.
+    """Smallest and largest value of a quantity over the drags of an arm.
 
-    always: whether the quantity exists for every drag.
+    for_every_drag: whether the quantity exists for every drag.
     """
 
     low: float
     high: float
-    always: bool = True
+    for_every_drag: bool = True
 
 
 @dataclass(frozen=True, slots=True)
 class FlutterRange:
-    """Thresholds of an arm for each drag, the likeliest drag first."""
+    """Thresholds of an arm for every drag of its range. The most likely drag comes first."""
 
     forces: tuple[FlutterForces, ...]
 
     @property
     def failures(self) -> list[str]:
-        """Messages of failed searches, without repetition. A search that ended early has not failed."""
+        """Distinct error messages of failed searches. A search that stopped before the requested force has
+        not failed.
+        """
         searches = [f.thresholds for f in self.forces]
         usable = (ThresholdStatus.ok, ThresholdStatus.ended_early)
         return sorted({t.message or t.status.sentence for t in searches if t.status not in usable})
 
     @property
     def end(self) -> float:
-        """Largest force of the search, in k3/L^2."""
+        """Largest force of the search, in k3/L^2; the same for all drags."""
         return self.forces[0].thresholds.end
 
     def force(self, kind: ChangeKind) -> Span | None:
-        """Range of the force of the first change of a kind, in k3/L^2."""
+        """Range, over the drags, of the force at the first change of stability of a kind, in k3/L^2; None
+        without one.
+        """
         return span_of([f.force(kind) for f in self.forces])
 
     def frequency(self, kind: ChangeKind) -> Span | None:
-        """Range of the frequency at the first change of a kind, in Hz."""
+        """Range, over the drags, of the frequency at the first change of stability of a kind, in Hz; None
+        without one.
+        """
         return span_of([f.frequency(kind) for f in self.forces])
 
     def unstable_at(self, F: float) -> list[bool]:
-        """Whether the straight arm is unstable at a force, for each drag."""
+        """Whether the straight arm is unstable at the force F, for each drag."""
         return [f.unstable_at(F) for f in self.forces]
 
 
 def span_of(values: list[float | None]) -> Span | None:
-    """Smallest and largest number in a list of numbers and None; None without a number."""
+    """Smallest and largest number in `values`, which may contain None; None if there is no number."""
     known = [value for value in values if value is not None]
     return Span(min(known), max(known), len(known) == len(values)) if known else None
 
 
 def flutter_forces(arm: SlenderArm, drag: Drag, end: float = SEARCH_END) -> FlutterForces:
-    """All changes of stability of an arm with one drag, up to the force `end`."""
+    """All changes of stability of the straight arm with one drag, at forces from 0 to `end`."""
     thresholds = solve_thresholds(rod_with(arm, drag), replace(SEARCH_REQUEST, F_max=end))
     return FlutterForces(tau2=arm.tau2_with(drag), thresholds=thresholds)
 
 
 @solving
 def flutter_range(arm: SlenderArm) -> FlutterRange:
-    """All changes of stability of an arm for each drag, up to one force for all.
+    """All changes of stability of the straight arm for each drag, up to a force common to all drags.
 
-    The search with the likeliest drag sets the force; a search that ends early lowers it.
+    The search with the most likely drag sets this force. A search that stops at a smaller force lowers it for
+    all drags.
     """
     likeliest, *others = arm.drags
     end, first = _first_search(arm, likeliest)
@@ -120,12 +132,15 @@ def flutter_range(arm: SlenderArm) -> FlutterRange:
 
 
 def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, FlutterForces]:
-    """(end of the search, changes of stability up to the end); the end is beyond first flutter and load."""
+    """(end of the search, changes of stability up to the end). For an arm that is not uniform or not of
+    linear material, the end exceeds the first flutter force and the load by the factor MIN_SEARCH_RATIO, if
+    possible.
+    """
     known_load = arm.load is not None and arm.share_of_flutter is None
-    for end in ENDS_OF_VARIED if arm.shape.varies else (SEARCH_END,):
+    for end in SEARCH_ENDS_OF_VARIED if arm.shape.varies else (SEARCH_END,):
         found = flutter_forces(arm, drag, end)
         flutter = found.force(ChangeKind.hopf)
         reached = max(inf if flutter is None else flutter, arm.F if known_load else 0.0)
-        if BEYOND_FLUTTER * reached <= end or found.thresholds.end < end:
+        if MIN_SEARCH_RATIO * reached <= end or found.thresholds.end < end:
             break
     return end, found

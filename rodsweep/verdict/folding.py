@@ -1,11 +1,13 @@
-"""Wrapping of texts for a terminal."""
+"""Wrapping of the report's text for a terminal."""
 
 import textwrap
 
 WIDTH = 80
-"""Width of a report, in columns."""
+"""Width of a wrapped line, in characters."""
 
 
 def folded(text: str, first: str = "", further: str = "  ") -> str:
-    """A text wrapped to WIDTH columns; first, further: indents of the first and of further lines."""
+    """`text` wrapped to lines of WIDTH characters. first, further: indents of the first line and of all
+    further lines.
+    """
     return textwrap.fill(text, WIDTH, initial_indent=first, subsequent_indent=further)

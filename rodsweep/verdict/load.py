@@ -1,4 +1,4 @@
-"""The load of an arm in the user's unit, and the format of numbers in sentences."""
+"""The load of an arm in the user's unit, and the rounding of numbers in sentences."""
 
 from math import floor, log10
 
@@ -7,64 +7,74 @@ from ..model.arm.quantities import UNITS
 from ..model.units import compact, split_quantity, unit_of, written_in
 from .flutter import Span
 
-FLUTTER_ABOUT = 36.0
-"""Typical F of flutter, in k3/L^2, for the choice of the pressure's prefix if the user gave no load."""
+TYPICAL_FLUTTER_FORCE = 36.0
+"""Typical force of flutter, in k3/L^2. If the user gave no load, it decides between units such as
+Pa and kPa."""
 ROUNDING = 1e-12
-"""Relative tolerance when rounding down, so that a rounding error does not change the third digit."""
-LONGEST_GIVEN = 6
-"""Longest number of a load, in characters, to repeat in the user's notation."""
+"""Relative tolerance when rounding down: without it, the rounding error of 4.7 could print as 4.69."""
+MAX_TYPED_LENGTH = 6
+"""Longest number, in characters, that a report repeats as the user typed it. A longer number is rounded to
+four digits."""
 
 
-def digits(value: float) -> str:
-    """A number to three digits, without exponent below a million."""
+def three_digits(value: float) -> str:
+    """A number as text with three significant digits; no exponent below a million."""
     short = float(f"{value:.3g}")
     return f"{short:.0f}" if 1000 <= abs(short) < 1e6 else f"{short:g}"
 
 
-def rounded(low: float, high: float) -> str:
-    """A range to three digits, as one number if both ends round to equal digits."""
-    ends = [digits(low), digits(high)]
+def range_text(low: float, high: float) -> str:
+    """The range from `low` to `high` as text, with three significant digits; a single number if the digits
+    are equal.
+    """
+    ends = [three_digits(low), three_digits(high)]
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
-def rounded_percent(low: float, high: float) -> str:
-    """A range of fractions in percent: integers, or one digit below 1 percent."""
+def percent_range_text(low: float, high: float) -> str:
+    """A range of fractions as text in percent, rounded to integers, or to one significant digit below 1
+    percent.
+    """
     percents = [100 * value for value in sorted((low, high))]
     ends = [f"{value:.0f}" if value >= 1 else f"{value:.1g}" for value in percents]
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
 class Load:
-    """Load of an arm in the user's unit. For an arm without a load, loads are stated as pressures."""
+    """Load of an arm in the user's unit; a pressure if the user gave no load."""
 
     def __init__(self, arm: SlenderArm):
         self.name = arm.load or "pressure"
         given = getattr(arm, self.name)
         si = UNITS[self.name][0]
         self.unit = (
-            unit_of(given, si) if given is not None else compact(FLUTTER_ABOUT * arm.load_scale, si)[1]
+            unit_of(given, si)
+            if given is not None
+            else compact(TYPICAL_FLUTTER_FORCE * arm.load_scale, si)[1]
         )
         self.given = "" if given is None else _short(given, float(getattr(arm.si, self.name)), si)
-        """Load in the user's notation, rounded to four digits if longer than LONGEST_GIVEN; may be empty."""
+        """The load as the user typed it, as rounded by `_short`; empty without a load."""
         self.scale = written_in(arm.load_scale, self.unit, si)
-        """Load at F = 1, in `unit`."""
+        """The load that corresponds to F = 1, in `unit`."""
 
     def of(self, forces: Span) -> str:
-        """Text of a range of forces, given in k3/L^2, in the load's unit."""
-        return f"{rounded(forces.low * self.scale, forces.high * self.scale)} {self.unit}"
+        """A range of forces in k3/L^2, as text in the unit of the load."""
+        return f"{range_text(forces.low * self.scale, forces.high * self.scale)} {self.unit}"
 
     def at_most(self, F: float) -> str:
-        """Text of a force, given in k3/L^2, in the load's unit, rounded down to three digits."""
+        """The force F in k3/L^2, as text in the unit of the load, rounded down to three digits."""
         value = F * self.scale
         unit = 10.0 ** (floor(log10(value)) - 2)
-        return f"{digits(floor(value / unit * (1 + ROUNDING)) * unit)} {self.unit}"
+        return f"{three_digits(floor(value / unit * (1 + ROUNDING)) * unit)} {self.unit}"
 
 
 def _short(given: object, value: float, si: str) -> str:
-    """A load in the user's notation, rounded to four digits if long; value: the load in the SI unit `si`."""
+    """The load as the user typed it, or rounded to four digits if long. value: the load in the SI
+    unit `si`.
+    """
     if not isinstance(given, str):
         return f"{value:.4g} {si}"
     number = given.split()[0]
-    if len(number) <= LONGEST_GIVEN:
+    if len(number) <= MAX_TYPED_LENGTH:
         return given.strip()
     return f"{split_quantity(given)[0]:.4g} {split_quantity(given)[1]}"

@@ -1,4 +1,4 @@
-"""Planes in which an arm can move, and the plane in which it flutters at the smallest load."""
+"""Planes in which an arm can bend, and the plane in which it flutters at the smallest load."""
 
 from dataclasses import dataclass, replace
 from math import inf
@@ -10,38 +10,40 @@ from ..model.arm.quantities import UNITS
 from ..model.units import compact
 from ..solve.changes.unstable_modes import ChangeKind
 from .flutter import FlutterRange, flutter_range
-from .relative import turned
+from .relative import quarter_turned
 
 A = TypeVar("A", bound=SlenderArm)
 
 
 @dataclass(frozen=True, slots=True)
 class PlaneOfMotion:
-    """An arm moving in one plane, and the thresholds of this motion."""
+    """An arm that bends in one plane, and the thresholds of this motion for every drag."""
 
     arm: SlenderArm
-    """The arm, with its height in the plane of motion."""
+    """The arm, with its cross-section turned so that its height lies in the plane of motion."""
     found: FlutterRange
     name: str = ""
-    """Name of the plane, to follow the word "in"; empty if all planes are equivalent."""
+    """Name of the plane, to follow the word "in"; empty if all planes of motion are equivalent."""
 
     @property
     def flutter_loads(self) -> list[float]:
-        """Force of the first flutter for each drag, in N; inf without flutter."""
+        """Force of the first flutter, in N, for each drag; inf without flutter."""
         forces = [each.force(ChangeKind.hopf) for each in self.found.forces]
         return [inf if force is None else force * self.arm.force_scale for force in forces]
 
 
 @dataclass(frozen=True, slots=True)
 class Planes:
-    """Planes of motion of an arm. With the likeliest drag, flutter in `first` needs the smaller load."""
+    """Planes of motion of an arm. `first` is the plane with the smaller flutter load for the most likely
+    drag.
+    """
 
     first: PlaneOfMotion
     second: PlaneOfMotion | None = None
 
     @property
-    def always(self) -> bool:
-        """Whether flutter in `first` needs the smaller load with every drag."""
+    def always_first(self) -> bool:
+        """Whether flutter in the plane `first` needs the smaller load for every drag."""
         if self.second is None:
             return True
         loads = zip(self.first.flutter_loads, self.second.flutter_loads, strict=True)
@@ -49,10 +51,12 @@ class Planes:
 
 
 def planes_of(arm: SlenderArm) -> Planes:
-    """Both planes of a rectangle, or one plane if all planes are equivalent; solves for the thresholds."""
+    """Planes of motion of an arm, with solved thresholds: two for a rectangular section, one for other
+    sections.
+    """
     if arm.isotropic:
         return Planes(PlaneOfMotion(arm, flutter_range(arm)))
-    other = turned(arm)
+    other = quarter_turned(arm)
     own = PlaneOfMotion(arm, flutter_range(arm), "the plane of its height")
     across = PlaneOfMotion(other, flutter_range(other), "the plane of its width")
     if across.flutter_loads[0] < own.flutter_loads[0]:
@@ -61,9 +65,10 @@ def planes_of(arm: SlenderArm) -> Planes:
 
 
 def with_load(planes: Planes) -> Planes:
-    """The planes, after converting a load relative to flutter to a quantity with a unit.
+    """The planes, with a load given relative to flutter replaced by the load in a unit.
 
-    The reference is the first flutter in any plane with the likeliest drag. InputError without flutter.
+    The reference is the first flutter in any plane for the most likely drag. Raises InputError without
+    flutter.
     """
     first = planes.first
     share = first.arm.share_of_flutter
@@ -85,7 +90,7 @@ def with_load(planes: Planes) -> Planes:
 
 
 def with_known_load(arm: A) -> A:
-    """The arm with its load as a quantity with a unit; solves for flutter if the load is relative."""
+    """The arm with its load in a unit. Solves for the flutter load if the load is given relative to it."""
     load = arm.load
     if load is None or arm.share_of_flutter is None:
         return arm

@@ -1,4 +1,6 @@
-"""Sentences for arms outside the model: violated limit, excess, and remedy."""
+"""Sentences for an arm to which the model does not apply: violated limit, excess over the limit,
+and remedy.
+"""
 
 from collections.abc import Iterable
 from math import isnan
@@ -10,12 +12,14 @@ from ..model.units import unit_of, written_in
 from .load import Load
 from .validity import Assessment, rounded_down, rounded_up, thickness_factor, viscosity_factor
 
-LEAST_EXCESS = 1.1
-"""Ratio of value to limit below which four digits are printed, because two digits could read 1.0."""
+FOUR_DIGIT_EXCESS = 1.1
+"""Ratio of an effect to its limit below which the ratio has four digits. Two digits could read 1.0."""
 
 
 def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[str]:
-    """Headline on the effect furthest beyond its limit, then a sentence on each further kind of effect."""
+    """Sentence on the neglected effect furthest beyond its limit, then a sentence for each other kind of
+    effect beyond its limit.
+    """
     first, *others = _one_of_a_kind(assessment.effects_with(Validity.does_not_apply))
     remedy = _remedy(first, arm, assessment)
     at = f" at {Load(arm).given}" if assessment.of_thresholds != Validity.does_not_apply else ""
@@ -31,28 +35,30 @@ def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[st
 
 
 def effect_kinds_in_words(effects: Iterable[Effect]) -> str:
-    """Kinds of neglected effects, joined by "and"."""
+    """Distinct kinds of the neglected effects, joined by "and": "inertia and weight"."""
     return " and ".join(dict.fromkeys(map(kind_of, effects)))
 
 
 def kind_of(effect: Effect) -> str:
-    """Kind of an effect, the first word of its name: inertia of arm and of fluid are one kind."""
+    """Kind of a neglected effect: the first word of its name, so inertia of the arm and of the fluid are one
+    kind.
+    """
     return effect.name.split()[0]
 
 
 def as_multiple(effect: Effect) -> str:
-    """Ratio of an effect to its limit, in words."""
+    """Ratio of an effect to its limit, as text: "2.5 times"."""
     excess = float(effect.excess)
-    return f"{float(f'{excess:.2g}'):g} times" if excess >= LEAST_EXCESS else f"{excess:.4g} times"
+    return f"{float(f'{excess:.2g}'):g} times" if excess >= FOUR_DIGIT_EXCESS else f"{excess:.4g} times"
 
 
 def _one_of_a_kind(effects: list[Effect]) -> list[Effect]:
-    """The largest effect of each kind, the largest first."""
+    """The largest effect of each kind, in decreasing order."""
     return list({kind_of(effect): effect for effect in reversed(effects)}.values())[::-1]
 
 
 def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
-    """Clause with a change of arm, fluid or load that lowers an effect to its limit."""
+    """Clause that names the change of arm, fluid or load that lowers an effect to its limit."""
     share = float(1 / effect.excess)
     if kind_of(effect) == "inertia":
         return _thicker_fluid_or_thinner_arm(arm, assessment)
@@ -68,7 +74,7 @@ def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
 
 
 def _thicker_fluid_or_thinner_arm(arm: SlenderArm, assessment: Assessment) -> str:
-    """Clause with the required increase of viscosity, or the required decrease of thickness."""
+    """Clause on the least viscosity, or the largest thickness, at which inertia is within its limit."""
     si = UNITS["viscosity"][0]
     unit = unit_of(arm.viscosity, si)
     factor = viscosity_factor(assessment.at_flutter)

@@ -1,20 +1,20 @@
-"""Verdict on an arm in sentences: flutter, frequency of beating, return to the straight state.
+"""Verdict on an arm in sentences: flutter load, frequency of beating, return to stability.
 
-The first sentence is the headline. If the model does not apply, the headline says so, and further sentences
-are conditional on the absence of the neglected effects.
+The first sentence is the headline. If the model does not apply, the headline says so, and all further
+sentences are conditional: "Without inertia it would flutter ...".
 """
 
 from ..model.arm.neglected import Validity
 from ..solve.changes.unstable_modes import ChangeKind
 from .flutter import FlutterRange, Span
-from .load import Load, rounded, rounded_percent
+from .load import Load, percent_range_text, range_text
 from .planes import PlaneOfMotion, Planes
 from .remedies import effect_kinds_in_words, not_applicable_sentences
 from .validity import Assessment
 
 
 def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
-    """Verdict in the plane in which the arm flutters first, over the range of drag."""
+    """Verdict on an arm in the plane in which it flutters first, over the range of drag."""
     plane = planes.first
     if plane.found.failures:
         return ["The thresholds could not be found with every drag: " + "; ".join(plane.found.failures) + "."]
@@ -30,7 +30,7 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
 
 
 def _verdict(plane: PlaneOfMotion) -> list[str]:
-    """Sentences for an arm inside the model, or in its doubtful range."""
+    """Sentences for an arm to which the model applies, perhaps doubtfully."""
     arm = plane.arm
     found = plane.found
     load = Load(plane.arm)
@@ -42,15 +42,15 @@ def _verdict(plane: PlaneOfMotion) -> list[str]:
             stays = f": whether it beats at {load.given} is not known"
         return [f"The arm does not flutter {_until(plane, load)}{stays}."]
     rate = found.frequency(ChangeKind.hopf)
-    beats = "" if rate is None else f" begins to beat at {rounded(rate.low, rate.high)} Hz"
+    beats = "" if rate is None else f" begins to beat at {range_text(rate.low, rate.high)} Hz"
     if arm.load is None:
         says = [f"The arm flutters at {_where(plane, flutter)}: above, it gives way and{beats}."]
     else:
         says = [_place(plane, flutter, load), f"Above, the straight arm gives way and{beats}."]
-    if not flutter.always:
+    if not flutter.for_every_drag:
         says.append("Part of the range of drag has no flutter at all.")
     if back is not None:
-        some = "" if back.always else ", with part of the range of drag"
+        some = "" if back.for_every_drag else ", with part of the range of drag"
         says.append(f"The straight arm is stable again above {load.of(back)}{some}.")
     else:
         says.append(f"The straight arm does not become stable again {_until(plane, load)}.")
@@ -58,20 +58,22 @@ def _verdict(plane: PlaneOfMotion) -> list[str]:
 
 
 def _where(plane: PlaneOfMotion, flutter: Span) -> str:
-    """Range of the flutter load, with the plane's name for a rectangle."""
+    """Range of the flutter load over the drags as text, with the name of the plane for a
+    rectangular section.
+    """
     where = Load(plane.arm).of(flutter)
     return f"{where} in {plane.name}" if plane.name else where
 
 
 def _place(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
-    """Sentence on whether the arm beats under its load, compared with the range of the flutter load."""
+    """Sentence that compares the arm's load with the range of its flutter load: whether the arm beats."""
     F = plane.arm.F
     found = plane.found
     where = _where(plane, flutter)
     if F <= 0:
         return f"Flutter is at {where}; {load.given} does not push, and the arm stays straight."
     if flutter.low > F:
-        percent = rounded_percent(1 - F / flutter.low, 1 - F / flutter.high)
+        percent = percent_range_text(1 - F / flutter.low, 1 - F / flutter.high)
         return f"{load.given} is {percent} % below flutter, at {where}: the arm stays straight."
     if found.end < F:
         end = load.of(Span(found.end, found.end))
@@ -86,13 +88,13 @@ def _place(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
 
 
 def _above(F: float, flutter: Span) -> str:
-    """Distance of a force above the range of flutter: in percent, or as a multiple above 2."""
+    """How far the force F exceeds the range of flutter, as text: in percent, or as a factor above 2."""
     low, high = (F / edge for edge in (flutter.high, flutter.low))
-    return f"{rounded(low, high)} times" if low > 2 else f"{rounded_percent(low - 1, high - 1)} % above"
+    return f"{range_text(low, high)} times" if low > 2 else f"{percent_range_text(low - 1, high - 1)} % above"
 
 
 def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
-    """Conditional sentences for an arm outside the model: flutter without the neglected effects."""
+    """Sentences on the flutter that an arm outside the model would have without the effects `neglected`."""
     arm = plane.arm
     found = plane.found
     load = Load(plane.arm)
@@ -100,12 +102,12 @@ def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
     rate = found.frequency(ChangeKind.hopf)
     if flutter is None:
         return [f"Without {neglected} it would not flutter {_until(plane, load)}."]
-    beats = "" if rate is None else f", where it would begin to beat at {rounded(rate.low, rate.high)} Hz"
+    beats = "" if rate is None else f", where it would begin to beat at {range_text(rate.low, rate.high)} Hz"
     says = [f"Without {neglected} it would flutter at {_where(plane, flutter)}{beats}."]
     if arm.load is None or arm.F <= 0:
         return says
     if flutter.low > arm.F:
-        place = f"{rounded_percent(1 - arm.F / flutter.low, 1 - arm.F / flutter.high)} % below"
+        place = f"{percent_range_text(1 - arm.F / flutter.low, 1 - arm.F / flutter.high)} % below"
     elif flutter.high < arm.F:
         place = _above(arm.F, flutter)
     else:
@@ -114,7 +116,7 @@ def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
 
 
 def _other_plane(planes: Planes, verb: str) -> list[str]:
-    """Sentence on flutter in the second plane of a rectangle; empty for other sections."""
+    """Sentence on flutter in the second plane of a rectangular section; an empty list for other sections."""
     second = planes.second
     if second is None:
         return []
@@ -123,12 +125,12 @@ def _other_plane(planes: Planes, verb: str) -> list[str]:
     flutter = second.found.force(ChangeKind.hopf)
     if flutter is None:
         return [f"In {second.name} there {verb} no flutter {_until(second, Load(second.arm))}."]
-    decides = "" if planes.always else "; with part of the range of drag this plane goes first"
+    decides = "" if planes.always_first else "; with part of the range of drag this plane goes first"
     return [f"In {second.name} flutter {verb} at {Load(second.arm).of(flutter)}{decides}."]
 
 
 def _until(plane: PlaneOfMotion, load: Load) -> str:
-    """Clause on where the search ends: at a load, or at the load that crushes the arm."""
+    """Clause on the end of the search: at a load, or at the load that crushes the arm."""
     end = load.of(Span(plane.found.end, plane.found.end))
     if plane.found.end > 0.999 * plane.arm.crushing_force:
         return f"before it is crushed at {end}"
@@ -136,6 +138,6 @@ def _until(plane: PlaneOfMotion, load: Load) -> str:
 
 
 def _swinging(found: FlutterRange, load: Load) -> list[str]:
-    """Sentence on the onset of oscillation of decaying disturbances; empty without an onset."""
+    """Sentence on the load from which decaying disturbances oscillate; an empty list without such a load."""
     onset = found.force(ChangeKind.onset)
     return [] if onset is None else [f"From {load.of(onset)} on a disturbance swings as it dies away."]

@@ -1,4 +1,4 @@
-"""An arm that varies along its length or is of rubber, in words: shape and law."""
+"""Shape and material of an arm in words, such as "a cone of rubber"."""
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.section import Tube
@@ -8,7 +8,7 @@ from ..model.units import compact
 
 
 def shape_words(arm: SlenderArm) -> str:
-    """Shape and material of an arm, like "a cone of rubber"."""
+    """Shape of an arm, and its material if rubber, in words: "a cone of rubber", "an arm of segments"."""
     shape = "an arm"
     if arm.shape.varies:
         shape = "a cone" if arm.taper != 1 else "an arm of segments"
@@ -16,13 +16,15 @@ def shape_words(arm: SlenderArm) -> str:
 
 
 def law_words(arm: SlenderArm) -> str:
-    """The constitutive law in words."""
+    """Constitutive law of an arm in words: "linear", or "neo-Hookean" with the kind of section."""
     law = "linear" if arm.law == LINEAR.law else "neo-Hookean"
     return f"{law}, {arm.section} section" if arm.law != LINEAR.law else law
 
 
 def station_words(station: Station) -> str:
-    """Radius, bore and Young's modulus of a segment: "radius 6 mm, inner radius 3 mm, 80 kPa"."""
+    """Radius, inner radius of a tube, and Young's modulus of a segment: "radius 6 mm, inner radius 3 mm, 80
+    kPa".
+    """
     sides = {"radius": station.section.drag_radius}
     if isinstance(station.section, Tube):
         sides["inner radius"] = station.section.inner_radius
@@ -31,6 +33,6 @@ def station_words(station: Station) -> str:
 
 
 def _in_prefix(value: float, si: str) -> str:
-    """A value in an SI unit with a prefix, to four digits."""
+    """A value in the SI unit `si` as text with four digits and a prefix: "6 mm"."""
     factor, unit = compact(value, si)
     return f"{value * factor:.4g} {unit}"

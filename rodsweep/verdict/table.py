@@ -1,19 +1,19 @@
-"""Rows of text with numbers of an arm, formulas and sources."""
+"""Rows of the table in a report on an arm: numbers with formulas and sources."""
 
 from typing import NamedTuple
 
 from ..model.arm.arm import SlenderArm
 from ..model.material.laws import LINEAR
-from .load import rounded
+from .load import range_text
 from .planes import PlaneOfMotion
 from .shape import law_words, station_words
 
 LAW_FORMULA = "stress E (h - 1/h^2)/3 at the stretch h, incompressible"
-"""Formula of the stress of neo-Hookean rubber, for a report."""
+"""Formula of the stress in neo-Hookean rubber, as the table shows it."""
 
 
 class NumberRow(NamedTuple):
-    """Name, value, formula and source of one number of an arm."""
+    """Row of the table: name, value, formula and source of one number of an arm."""
 
     name: str
     value: str
@@ -22,19 +22,23 @@ class NumberRow(NamedTuple):
 
 
 def number_rows(plane: PlaneOfMotion) -> list[NumberRow]:
-    """All numbers of an arm in the plane of its verdict, dimensional numbers first."""
+    """Rows with all numbers of an arm, in the plane in which it flutters first. Dimensional numbers come
+    first.
+    """
     arm = plane.arm
     return [
         *plane_row(plane),
         *shape_rows(arm),
-        *dimensional(arm),
+        *dimensional_rows(arm),
         *drag_rows(arm),
-        *dimensionless(arm),
+        *dimensionless_rows(arm),
     ]
 
 
 def plane_row(plane: PlaneOfMotion) -> list[NumberRow]:
-    """Row with the sides of a rectangle, h in the plane of motion; empty for other sections."""
+    """Row with width w and height h of a rectangular section, h in the plane of motion; an empty list for
+    other sections.
+    """
     if not plane.name:
         return []
     sides = f"w = {plane.arm.si.width:.4g} m, h = {plane.arm.si.height:.4g} m"
@@ -42,7 +46,9 @@ def plane_row(plane: PlaneOfMotion) -> list[NumberRow]:
 
 
 def shape_rows(arm: SlenderArm) -> list[NumberRow]:
-    """Rows with the taper or every segment, and the law of rubber; empty for a uniform linear arm."""
+    """Rows with the taper or the segments, and with the law of rubber; an empty list for a uniform arm of
+    linear material.
+    """
     rows = []
     if arm.taper != 1:
         formula = "tip radius/radius; all other rows are of the base"
@@ -59,8 +65,8 @@ def shape_rows(arm: SlenderArm) -> list[NumberRow]:
     return rows
 
 
-def dimensional(arm: SlenderArm) -> list[NumberRow]:
-    """Rows with section, stiffness and load, in SI units."""
+def dimensional_rows(arm: SlenderArm) -> list[NumberRow]:
+    """Rows with cross-section, stiffness and load of an arm, in SI units."""
     section = arm.cross_section
     kappa = section.shear_coefficient(arm.poisson)
     return [
@@ -74,7 +80,7 @@ def dimensional(arm: SlenderArm) -> list[NumberRow]:
 
 
 def load_row(arm: SlenderArm) -> list[NumberRow]:
-    """Row with the tip force; empty without load."""
+    """Row with the tip force; an empty list for an arm without load."""
     if arm.load is None:
         return []
     of_tip = " of the tip" if arm.shape.varies else ""
@@ -83,12 +89,14 @@ def load_row(arm: SlenderArm) -> list[NumberRow]:
 
 
 def with_drag_range(arm: SlenderArm, values: list[float], unit: str = "") -> str:
-    """Text of the value for the likeliest drag, with the range over drag in brackets."""
-    return f"{values[0]:.3g} ({rounded(min(values), max(values))}){unit}"
+    """values[0] as text, which belongs to the most likely drag, with the range of `values` over all drags in
+    brackets.
+    """
+    return f"{values[0]:.3g} ({range_text(min(values), max(values))}){unit}"
 
 
 def drag_rows(arm: SlenderArm) -> list[NumberRow]:
-    """Rows with drag coefficients and the time scale, each with the range over drag."""
+    """Rows with the drag coefficients and the time scale tau2, each with its range over the drags."""
     drags = arm.drags
     translation = "Cox 1970; Gray & Hancock 1955, Lighthill 1976"
     return [
@@ -119,8 +127,8 @@ def drag_rows(arm: SlenderArm) -> list[NumberRow]:
     ]
 
 
-def dimensionless(arm: SlenderArm) -> list[NumberRow]:
-    """Rows with the dimensionless parameters, named like the keys of a config."""
+def dimensionless_rows(arm: SlenderArm) -> list[NumberRow]:
+    """Rows with the dimensionless parameters of an arm, named like the keys of a config."""
     drags = arm.drags
     force = NumberRow("F", f"{arm.F:.5g}", "tip force L^2/k3", "paper, Sec. IV, VI") if arm.load else None
     return [

@@ -1,4 +1,6 @@
-"""Validity of the model at an arm's threshold and under its load, and the changes that restore it."""
+"""Whether the model applies to an arm at its flutter threshold and under its load, and which changes of the
+arm or fluid make it apply.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,68 +22,82 @@ from ..solve.changes.unstable_modes import ChangeKind, Crossing
 from ..solve.exclusive import solving
 from .flutter import FlutterRange, flutter_forces
 
-DIGITS_OF_FACTORS = 2
-"""Digits of the factors in remedies, which are rounded conservatively."""
-THINNING_STEPS = 20
-"""Maximum iterations for a thickness; ten suffice if inertia of arm and fluid are comparable."""
+REMEDY_DIGITS = 2
+"""Significant digits of the factors in remedies, which are rounded to the safe side."""
+MAX_THINNING_ITERATIONS = 20
+"""Maximum number of iterations of `thickness_factor`. Ten suffice if inertia of arm and fluid are
+comparable."""
 VISCOSITY_TARGET = 0.995
-"""Target of the iteration for a thickness: required viscosity over viscosity of the fluid."""
-CLOSE_TO_LIMIT = 0.99
-"""The iteration for a thickness stops between this ratio of required to actual viscosity and 1, where the
-thickness has two correct digits."""
+"""Ratio of required to actual viscosity at which an iteration of `thickness_factor` aims; below 1, so that
+inertia ends within its limit."""
+MIN_VISCOSITY_RATIO = 0.99
+"""Stopping criterion of `thickness_factor`: a ratio of required to actual viscosity between this number and
+1. The thickness then has two correct digits."""
 
 
 @dataclass(frozen=True)
 class Assessment:
-    """Neglected effects on an arm, at the flutter threshold and under the load."""
+    """Neglected effects on an arm, at the flutter threshold and under the load, compared with the limits of
+    the model.
+    """
 
     arm: SlenderArm
     found: FlutterRange
 
     @cached_property
     def at_flutter(self) -> tuple[Effect, ...]:
-        """Effects at the first flutter with the likeliest drag, at the fastest rate over all drags."""
+        """Neglected effects at the first flutter force for the most likely drag. The rate is the largest over
+        all drags.
+        """
         return effects_at_flutter(self.arm, self.found)
 
     @cached_property
     def under_load(self) -> tuple[Effect, ...]:
-        """Effects of the load itself; empty without a load."""
+        """Compression by the arm's load, the only neglected effect that depends on it; empty
+        without a load.
+        """
         return () if self.arm.load is None else (compression(self.arm, weakest_load(self.arm, self.arm.F)),)
 
     @property
     def force_at_flutter(self) -> float | None:
-        """Force of `first_flutter_of`, in k3/L^2; None without flutter."""
+        """Smallest force of flutter, in k3/L^2, for the most likely drag that has flutter; None without
+        flutter.
+        """
         first = first_flutter_of(self.found)
         return None if first is None else first.at
 
     @property
     def effects(self) -> tuple[Effect, ...]:
-        """All effects: at the threshold, then under the load."""
+        """Neglected effects at the flutter threshold, then under the load."""
         return *self.at_flutter, *self.under_load
 
     @property
     def of_thresholds(self) -> Validity:
-        """Validity of the model for the thresholds of the arm."""
+        """Whether the model applies at the flutter threshold."""
         return Validity(int(worst_validity(self.at_flutter, of_cycles=False)))
 
     @property
     def of_verdict(self) -> Validity:
-        """Validity of the model for the verdict on the load."""
+        """Whether the model applies at the flutter threshold and under the load."""
         return Validity(int(worst_validity(self.effects, of_cycles=False)))
 
     def effects_with(self, validity: Validity) -> list[Effect]:
-        """Effects with the given validity by decreasing excess, without effects on cycles only."""
+        """Neglected effects with the given validity, the largest ratio to the limit first. Effects on cycles
+        alone are left out.
+        """
         counted = [e for e in self.effects if e.validity == validity and not e.of_cycles_only]
         return sorted(counted, key=lambda effect: -float(effect.excess))
 
 
 def first_flutter_of(found: FlutterRange) -> Crossing | None:
-    """The first flutter with the likeliest of all drags that have flutter; None if no drag has flutter."""
+    """First flutter for the most likely of all drags for which the arm flutters; None if it flutters for
+    none.
+    """
     return next((each for c in found.forces if (each := c.first(ChangeKind.hopf))), None)
 
 
 def effects_at_flutter(arm: SlenderArm, found: FlutterRange) -> tuple[Effect, ...]:
-    """Neglected effects at the threshold; inertia and compression are NaN without flutter."""
+    """Neglected effects at the first flutter of `found`. Inertia and compression are NaN without flutter."""
     first = first_flutter_of(found)
     if first is None:
         return effects_of(arm, nan, nan)
@@ -89,27 +105,29 @@ def effects_at_flutter(arm: SlenderArm, found: FlutterRange) -> tuple[Effect, ..
 
 
 def viscosity_factor(effects: tuple[Effect, ...]) -> float:
-    """Factor on the viscosity that brings inertia to its limit; NaN without flutter."""
+    """Factor by which to multiply the viscosity so that inertia just reaches its limit; NaN
+    without flutter.
+    """
     return max(float(e.viscosity_factor) for e in effects if e.name.startswith("inertia"))
 
 
 @solving
 def thickness_factor(arm: SlenderArm) -> float:
-    """Largest factor on all sides of the section for which inertia in the same fluid is within its limit.
+    """Largest factor for the thickness of an arm with which inertia, in the same fluid, is within its limit.
 
-    Solves for thresholds of thinner arms. NaN if the arm does not flutter, or if the model does not apply to
-    the thinner arm for a further reason, such as weight. NaN also for an arm that varies along its length,
-    because each solve would take a second.
+    Multiplies all sides of the section, and solves for thresholds of the thinner arms. NaN if the arm does
+    not flutter, or if a further effect, such as weight, exceeds its limit for the thinner arm. NaN also for
+    an arm that varies along its length, because each solve would take a second.
     """
     if arm.shape.varies:
         return nan
     factor = 1.0
-    for _ in range(THINNING_STEPS):
+    for _ in range(MAX_THINNING_ITERATIONS):
         thinner = _scaled(arm, factor)
         found = FlutterRange((flutter_forces(thinner, thinner.drags[0]),))
         effects = effects_at_flutter(thinner, found)
         excess = viscosity_factor(effects)
-        if CLOSE_TO_LIMIT < excess <= 1.0:
+        if MIN_VISCOSITY_RATIO < excess <= 1.0:
             applies = worst_validity(effects, of_cycles=False) < Validity.does_not_apply
             return factor if applies else nan
         # Mass times rate over drag scales as thickness^6/viscosity^2, hence thickness as viscosity^(1/3).
@@ -118,19 +136,19 @@ def thickness_factor(arm: SlenderArm) -> float:
 
 
 def _scaled(arm: SlenderArm, factor: float) -> SlenderArm:
-    """The arm without load, with all sides of the section multiplied by `factor`."""
+    """The arm without load, with all sides of its section multiplied by `factor`."""
     given = {name: value for name, value in vars(arm.si).items() if not isnan(value) and name not in LOADS}
     section = {name: factor * given[name] for name in chain(*SECTION_SIDES) if name in given}
     return SlenderArm(**(given | section), poisson=arm.poisson, law=arm.law, section=arm.section)
 
 
 def rounded_down(value: float) -> float:
-    """Rounds a positive number down to DIGITS_OF_FACTORS digits."""
-    unit = 10.0 ** (floor(log10(value)) - DIGITS_OF_FACTORS + 1)
+    """A positive number, rounded down to REMEDY_DIGITS significant digits."""
+    unit = 10.0 ** (floor(log10(value)) - REMEDY_DIGITS + 1)
     return floor(value / unit) * unit
 
 
 def rounded_up(value: float) -> float:
-    """Rounds a positive number up to DIGITS_OF_FACTORS digits."""
-    unit = 10.0 ** (floor(log10(value)) - DIGITS_OF_FACTORS + 1)
+    """A positive number, rounded up to REMEDY_DIGITS significant digits."""
+    unit = 10.0 ** (floor(log10(value)) - REMEDY_DIGITS + 1)
     return ceil(value / unit) * unit

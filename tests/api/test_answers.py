@@ -10,7 +10,7 @@ import rodsweep as rs
 from rodsweep.api.asking import config_tree, job_from
 from rodsweep.api.solved import StoredResult
 from rodsweep.config.tasks import CONFIGS
-from rodsweep.post.tables.contents import NAMES
+from rodsweep.post.tables.contents import TABLE_NAMES
 
 ROD = {"F": 50, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
 FOLDED = {"k1": 150, "k2": 1e4, "gamma3": 1e-4}
@@ -150,7 +150,7 @@ def test_no_variable_hides_behind_an_attribute_of_answers():
         layout = job_from(tree).layout
         names = {variable.name for variable in layout.variables}
         assert names & set(dir(rs.Answer)) == {"status"}
-        assert not (names | set(layout.extents)) & {*NAMES.values(), "eigenvalues", "branches"}
+        assert not (names | set(layout.extents)) & {*TABLE_NAMES.values(), "eigenvalues", "branches"}
 
 
 @pytest.mark.parametrize(

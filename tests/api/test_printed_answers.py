@@ -15,7 +15,7 @@ import rodsweep as rs
 from rodsweep.api.answers.frames import frame_of
 from rodsweep.api.solved import StoredResult
 from rodsweep.cli.checking import describe_job
-from rodsweep.post.headline.one_rod import Digits
+from rodsweep.post.headline.one_rod import ColumnTexts
 from rodsweep.post.headline.sentences import HEADLINES
 from rodsweep.post.summary import show_summary
 from rodsweep.post.tables.alignment import blocks, column_cells, point_aligned, refolded, rows_with_prose
@@ -47,31 +47,31 @@ def test_a_number_has_the_digits_that_its_error_allows(seed):
     values = rng.choice([-1, 1], 50) * 10 ** rng.uniform(-8, 8, 50)
     relative = 10 ** rng.uniform(-13, -1, 50)
     columns = [real("period", values), real("period_error", relative)]
-    pairs = Digits(columns, {}).pairs("period")
+    pairs = ColumnTexts(columns, {}).pairs("period")
     for (text, stated), value, error in zip(pairs, values, relative * np.abs(values), strict=True):
         digit = 10.0 ** floor(log10(error))
         assert unit_of(text) > 0.9999 * digit, (text, value, error)
         assert abs(float(text) - value) <= 0.5001 * digit, (text, value, error)
         assert error + abs(float(text) - value) <= float(stated) * (1 + 1e-8)
         assert len(stated.partition("e")[0]) == 1
-    printed = [float(text) for text in Digits(columns, {}).texts("period_error")]
+    printed = [float(text) for text in ColumnTexts(columns, {}).texts("period_error")]
     numbers = np.array([float(text) for text, _ in pairs])
     assert (np.abs(numbers - values) <= np.array(printed) * np.abs(values)).all()
 
 
 def test_numbers_of_unknown_error_have_six_digits_and_missing_ones_none():
-    digits = Digits([real("tip_x_max", [0.123456789, np.nan, 0, np.inf])], {})
+    digits = ColumnTexts([real("tip_x_max", [0.123456789, np.nan, 0, np.inf])], {})
     assert digits.pairs("tip_x_max") == [("0.123457", ""), ("", ""), ("0", ""), ("inf", "")]
 
 
 def test_a_number_below_its_error_has_no_digit():
     columns = [real("multiplier", [0.0005, -0.04, 3]), real("multiplier_error", [0.01, 0.05, 20])]
-    assert Digits(columns, {}).texts("multiplier") == ["0.00", "-0.04", "0"]
+    assert ColumnTexts(columns, {}).texts("multiplier") == ["0.00", "-0.04", "0"]
 
 
 def test_an_si_number_has_the_relative_error_of_its_own():
     columns = [real("period", [0.5]), real("period_si", [320.262]), real("period_error", [1e-3])]
-    assert Digits(columns, {"period": "period_si"}).pairs("period_si") == [("320.3", "4e-01")]
+    assert ColumnTexts(columns, {"period": "period_si"}).pairs("period_si") == [("320.3", "4e-01")]
 
 
 @pytest.mark.parametrize("seed", range(20))

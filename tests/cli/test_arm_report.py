@@ -13,8 +13,8 @@ from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import Validity, effects_of, fastest_rate, worst_validity
 from rodsweep.solve.changes.thresholds import ThresholdStatus, nothing_found
 from rodsweep.solve.changes.unstable_modes import ChangeKind
-from rodsweep.verdict.arm import report_on
-from rodsweep.verdict.checks import LOWERED_BY_INERTIA, stiffening
+from rodsweep.verdict.arm import arm_report
+from rodsweep.verdict.checks import THRESHOLD_DECREASE_BY_INERTIA, stiffening
 from rodsweep.verdict.flutter import FlutterForces, FlutterRange
 from rodsweep.verdict.load import Load
 from rodsweep.verdict.planes import PlaneOfMotion, Planes, with_load
@@ -26,7 +26,7 @@ TALL = {"length": "12 cm", "width": "8 mm", "height": "12 mm", "young": "100 kPa
 
 
 def headline(arm):
-    return report_on(arm).verdict[0]
+    return arm_report(arm).verdict[0]
 
 
 def numbers_in(text):
@@ -52,10 +52,10 @@ def test_the_arm_in_water_is_no_case_for_the_model():
 def test_the_fluid_and_the_thickness_that_are_stated_would_do_and_less_would_not():
     """4600 times the viscosity, or 0.018 times the radius: rounded to the safe side in the second digit."""
     for factor, fine in ((4600, True), (4450, False)):
-        report = report_on(SlenderArm(**WATER | {"viscosity": factor * 1e-3}))
+        report = arm_report(SlenderArm(**WATER | {"viscosity": factor * 1e-3}))
         assert (report.validity == Validity.does_not_apply) != fine
     for factor, fine in ((0.018, True), (0.0195, False)):
-        report = report_on(SlenderArm(**WATER | {"radius": factor * 6e-3}))
+        report = arm_report(SlenderArm(**WATER | {"radius": factor * 6e-3}))
         assert (report.validity == Validity.does_not_apply) != fine
 
 
@@ -77,7 +77,7 @@ def test_large_numbers_and_units_are_written_as_people_do():
 def test_near_a_limit_a_warning_stands_above_the_verdict():
     """Inertia goes as 1/viscosity^2: 0.64 at 1.4 Pa s."""
     arm = SlenderArm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="7 Pa s", pressure="2 kPa")
-    report = report_on(arm)
+    report = arm_report(arm)
     assert report.validity == Validity.doubtful
     first, second, *_ = str(report).splitlines()
     assert first.startswith("warning: Compression: the load shortens the arm by 2 %")
@@ -99,7 +99,7 @@ def test_warnings_state_by_how_much_inertia_lowers_flutter(rod):
     phases = (-data.growth_rate / abs(data.frequency)).values.ravel()
     for phase in (0.02, 0.1, 0.2):
         lowered = 1 - np.interp(phase, phases[::-1], F[::-1]) / flutter
-        assert lowered == pytest.approx(LOWERED_BY_INERTIA * phase, rel=0.15)
+        assert lowered == pytest.approx(THRESHOLD_DECREASE_BY_INERTIA * phase, rel=0.15)
 
 
 def test_rubber_is_stiffer_under_compression_as_stated():
@@ -110,7 +110,7 @@ def test_rubber_is_stiffer_under_compression_as_stated():
 
 
 def test_a_load_that_crushes_the_material_is_beyond_the_model_while_flutter_is_not():
-    report = report_on(SlenderArm(**THICK, pressure="20 kPa"))
+    report = arm_report(SlenderArm(**THICK, pressure="20 kPa"))
     assert report.verdict[0] == (
         "The model does not apply at 20 kPa: compression is 2 times what the model allows; the model needs a "
         "load of at most 10 kPa."
@@ -118,16 +118,16 @@ def test_a_load_that_crushes_the_material_is_beyond_the_model_while_flutter_is_n
     assert re.fullmatch(
         r"Flutter, at [\d.]+ to [\d.]+ kPa, is within the model; 20 kPa is not.", report.verdict[1]
     )
-    assert report_on(SlenderArm(**THICK, pressure="9.99 kPa")).validity == Validity.doubtful
+    assert arm_report(SlenderArm(**THICK, pressure="9.99 kPa")).validity == Validity.doubtful
 
 
 def test_weight_beyond_its_limit_says_which_density_would_do():
-    report = report_on(SlenderArm(**THICK, density_difference="-200 kg/m^3"))
+    report = arm_report(SlenderArm(**THICK, density_difference="-200 kg/m^3"))
     (excess, most) = numbers_in(report.verdict[0])[:2]
     assert report.verdict[0].startswith("The model does not apply: weight is ")
     assert excess == pytest.approx(200 / most, rel=0.1)
-    assert report_on(SlenderArm(**THICK, density_difference=most)).validity < Validity.does_not_apply
-    assert report_on(SlenderArm(**THICK, density_difference=1.1 * most)).validity == Validity.does_not_apply
+    assert arm_report(SlenderArm(**THICK, density_difference=most)).validity < Validity.does_not_apply
+    assert arm_report(SlenderArm(**THICK, density_difference=1.1 * most)).validity == Validity.does_not_apply
 
 
 def random_arm(rng):
@@ -153,7 +153,7 @@ def random_arm(rng):
 @pytest.mark.parametrize("seed", few(range(6), 2))
 def test_the_headline_agrees_with_the_neglected_effects_of_random_arms(seed):
     arm = random_arm(np.random.default_rng(seed))
-    report = report_on(arm)
+    report = arm_report(arm)
     plane = min(
         (
             (rod, rs.Arm(**{n: getattr(rod, n) for n in QUANTITIES if getattr(rod, n) is not None}))
@@ -205,7 +205,7 @@ def test_a_tall_rectangle_flutters_first_in_the_plane_of_its_width():
 
 
 def test_a_square_has_one_plane():
-    assert "plane" not in str(report_on(SlenderArm(**TALL | {"width": "12 mm"})))
+    assert "plane" not in str(arm_report(SlenderArm(**TALL | {"width": "12 mm"})))
 
 
 def test_a_tall_arm_that_is_stiff_in_its_plane_of_motion_beats_in_the_other():

@@ -14,8 +14,8 @@ from surveyed import few, survey_only
 
 import rodsweep as rs
 from rodsweep.errors import InputError
-from rodsweep.explore.pictures.card import STABLE
-from rodsweep.explore.pictures.numbers import written
+from rodsweep.explore.pictures.card import STABLE_COLOUR
+from rodsweep.explore.pictures.numbers import number_text
 from rodsweep.explore.state import PageState
 
 pytestmark = needs_browser
@@ -73,7 +73,7 @@ def test_the_numbers_on_the_page_are_those_of_the_solver(browser):
         (spectrum, ("growth_rate", "frequency", "unstable_count")),
         (thresholds, ("F_onset", "F_hopf", "hopf_frequency")),
     ):
-        assert {n: shown[n] for n in names} == {n: written(answer.data[n].values) for n in names}
+        assert {n: shown[n] for n in names} == {n: number_text(answer.data[n].values) for n in names}
     # The start of a cycle differs between the page, which had other rods before, and a new process.
     for name in ("period", "tip_y_max", "injection_mean", "dissipation_mean"):
         assert float(shown[name]) == pytest.approx(float(cycle.data[name]), rel=1e-6)
@@ -111,7 +111,7 @@ def test_a_saved_picture_has_the_arm_that_is_animated(browser):
     browser.wait_for("window.picture")
     browser.run("fetch(window.picture).then((file) => file.text()).then((text) => window.drawn = text)")
     browser.wait_for("window.drawn")
-    assert STABLE in browser.run("return window.drawn")
+    assert STABLE_COLOUR in browser.run("return window.drawn")
 
 
 def test_all_of_an_answer_comes_in_one_message(browser):
@@ -135,7 +135,7 @@ def test_a_click_in_the_diagram_moves_the_point_and_everything_follows(browser):
     F, k2 = (float(browser.model(f"{name}_field", "value")) for name in ("F", "k2"))
     assert (F, k2) == (pytest.approx(55, abs=1), pytest.approx(300, rel=0.1))
     answer = rs.Rod(F=F, k1=1e4, k2=k2, gamma3=0.01).spectrum()
-    assert numbers(browser)["growth_rate"] == written(answer.growth_rate)
+    assert numbers(browser)["growth_rate"] == number_text(answer.growth_rate)
     browser.wait_for(f"location.search.startsWith('?tab=rod&F={F:g}&')")  # written when the page has rested
 
 
@@ -214,7 +214,7 @@ def test_a_slider_that_never_rests_ends_at_its_last_value(browser):
     solved(browser)
     F = float(browser.model("F_field", "value"))
     assert pytest.approx(59.0) == F
-    assert numbers(browser)["growth_rate"] == written(ROD.replace(F=F).spectrum().growth_rate)
+    assert numbers(browser)["growth_rate"] == number_text(ROD.replace(F=F).spectrum().growth_rate)
 
 
 def test_nothing_is_on_the_console(browser):

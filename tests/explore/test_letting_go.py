@@ -8,15 +8,15 @@ from explore.test_page import ImmediateSolvers, page_with, run_callbacks
 from PIL import Image
 
 import rodsweep as rs
-from rodsweep.explore.page import AT_ONCE, Page
+from rodsweep.explore.page import INSTANT_KINDS, Page
 from rodsweep.explore.pictures.beating import PERIOD_SECONDS
 from rodsweep.explore.pictures.card import NO_TITLE
 from rodsweep.explore.solving.letting_go import filmed
-from rodsweep.explore.solving.questions import SHAPES, Question, Reply, answer_to
+from rodsweep.explore.solving.questions import SHAPE_COUNT, Question, Reply, answer_to
 from rodsweep.explore.state import PageState
 from rodsweep.post.figures.cycle.motion_film import motion_film
 
-KINDS = (*AT_ONCE, "bent", "motion", "film")
+KINDS = (*INSTANT_KINDS, "bent", "motion", "film")
 
 
 def drag(page: Page, phase: str, x: float, y: float) -> None:
@@ -109,7 +109,7 @@ def test_the_film_shows_the_shapes_of_a_period():
     run_callbacks(page.document)
     assert len(given) == 1
     film = Image.open(BytesIO(given[0]))
-    assert (film.format, film.n_frames) == ("GIF", SHAPES)
+    assert (film.format, film.n_frames) == ("GIF", SHAPE_COUNT)
 
 
 def test_the_film_of_an_arm_that_was_let_go_is_that_of_its_motion():

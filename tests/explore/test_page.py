@@ -10,14 +10,14 @@ from bokeh.models import HoverTool
 
 import rodsweep as rs
 from rodsweep.errors import Refusal
-from rodsweep.explore.page import AT_ONCE, STOPPED_SENTENCE, Page
+from rodsweep.explore.page import INSTANT_KINDS, STOPPED_SENTENCE, Page
 from rodsweep.explore.pictures.card import AXIS_ALPHAS
-from rodsweep.explore.pictures.diagram import DiagramCell, cells, in_words
-from rodsweep.explore.pictures.numbers import written
+from rodsweep.explore.pictures.diagram import DiagramCell, cells, unstable_count_words
+from rodsweep.explore.pictures.numbers import number_text
 from rodsweep.explore.solving.diagrams import CRUSHED, NOT_KNOWN
 from rodsweep.explore.solving.questions import Question, Reply, answer_to
 from rodsweep.explore.state import PageState
-from rodsweep.explore.stored import opened
+from rodsweep.explore.stored import page_state_of_file
 
 PLANE = """task: phase_diagram
 parameters: {F: {start: 0, stop: 60, num: 31}, k1: [100, 200, 400], k2: 1.0e4, gamma3: 1.0e-4}
@@ -27,7 +27,7 @@ parameters: {F: {start: 0, stop: 60, num: 31}, k1: [100, 200, 400], k2: 1.0e4, g
 class ImmediateSolvers:
     """Answers at once, in this process. questions: all that were asked."""
 
-    def __init__(self, kinds: tuple[str, ...] = AT_ONCE):
+    def __init__(self, kinds: tuple[str, ...] = INSTANT_KINDS):
         self.kinds = kinds
         self.questions: list[Question] = []
 
@@ -78,7 +78,7 @@ def test_pictures_and_numbers_are_those_of_the_solver():
     source = page.contents.spectrum.source.data
     assert source["growth"] == pytest.approx(spectrum.growth_rate, rel=1e-12)
     assert page.contents.spectrum.card.figure.title.text == "2 unstable modes, certified"
-    assert shown(page)["F_hopf"] == written(thresholds.F_hopf)
+    assert shown(page)["F_hopf"] == number_text(thresholds.F_hopf)
     assert float(shown(page)["period"]) == pytest.approx(cycle.period, rel=1e-7)
     shapes = page.contents.beating.shapes.data
     nodes = int(shapes["number"][0])
@@ -94,7 +94,7 @@ def test_a_change_of_the_load_asks_no_thresholds_again():
     assert {question.kind for question in solvers.questions} == {"spectrum", "cycle"}
     solvers.questions.clear()
     page.change({"k2": "200"})
-    assert {question.kind for question in solvers.questions} == set(AT_ONCE)
+    assert {question.kind for question in solvers.questions} == set(INSTANT_KINDS)
 
 
 def test_a_rod_at_rest_says_so_above_the_straight_arm():
@@ -154,7 +154,7 @@ def test_branches_wait_until_the_page_rests_and_cones_until_the_button():
 def test_a_file_brings_its_diagram_and_only_the_rest_is_solved(command):
     command.write("plane.yaml", PLANE)
     assert command("run", "plane.yaml").returncode == 0
-    state, stored = opened(command.directory / "plane.h5")
+    state, stored = page_state_of_file(command.directory / "plane.h5")
     solvers = ImmediateSolvers()
     page = page_with(solvers, state=state, stored=stored)
     run_callbacks(page.document, seconds=True)
@@ -188,7 +188,7 @@ def test_texts_to_share_wait_until_the_page_rests_and_what_the_buttons_copy_does
 def test_the_diagram_names_its_areas_under_the_pointer_and_nothing_else():
     picture = page_with(ImmediateSolvers(())).contents.diagram
     counts = np.array([[0, 1, 2, NOT_KNOWN, CRUSHED]])
-    assert [in_words(cell.unstable) for cell in cells(np.arange(5.0), np.ones(1), counts)] == [
+    assert [unstable_count_words(cell.unstable) for cell in cells(np.arange(5.0), np.ones(1), counts)] == [
         "stable", "1 unstable mode", "2 unstable modes", "not searched, or not known", "crushed by the load",
     ]  # fmt: skip
     (hover,) = picture.card.figure.select(HoverTool)
@@ -234,7 +234,7 @@ def test_a_long_solve_says_how_far_it_is_and_can_be_stopped():
 
 
 def test_stopping_the_folds_leaves_the_diagram_and_stopping_a_motion_the_arm():
-    solvers = ImmediateSolvers((*AT_ONCE, "bent"))
+    solvers = ImmediateSolvers((*INSTANT_KINDS, "bent"))
     page = page_with(solvers)
     run_callbacks(page.document, seconds=True)
     diagram, *_ = [question for question in solvers.questions if question.kind == "diagram"]

@@ -9,16 +9,16 @@ from hypothesis import strategies as st
 import rodsweep as rs
 from rodsweep.errors import InputError
 from rodsweep.explore.sharing import state_of_text
-from rodsweep.explore.state import ACROSS, ARM, LAWS, ROD, PageState, from_address
+from rodsweep.explore.state import DEFAULT_ARM, DEFAULT_ROD, LAWS, SECOND_PARAMETERS, PageState, from_address
 
 TEXT = st.text(st.characters(exclude_categories=("Cs",)), max_size=12)
 RODS = st.builds(
     lambda texts, law, across, F_max: PageState(
-        rod=dict(zip(ROD, texts, strict=True)), law=law, across=across, F_max=F_max
+        rod=dict(zip(DEFAULT_ROD, texts, strict=True)), law=law, across=across, F_max=F_max
     ),
-    st.lists(TEXT, min_size=len(ROD), max_size=len(ROD)),
+    st.lists(TEXT, min_size=len(DEFAULT_ROD), max_size=len(DEFAULT_ROD)),
     st.sampled_from(list(LAWS)),
-    st.sampled_from(ACROSS["rod"]),
+    st.sampled_from(SECOND_PARAMETERS["rod"]),
     TEXT,
 )
 OTHER = {"F": "31.5", "k1": "inf", "k2": "2e3", "gamma3": "1e-3", "gamma1": "0.5", "taper": "0.8"}
@@ -31,7 +31,9 @@ def test_an_address_gives_the_same_state_whatever_was_typed(state):
 
 
 def test_the_address_of_an_arm_gives_the_same_arm():
-    state = PageState(tab="arm", arm=ARM | {"length": "12.5 cm"}, law="swelling", across="young", F_max="90")
+    state = PageState(
+        tab="arm", arm=DEFAULT_ARM | {"length": "12.5 cm"}, law="swelling", across="young", F_max="90"
+    )
     assert from_address("?" + state.address()) == state
 
 
@@ -45,8 +47,8 @@ def test_the_address_of_an_arm_gives_the_same_arm():
         ("F=3&length=2", "length"),
     ],
 )
-def test_an_address_with_an_unknown_key_or_choice_is_refused(query, named):
-    with pytest.raises(InputError, match=named):
+def test_an_address_with_an_unknown_key_or_choice_is_refused(query, threshold_title):
+    with pytest.raises(InputError, match=threshold_title):
         from_address(query)
 
 
@@ -57,7 +59,7 @@ def test_a_loaded_config_is_the_state_that_saved_it(law):
 
 
 def test_a_loaded_config_of_an_arm_is_the_arm_that_saved_it():
-    state = PageState(tab="arm", arm=ARM | {"pressure": "3.25 kPa", "radius": "4 mm"})
+    state = PageState(tab="arm", arm=DEFAULT_ARM | {"pressure": "3.25 kPa", "radius": "4 mm"})
     loaded = state_of_text(state.yaml("limit_cycle"))
     assert (loaded.tab, loaded.arm) == ("arm", state.arm)
 

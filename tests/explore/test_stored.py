@@ -10,10 +10,10 @@ from surveyed import few
 
 import rodsweep as rs
 from rodsweep.explore.page import Page
-from rodsweep.explore.pictures.card import TORUS
-from rodsweep.explore.pictures.numbers import written
+from rodsweep.explore.pictures.card import TORUS_COLOUR
+from rodsweep.explore.pictures.numbers import number_text
 from rodsweep.explore.solving.questions import answer_to
-from rodsweep.explore.stored import opened, stored_diagram
+from rodsweep.explore.stored import page_state_of_file, stored_diagram
 from rodsweep.explore.stored_results import StoredResults
 from rodsweep.results.layouts.branch import SPECIAL_KINDS
 
@@ -42,7 +42,7 @@ class Filmed(NamedTuple):
 def opened_page(command, text: str, query: str = "") -> tuple[Page, NoSolvers]:
     """The page of the result of a config, after it has rested."""
     command.write("result.yaml", text)
-    state, stored = opened(command.solved("result.yaml"))
+    state, stored = page_state_of_file(command.solved("result.yaml"))
     solvers = NoSolvers()
     page = page_with(solvers, query, state, stored)
     run_callbacks(page.document, seconds=True)
@@ -58,7 +58,7 @@ def test_stored_cycles_are_drawn_and_not_solved_again(command):
     data = rs.open(command.directory / "result.h5").squeeze()
     assert page.state.rod["F"] == "40"
     assert not {"cycle", "branch"} & asked(solvers)
-    assert shown(page)["period"] == written(data["period"].sel(F=40).values)
+    assert shown(page)["period"] == number_text(data["period"].sel(F=40).values)
     picture = page.contents.beating.shapes.data
     assert picture["y"] == pytest.approx(data["shape_y"].sel(F=40).values.ravel(), abs=1e-7)
     drawn = page.contents.branches.cycles.data
@@ -137,7 +137,7 @@ def test_stored_curves_of_torus_points_are_drawn_dashed_in_a_colour_of_their_own
     """On the smallest plane with folds, whose curves become torus points: real ones take 5 s."""
     command.write("result.yaml", PLANE)
     path = command.solved("result.yaml")
-    state, _ = opened(path)
+    state, _ = page_state_of_file(path)
     data = rs.open(path).load()
     kind = data["cycle_curve_kind"]
     kind.values[:] = SPECIAL_KINDS.index("torus")
@@ -145,7 +145,7 @@ def test_stored_curves_of_torus_points_are_drawn_dashed_in_a_colour_of_their_own
         NoSolvers(), state=state, stored=StoredResults(path, data, state, stored_diagram(data, state))
     )
     curves = page.contents.diagram.of_cycles.data
-    assert list(zip(curves["colour"], curves["dash"], strict=True)) == [(TORUS, "dashed")]
+    assert list(zip(curves["colour"], curves["dash"], strict=True)) == [(TORUS_COLOUR, "dashed")]
     assert curves["x"][0] == pytest.approx(data["cycle_curve_F"].values)
     words = [item.label.value for item in page.contents.diagram.legend.items]
     assert (page.contents.diagram.legend.visible, words) == (True, ["folds of cycles", "torus points"])

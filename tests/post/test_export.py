@@ -9,7 +9,7 @@ import pytest
 from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
-from rodsweep.post.tables.contents import NAMES
+from rodsweep.post.tables.contents import TABLE_NAMES
 
 SPECTRA = """
 task: spectrum
@@ -243,7 +243,7 @@ def test_results_of_every_task_are_exported(command, task):
         refused = command("export", "c.h5", "--table", "harmonics", "--replace")
         assert "0 rows of harmonics in " in refused.stdout
         assert "1 of 1 point without any" in refused.stdout
-    for table in [name for name in NAMES.values() if name in said.replace(",", "").split()]:
+    for table in [name for name in TABLE_NAMES.values() if name in said.replace(",", "").split()]:
         done = command("export", "c.h5", "--table", table, "--replace")
         assert done.returncode == 0, done.stderr
 

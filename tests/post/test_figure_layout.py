@@ -18,10 +18,10 @@ from rodsweep.api.dataset import view_of_dataset
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.animation import first_frame
 from rodsweep.post.figures.cycle.selection import chosen_cycles
-from rodsweep.post.figures.layout.fitting import WORDS, break_lines, fit
+from rodsweep.post.figures.layout.fitting import WORD_PATTERN, break_lines, fit
 from rodsweep.post.figures.layout.ticks import visible_labels
 from rodsweep.post.figures.request import FigureLook
-from rodsweep.post.figures.style import STYLE
+from rodsweep.post.figures.style import FIGURE_STYLE
 
 WIDTHS = ("89 mm", "183 mm", None)
 IN_TURN = ("89 mm", "183 mm", "89 mm", None)
@@ -227,7 +227,7 @@ def test_no_blank_is_left_above_flat_shapes(forces, tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", ["one", "two", "three"])
 def test_the_frames_of_a_film_are_whole(name):
     selection = chosen_cycles(of_cycles(*CYCLES[name][0], seed=1), (), ())
-    with matplotlib.rc_context(STYLE):
+    with matplotlib.rc_context(FIGURE_STYLE):
         figure, arms = first_frame(selection)
         for arm in arms:
             arm.show(7)
@@ -258,13 +258,17 @@ def test_every_threshold_of_the_first_config_of_the_readme_is_within_its_axes(tm
 
 
 def test_words_of_mathematics_are_not_broken():
-    assert WORDS.findall(r"$\tilde k_1 = 200$, cost in \$ and $a$ b") == [
+    assert WORD_PATTERN.findall(r"$\tilde k_1 = 200$, cost in \$ and $a$ b") == [
         r"$\tilde k_1 = 200$,", "cost", "in", r"\$", "and", "$a$", "b",
     ]  # fmt: skip
 
 
 def test_no_break_spaces_hold_a_number_and_its_unit_together():
-    assert WORDS.findall("viscosity\xa030\xa0Pa\xa0s, a b") == ["viscosity\xa030\xa0Pa\xa0s,", "a", "b"]
+    assert WORD_PATTERN.findall("viscosity\xa030\xa0Pa\xa0s, a b") == [
+        "viscosity\xa030\xa0Pa\xa0s,",
+        "a",
+        "b",
+    ]
 
 
 def test_lines_are_broken_only_where_they_are_too_long():

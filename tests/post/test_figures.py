@@ -23,9 +23,9 @@ from rodsweep.post.figures.sections import section
 from rodsweep.post.figures.spectra.line import mark_thresholds, select_roots, with_gaps
 from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS, class_along_row
 from rodsweep.post.figures.stability.diagram_curves import mark_cycles_on_rows
-from rodsweep.post.figures.stability.regions import PIXELS, ClassifiedPoints, coloured
+from rodsweep.post.figures.stability.regions import PIXEL_COUNT, ClassifiedPoints, pixel_classes
 from rodsweep.post.figures.stability.threshold_lines import _alike
-from rodsweep.post.figures.style import INVERSE_DRAG, LABELS, number, scale
+from rodsweep.post.figures.style import INVERSE_DRAG_LABEL, LABELS, number, scale
 from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.file.view import View, read_view
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -119,7 +119,7 @@ def test_one_row_of_a_diagram_is_a_bar_bounded_by_its_changes(command, drawn):
     edges, found = np.array(bar.get_coordinates()[0, :, 0]), np.array(bar.get_array()).ravel()
     changes = np.flatnonzero(np.diff(found)) + 1
     expected = [22.4709774737663, HOPF, STABLE_AGAIN, 200]
-    assert edges[changes] == pytest.approx(expected, abs=240 / PIXELS)
+    assert edges[changes] == pytest.approx(expected, abs=240 / PIXEL_COUNT)
     assert [label.get_text().split("= ")[1] for label in drawn[0].axes[0].get_yticklabels()] == ["200$"]
     assert "0.7" in drawn[0].get_suptitle()
 
@@ -218,7 +218,7 @@ def test_powers_of_ten_are_written_as_such(value, written):
 
 
 def test_labels_of_dimensionless_parameters_have_no_unit():
-    assert not any("[" in label for label in [*LABELS.values(), INVERSE_DRAG])
+    assert not any("[" in label for label in [*LABELS.values(), INVERSE_DRAG_LABEL])
 
 
 def test_flutter_is_marked_at_its_threshold_however_coarse_the_forces_are(command):
@@ -416,10 +416,10 @@ def test_classes_are_bounded_by_a_curve_however_few_points_are_computed():
     places = ClassifiedPoints(
         np.array([[0.1, 0.9], [0.05, 0.1], [0.9, 0.1], [0.95, 0.8]]), np.array([2, 2, 1, 1])
     )
-    table = coloured(places, places, [np.column_stack([x, x**2])])
-    centres = (np.arange(PIXELS) + 0.5) / PIXELS
+    table = pixel_classes(places, places, [np.column_stack([x, x**2])])
+    centres = (np.arange(PIXEL_COUNT) + 0.5) / PIXEL_COUNT
     off = centres[:, None] - centres[None, :] ** 2
-    away = np.abs(off) > 3 / PIXELS
+    away = np.abs(off) > 3 / PIXEL_COUNT
     assert np.array_equal(table[away], np.where(off > 0, 2, 1)[away])
 
 
@@ -427,7 +427,9 @@ def test_a_region_between_curves_without_a_computed_point_has_the_class_of_a_pla
     rails = [np.array([[0.0, y], [1.0, y]]) for y in (0.5, 0.52)]
     computed = ClassifiedPoints(np.array([[0.5, 0.2], [0.5, 0.8]]), np.array([1, 2]))
     further = ClassifiedPoints(np.array([[0.3, 0.51]]), np.array([3]))
-    assert coloured(computed, further, rails)[int(0.51 * PIXELS), ::100].tolist() == [3] * (PIXELS // 100)
+    assert pixel_classes(computed, further, rails)[int(0.51 * PIXEL_COUNT), ::100].tolist() == [3] * (
+        PIXEL_COUNT // 100
+    )
 
 
 def test_all_stored_roots_are_drawn_where_asked(command, drawn):

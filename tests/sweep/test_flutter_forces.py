@@ -83,7 +83,7 @@ def test_ranks_divide_the_search_and_give_the_same_file(command, rods):
 def test_flutter_that_is_not_found_is_a_status_with_a_reason(command, rods, task, ranks):
     """Of the second length in its second plane; all other points are as they are without the failure."""
     command.write("a.yaml", ARMS.format(task=task))
-    failure = f"if rod.k1 == {rods[3].k1!r}: raise relative.FlutterUnknown('no box is left')"
+    failure = f"if rod.k1 == {rods[3].k1!r}: raise relative.FlutterSearchFailed('no box is left')"
     assert command("run", "a.yaml", "-o", "whole.h5").returncode == 0
     run = command("run", "a.yaml", "-o", "part.h5", ranks=ranks, patch=searching(failure))
     assert run.returncode == 1
@@ -135,5 +135,7 @@ def test_a_search_that_overflows_fails_in_words(monkeypatch, error):
         raise error
 
     monkeypatch.setattr(relative, "cover_with_boxes", overflowing)
-    with pytest.raises(relative.FlutterUnknown, match="relative load fails: (too large|ZeroDivisionError)"):
+    with pytest.raises(
+        relative.FlutterSearchFailed, match="relative load fails: (too large|ZeroDivisionError)"
+    ):
         relative.first_hopf_force(Rod(F=0.0, k1=1234.5, k2=1e3, gamma3=1e-4))

@@ -10,7 +10,7 @@ import pytest
 import xarray
 
 from rodsweep.discretization.elements.resolution import Resolution
-from rodsweep.post.summary import NOUNS, show_summary
+from rodsweep.post.summary import POINT_NOUNS, show_summary
 from rodsweep.post.summary.diagram_curves import cycle_curve_lines
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.store import Store
@@ -301,7 +301,7 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
 def test_show_tells_what_matters_of_every_task(tmp_path, capsys, task, words):
     show_summary(read_view(filled_file(tmp_path, task)))
     text = " ".join(capsys.readouterr().out.split())
-    for word in ["ok", f"time per {NOUNS.get(task, 'point')}: median 250 ms", *words]:
+    for word in ["ok", f"time per {POINT_NOUNS.get(task, 'point')}: median 250 ms", *words]:
         assert word in text
 
 

@@ -10,7 +10,7 @@ from html import escape
 
 from ...post.headline.one_rod import OneRod
 from ...post.headline.sentences import HEADLINES, Headline
-from ...post.tables.alignment import GAP, WIDTH, Line, blocks, column_cells, folded, rows_with_prose
+from ...post.tables.alignment import COLUMN_GAP, WIDTH, Line, blocks, column_cells, folded, rows_with_prose
 from ...post.tables.columns import Column
 from ...wording import counted
 
@@ -152,7 +152,7 @@ def _number_lines(printed: PrintedAnswer) -> list[str]:
         return []
     cells = [column_cells((), column) for column in zip(*pairs, strict=True)]
     kept = [column for column in cells if column[0].strip() or any(map(str.strip, column))]
-    return ["", *(GAP.join(row).rstrip() for row in zip(*kept, strict=True))]
+    return ["", *(COLUMN_GAP.join(row).rstrip() for row in zip(*kept, strict=True))]
 
 
 def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], int]:
@@ -169,12 +169,12 @@ def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], in
     columns = [column for column in columns if not column.absent.all()]
     count = len(columns[0].values) if columns else 0
     found: list[list[str]] = []
-    width = -len(GAP)
+    width = -len(COLUMN_GAP)
     for column in columns if count else ():
         values, errors = zip(*digits.pairs(column.name)[:room], strict=True)
         added = [column_cells((column.name, _unit(column)), values)]
         added += [column_cells((ERROR_SIGN, ""), errors)] if any(errors) else []
-        width += sum(len(cells[0]) + len(GAP) for cells in added)
+        width += sum(len(cells[0]) + len(COLUMN_GAP) for cells in added)
         if width > WIDTH:
             break
         found += added

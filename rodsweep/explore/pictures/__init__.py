@@ -1,2 +1,1 @@
-"""The pictures of the page, each in a module: a Bokeh figure, and the way from an answer to the figure's
-data."""
+"""Pictures of the page, one module each: a Bokeh figure, and a method that fills it from an answer."""

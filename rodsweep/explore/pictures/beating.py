@@ -1,4 +1,6 @@
-"""The arm: beating, bent by the tip, or moving after the release. The browser animates solved shapes."""
+"""Picture of the arm: its limit cycle, its shape while the user drags the tip, and its motion after the
+release. The browser animates shapes that are already solved.
+"""
 
 from collections.abc import Callable
 from typing import Any
@@ -8,55 +10,69 @@ from bokeh.events import Pan, PanEnd
 from bokeh.models import CustomJS, Range1d
 
 from ...arrays import Array
-from ..look import read
+from ..look import template_text
 from ..scales import PictureAxis
 from ..solving.letting_go import Tip
-from .card import NEUTRAL, POINT, STABLE, Card, columns, empty_source, new_figure, sentence_of, show_range
+from .card import (
+    NEUTRAL_COLOUR,
+    POINT_COLOUR,
+    STABLE_COLOUR,
+    Card,
+    columns,
+    empty_source,
+    new_figure,
+    sentence_of,
+    set_axis_range,
+)
 
 PERIOD_SECONDS = 2.0
-"""Duration of one period on the screen."""
-ENDS = {"cycle": "it beats", "straight": "it comes to rest", "torus": "it beats with two frequencies"}
-"""Words for ends of motions; for all further ends the sentence of the status is shown."""
-SHAPE = ("x", "y", "number")
-"""Columns of a source of shapes: coordinates of all nodes of all shapes, and the number of nodes of each
+"""Duration of one period of a cycle on the screen, in seconds."""
+END_WORDS = {"cycle": "it beats", "straight": "it comes to rest", "torus": "it beats with two frequencies"}
+"""Words for the state that a released arm reaches, by status; an unlisted status has its own sentence."""
+SHAPE_COLUMNS = ("x", "y", "number")
+"""Columns of a Bokeh source of shapes: coordinates of all nodes of all shapes, and the number of nodes of a
 shape."""
 
 
 class BeatingPicture:
-    """The arm over a period, at a slow pace, and the path of its tip."""
+    """Animated picture of the arm over a period, in slow motion, with the path of its tip."""
 
     def __init__(self) -> None:
         figure = new_figure(
             "x (L)", "y (L)", x_range=Range1d(-0.1, 1.1), y_range=Range1d(-0.7, 0.7), match_aspect=True
         )
         names = ("shapes", "motion", "reached")
-        self.shapes, self.motion, self.reached = (empty_source(SHAPE, f"{name}_source") for name in names)
+        self.shapes, self.motion, self.reached = (
+            empty_source(SHAPE_COLUMNS, f"{name}_source") for name in names
+        )
         names = ("arm", "bent", "path")
         self.arm, self.bent, self.path = (empty_source(("x", "y"), f"{name}_source") for name in names)
         self.grip = empty_source(("x", "y", "phase"), "grip_source")
         self.length = PictureAxis("L", 1.0)
-        figure.line("x", "y", color=NEUTRAL, line_width=1, source=self.path)
+        figure.line("x", "y", color=NEUTRAL_COLOUR, line_width=1, source=self.path)
         for source in (self.shapes, self.motion, self.reached, self.bent, self.grip):
             figure.scatter("x", "y", visible=False, source=source)  # so that the source is on the page
         self.line = figure.line(
-            "x", "y", color=STABLE, line_width=5, line_cap="round", source=self.arm, visible=False
+            "x", "y", color=STABLE_COLOUR, line_width=5, line_cap="round", source=self.arm, visible=False
         )  # fmt: skip
-        figure.scatter([0], [0], marker="square", size=12, color=POINT)
+        figure.scatter([0], [0], marker="square", size=12, color=POINT_COLOUR)
         for event, phase in ((Pan, "bent"), (PanEnd, "let go")):
             arguments = {"figure": figure, "grip": self.grip, "phase": phase}
-            figure.js_on_event(event, CustomJS(args=arguments, code=read("grip.js")))
+            figure.js_on_event(event, CustomJS(args=arguments, code=template_text("grip.js")))
         self.card = Card("beating", figure)
         self.card.entitle("")
 
     def animation(self) -> CustomJS:
-        """Code that the browser runs once when the page is ready."""
+        """Browser script that animates the arm; it runs once, when the page is ready."""
         names = ("shapes", "motion", "reached", "arm", "bent")
         sources: dict[str, Any] = {name: getattr(self, name) for name in names}
-        more = {"period": PERIOD_SECONDS, "figure": self.card.figure, "colour": STABLE}
-        return CustomJS(args=sources | more, code=read("beating.js"))
+        more = {"period": PERIOD_SECONDS, "figure": self.card.figure, "colour": STABLE_COLOUR}
+        return CustomJS(args=sources | more, code=template_text("beating.js"))
 
     def on_drag(self, drag: Callable[[str, Tip], None]) -> None:
-        """Registers the function called after a drag of the tip: kind of question, place of the tip in L."""
+        """Registers `drag`, which is called with the kind of question and the position of the tip, in L, when
+        the user drags the tip.
+        """
 
         def dragged(attribute: str, old: Any, new: dict[str, list[Any]]) -> None:
             if len(new["x"]) == 1:
@@ -66,7 +82,7 @@ class BeatingPicture:
         self.grip.on_change("data", dragged)
 
     def show(self, found: dict[str, Any], length: PictureAxis) -> None:
-        """Draws an answer of the task limit_cycle; where it has no cycle, the straight arm and a sentence."""
+        """Draws the cycle of a `limit_cycle` answer; without a cycle, the straight arm and a sentence."""
         self.length = length
         self.let_go()
         x, y = (found[name] * length.factor for name in ("shape_x", "shape_y"))
@@ -90,11 +106,11 @@ class BeatingPicture:
             self.card.tell(sentence_of(found))
 
     def show_bent(self, found: dict[str, Any]) -> None:
-        """Draws the arm bent by its tip."""
+        """Draws the equilibrium shape of the arm whose tip the user drags."""
         self.bent.data = {name: found[name] * self.length.factor for name in "xy"}
 
     def show_motion(self, found: dict[str, Any]) -> None:
-        """Begins the motion of a released arm, and names the end of the motion above the picture."""
+        """Starts the animation of a released arm, and writes into the title which state the arm reaches."""
         factor = self.length.factor
         step = found["step"]
         x = found["x"] * factor
@@ -108,30 +124,34 @@ class BeatingPicture:
         self.path.data = columns(x=x[:, -1], y=y[:, -1])
         self._fit(np.concatenate([x, shape_x]), np.concatenate([y, shape_y]))
         place = ", ".join(f"{each * factor:.3g}" for each in found["tip"])
-        end = ENDS.get(found["status"], found["sentence"])
+        end = END_WORDS.get(found["status"], found["sentence"])
         part = "" if found["is_whole"] else "; this is the beginning"
         self.card.entitle(f"Let go at ({place}) {self.length.label}: {end}{part}")
 
     def let_go(self) -> None:
-        """Forgets a bent arm and its motion."""
+        """Removes the shape of a dragged arm and its motion after the release from the picture."""
         for source in (self.motion, self.reached, self.bent):
             if len(source.data["x"]):
                 source.data = {name: [] for name in source.data}
 
     def stop(self) -> None:
-        """Ends the motion."""
+        """Removes all shapes from the picture, so that the animation stops."""
         self.let_go()
-        self.shapes.data = {name: [] for name in SHAPE}
+        self.shapes.data = {name: [] for name in SHAPE_COLUMNS}
 
     def _fit(self, x: Array, y: Array) -> None:
-        """Ranges of the picture for shapes, (shapes, nodes), in its unit of length."""
+        """Sets the ranges of the axes so that all shapes x, y, (shapes, nodes), fit; in the picture's unit of
+        length.
+        """
         factor = self.length.factor
         reach = 1.15 * max(0.3 * factor, float(np.abs(y).max()))
-        show_range(self.card.figure.y_range, -reach, reach)
-        show_range(self.card.figure.x_range, min(0.0, float(x.min())) - 0.1 * factor, 1.1 * factor)
+        set_axis_range(self.card.figure.y_range, -reach, reach)
+        set_axis_range(self.card.figure.x_range, min(0.0, float(x.min())) - 0.1 * factor, 1.1 * factor)
 
 
 def source_of(x: Array, y: Array) -> dict[str, Any]:
-    """Columns `SHAPE` of shapes, (shapes, nodes), in single precision, which is enough for a picture."""
+    """Columns of a Bokeh source, see `SHAPE_COLUMNS`, for shapes x, y, (shapes, nodes). Single precision is
+    enough for a picture.
+    """
     number = np.full(x.size, x.shape[1], dtype=np.float32)
     return {"x": x.ravel().astype(np.float32), "y": y.ravel().astype(np.float32), "number": number}

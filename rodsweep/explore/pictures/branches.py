@@ -1,4 +1,6 @@
-"""The bifurcation diagram: the largest deflection of cycles along the force, stable or not."""
+"""Picture of the bifurcation diagram: largest deflection of the tip in stable and unstable cycles over the
+load.
+"""
 
 from math import nan
 from typing import Any
@@ -8,28 +10,33 @@ from bokeh.models import HoverTool, Legend, LegendItem, Range1d
 
 from ..scales import PictureAxis
 from .card import (
-    NEUTRAL,
-    POINT,
-    STABLE,
-    UNSTABLE,
+    NEUTRAL_COLOUR,
+    POINT_COLOUR,
+    STABLE_COLOUR,
+    UNSTABLE_COLOUR,
     Card,
     empty_source,
     limits,
     new_figure,
-    show_range,
+    set_axis_range,
     vertical_line,
 )
 
-COLOURS = {1: STABLE, 0: UNSTABLE, -1: NEUTRAL}
+STABILITY_COLOURS = {1: STABLE_COLOUR, 0: UNSTABLE_COLOUR, -1: NEUTRAL_COLOUR}
+"""Colour of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
 NO_CYCLES = {"F": np.zeros(0), "y": np.zeros(0), "stable": np.zeros(0, dtype=int)}
-"""Single cycles of an answer that has branches only."""
+"""Empty columns for an answer that contains branches but no separately solved cycles."""
 SIDE_MARGIN = 0.03
-"""Relative margin beside single cycles, whose dots would be cut at the edge of the figure."""
-DASHES = {1: "solid", 0: "dashed", -1: "dotted"}
+"""Margin left and right of separately solved cycles, as a fraction of the range; without it their dots would
+be cut off."""
+STABILITY_DASHES = {1: "solid", 0: "dashed", -1: "dotted"}
+"""Line style of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
 
 
 class BranchPicture:
-    """Branches of cycles and the straight state; filled marks are Hopf points, folds and torus points."""
+    """Branches of cycles and of the straight rod over the load. Filled marks are Hopf points, folds and torus
+    points.
+    """
 
     def __init__(self) -> None:
         figure = new_figure(
@@ -42,7 +49,9 @@ class BranchPicture:
             "F", "y", line_width=2.5, color="colour", line_dash="dash", source=self.pieces
         )  # fmt: skip
         figure.scatter("F", "y", size=5, color="colour", source=self.cycles)
-        marks = figure.scatter("F", "y", size=9, color=NEUTRAL, line_color=POINT, source=self.special)
+        marks = figure.scatter(
+            "F", "y", size=9, color=NEUTRAL_COLOUR, line_color=POINT_COLOUR, source=self.special
+        )
         figure.add_tools(
             HoverTool(
                 renderers=[marks],
@@ -50,39 +59,42 @@ class BranchPicture:
             )
         )
         keys = [
-            figure.line([nan], [nan], color=COLOURS[k], line_dash=DASHES[k], line_width=2.5) for k in (1, 0)
+            figure.line(
+                [nan], [nan], color=STABILITY_COLOURS[k], line_dash=STABILITY_DASHES[k], line_width=2.5
+            )
+            for k in (1, 0)
         ]
         items = [
             LegendItem(label=text, renderers=[key])
             for text, key in zip(("stable", "unstable"), keys, strict=True)
         ]
         figure.add_layout(Legend(items=items, location="top_left"))
-        self.point = vertical_line(0, POINT)
+        self.point = vertical_line(0, POINT_COLOUR)
         figure.add_layout(self.point)
         self.card = Card("branches", figure)
         self.card.entitle("")
 
     def show(self, found: dict[str, Any], load: PictureAxis, length: PictureAxis) -> None:
-        """Draws the branches of an answer."""
+        """Draws the branches of the answer `found`, in the units of the axes `load` and `length`."""
         pieces = found["pieces"]
         self.pieces.data = {
             "F": [at * load.factor for at, _, _ in pieces],
             "y": [y * length.factor for _, y, _ in pieces],
-            "colour": [COLOURS[stable] for _, _, stable in pieces],
-            "dash": [DASHES[stable] for _, _, stable in pieces],
+            "colour": [STABILITY_COLOURS[stable] for _, _, stable in pieces],
+            "dash": [STABILITY_DASHES[stable] for _, _, stable in pieces],
         }
         cycles = found.get("cycles", NO_CYCLES)
         self.cycles.data = {
             "F": cycles["F"] * load.factor,
             "y": cycles["y"] * length.factor,
-            "colour": [COLOURS[stable] for stable in cycles["stable"]],
+            "colour": [STABILITY_COLOURS[stable] for stable in cycles["stable"]],
         }
         if pieces or len(cycles["F"]):
             drawn = [*(piece[:2] for piece in pieces), (cycles["F"], cycles["y"])]
             all_F, all_y = (np.concatenate([each[i] for each in drawn]) for i in range(2))
             margin = SIDE_MARGIN if len(cycles["F"]) else 0.0
-            show_range(self.card.figure.x_range, *limits(all_F * load.factor, margin))
-            show_range(self.card.figure.y_range, *limits(all_y * length.factor))
+            set_axis_range(self.card.figure.x_range, *limits(all_F * load.factor, margin))
+            set_axis_range(self.card.figure.y_range, *limits(all_y * length.factor))
             self.card.figure.xaxis.axis_label = load.label
             self.card.figure.yaxis.axis_label = f"largest tip deflection ({length.label})"
         special = [(F * load.factor, y * length.factor, *rest) for F, y, *rest in found["special"]]
@@ -93,5 +105,5 @@ class BranchPicture:
         self.card.reveal()
 
     def move_point(self, F: float) -> None:
-        """Moves the vertical line that marks the page's force."""
+        """Moves the vertical line that marks the load of the page. F: load, in the unit of the axis."""
         self.point.location = F

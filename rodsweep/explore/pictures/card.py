@@ -1,4 +1,4 @@
-"""A picture of the page, or a sentence instead of the picture."""
+"""Card of a picture: a figure that a sentence can replace; and the style that all figures share."""
 
 from collections.abc import Sequence
 from html import escape
@@ -10,14 +10,14 @@ from bokeh.plotting import figure
 
 from ...arrays import Array
 
-STABLE, UNSTABLE, NEUTRAL, POINT = "#2f86c6", "#e0672a", "#8a8a8a", "#c23b8f"
-"""Colours with enough contrast on white and dark pages."""
-FOLD, TORUS = "#8a63d2", "#2a9d5c"
-"""Colours of curves of special points of cycles."""
-TICKS = 5
-"""Approximate number of labels along the lower axis."""
+STABLE_COLOUR, UNSTABLE_COLOUR, NEUTRAL_COLOUR, POINT_COLOUR = "#2f86c6", "#e0672a", "#8a8a8a", "#c23b8f"
+"""Colours of lines and marks, with enough contrast on light and on dark pages."""
+FOLD_COLOUR, TORUS_COLOUR = "#8a63d2", "#2a9d5c"
+"""Colours of curves of folds and of torus points of cycles."""
+TICK_COUNT = 5
+"""Desired number of tick labels along the lower axis."""
 PLAIN_DIGITS = 7
-"""Largest power of ten that labels show without an exponent."""
+"""Largest power of ten that tick labels show without an exponent."""
 NO_TITLE = "\u00a0"
 """A line of a title without words: a picture that is drawn with an empty title shows no later one."""
 TITLE_WIDTH = 46
@@ -30,14 +30,14 @@ AXIS_ALPHAS = (
     "minor_tick_line_alpha",
 )
 """Opacities of all that an axis paints."""
-HEIGHT = 300
+FIGURE_HEIGHT = 300
 """Height of a picture in pixels."""
 
 
 def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any) -> figure:
-    """An empty figure as wide as the column of the page."""
+    """Empty Bokeh figure with the page's style, as wide as a column of the page."""
     made = figure(
-        height=HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
+        height=FIGURE_HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
         x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
     )  # fmt: skip
     made.toolbar.autohide = True  # beside the frame, so that no button covers a place to click
@@ -46,30 +46,34 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
     made.min_border_right = 10
     # The outermost half pixel of a canvas is white even on a dark page, so clip it.
     made.stylesheets = [InlineStyleSheet(css=":host { clip-path: inset(1px); }")]
-    made.xaxis.ticker.desired_num_ticks = TICKS
+    made.xaxis.ticker.desired_num_ticks = TICK_COUNT
     made.xaxis.formatter.power_limit_high = PLAIN_DIGITS
     return made
 
 
 def vertical_line(at: float, colour: str, dash: str = "solid") -> Span:
-    """A vertical line over the full height of a figure; a move paints only the figure's upper canvas."""
+    """Vertical line at x = `at` over the whole height of a figure. Bokeh redraws only the top canvas when it
+    moves.
+    """
     return Span(
         location=at, dimension="height", line_color=colour, line_dash=dash, line_width=1.5, level="overlay"
     )  # fmt: skip
 
 
 def empty_source(names: Sequence[str], name: str | None = None) -> ColumnDataSource:
-    """A data source with empty columns `names`."""
+    """Bokeh data source whose columns `names` are empty."""
     return ColumnDataSource({each: [] for each in names}, name=name)
 
 
 def columns(**arrays: Array) -> dict[str, list[Any]]:
-    """Columns of a data source, converted to lists: a short array would take two messages of its own."""
+    """Columns of a Bokeh data source as lists; an array of a few numbers would be sent in two messages of its
+    own.
+    """
     return {name: array.tolist() for name, array in arrays.items()}
 
 
 def limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
-    """Smallest and largest of values, (n,), with a relative margin; (-1, 1) without values."""
+    """Range of `values`, (n,), widened at both ends by the fraction `margin`; (-1, 1) for an empty array."""
     if len(values) == 0:
         return -1.0, 1.0
     low = float(values.min())
@@ -78,13 +82,13 @@ def limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
     return low - pad, high + pad
 
 
-def show_range(axis: Range1d, start: float, end: float) -> None:
-    """Sets the ends of an axis, and the ends to which the reset button of the figure returns."""
+def set_axis_range(axis: Range1d, start: float, end: float) -> None:
+    """Sets the ends of an axis, now and after a click on the reset button of the figure."""
     axis.update(start=start, end=end, reset_start=start, reset_end=end)
 
 
 def sentence_of(found: dict[str, Any]) -> str:
-    """Meaning of an answer's status, and the solver's message."""
+    """Meaning of the status of the answer `found`, followed by the message of the solver."""
     return "; ".join(filter(None, (found["sentence"], found["message"])))
 
 
@@ -106,13 +110,13 @@ class Card:
         self.figure.title.text = "\n".join(lines + [NO_TITLE] * (self.title_lines - len(lines)))
 
     def say(self, sentence: str) -> None:
-        """Shows a sentence instead of the figure."""
+        """Hides the figure and shows a sentence in its place."""
         self.message.text = escape(sentence)
         self.message.visible = True
         self.figure.visible = False
 
     def tell(self, sentence: str) -> None:
-        """Shows a sentence above the picture."""
+        """Shows a sentence above the figure."""
         self.message.text = escape(sentence)
         self.message.visible = True
         self.figure.visible = True

@@ -1,4 +1,6 @@
-"""The diagram over the load and a second parameter, in which a click moves the point."""
+"""Picture of the stability diagram over the load and a second parameter. A click selects other values of
+both.
+"""
 
 from itertools import groupby
 from math import nan
@@ -11,18 +13,32 @@ from ...arrays import Array
 from ...wording import counted
 from ..scales import ControlScale
 from ..solving.diagrams import CRUSHED, NOT_KNOWN
-from .card import FOLD, NEUTRAL, POINT, STABLE, TORUS, UNSTABLE, Card, empty_source, new_figure, show_range
+from .card import (
+    FOLD_COLOUR,
+    NEUTRAL_COLOUR,
+    POINT_COLOUR,
+    STABLE_COLOUR,
+    TORUS_COLOUR,
+    UNSTABLE_COLOUR,
+    Card,
+    empty_source,
+    new_figure,
+    set_axis_range,
+)
 
-BOUNDARIES = {"double": NEUTRAL, "onset": NEUTRAL, "hopf": UNSTABLE}
-"""Colours of boundaries; areas have the colours of stable states."""
-OF_CYCLES = {"fold": ("folds of cycles", FOLD, "solid"), "torus": ("torus points", TORUS, "dashed")}
-"""Words, colour and dash of curves of special points of cycles."""
+BOUNDARY_COLOURS = {"double": NEUTRAL_COLOUR, "onset": NEUTRAL_COLOUR, "hopf": UNSTABLE_COLOUR}
+"""Colour of a stability boundary, by kind; an unlisted kind has the colour of stable states."""
+CYCLE_CURVE_LOOKS = {
+    "fold": ("folds of cycles", FOLD_COLOUR, "solid"),
+    "torus": ("torus points", TORUS_COLOUR, "dashed"),
+}
+"""(legend entry, colour, line style) of the curves of folds and torus points of cycles, by kind."""
 DARKEST_COUNT = 6
-"""Number of unstable modes from which the colour stays the same."""
+"""Number of unstable modes that has the darkest colour; larger numbers have the same colour."""
 
 
 class DiagramCell(NamedTuple):
-    """Neighbouring points of a row with equal numbers of unstable modes."""
+    """Rectangle that covers neighbouring grid points of a row with equal numbers of unstable modes."""
 
     left: float
     right: float
@@ -31,8 +47,8 @@ class DiagramCell(NamedTuple):
     unstable: int
 
 
-def edges(values: Array) -> Array:
-    """Edges, (n + 1,), of cells around n increasing positive values, at geometric means."""
+def cell_edges(values: Array) -> Array:
+    """Edges, (n + 1,), of cells around n increasing positive values: the geometric means of neighbours."""
     logs = np.log(values)
     if len(logs) == 1:
         return np.exp(logs[0] + np.array([-0.1, 0.1]))
@@ -41,9 +57,11 @@ def edges(values: Array) -> Array:
 
 
 def cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
-    """Cells of a grid; x: (columns,), y: (rows,), counts: (rows, columns)."""
+    """Coloured rectangles of a grid; x: (columns,), y: (rows,), counts: numbers of unstable modes, (rows,
+    columns).
+    """
     sides = np.concatenate(([x[0]], (x[1:] + x[:-1]) / 2, [x[-1]]))
-    levels = edges(y)
+    levels = cell_edges(y)
     found = []
     for row, line in enumerate(counts):
         start = 0
@@ -54,21 +72,27 @@ def cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
     return found
 
 
-def shade(count: int) -> tuple[str, float]:
-    """Colour and opacity for a number of unstable modes."""
+def stability_colour(count: int) -> tuple[str, float]:
+    """(colour, opacity) for a number of unstable modes, or for CRUSHED or NOT_KNOWN."""
     if count in (CRUSHED, NOT_KNOWN):
-        return NEUTRAL, 0.55 if count == CRUSHED else 0.25
-    return (STABLE, 0.18) if count == 0 else (UNSTABLE, 0.2 + 0.5 * min(count, DARKEST_COUNT) / DARKEST_COUNT)
+        return NEUTRAL_COLOUR, 0.55 if count == CRUSHED else 0.25
+    return (
+        (STABLE_COLOUR, 0.18)
+        if count == 0
+        else (UNSTABLE_COLOUR, 0.2 + 0.5 * min(count, DARKEST_COUNT) / DARKEST_COUNT)
+    )
 
 
-def in_words(count: int) -> str:
-    """Words for a number of unstable modes."""
+def unstable_count_words(count: int) -> str:
+    """Words for a number of unstable modes, or for CRUSHED or NOT_KNOWN."""
     special = {0: "stable", CRUSHED: "crushed by the load", NOT_KNOWN: "not searched, or not known"}
     return special.get(count, counted(count, "unstable mode"))
 
 
 class DiagramPicture:
-    """Blue: stable; orange: flutter, the deeper the more modes are unstable; grey: crushed or not known."""
+    """Stability of the straight rod over two parameters. Blue: stable. Orange: flutter, darker for more
+    unstable modes. Grey: crushed, or not known.
+    """
 
     def __init__(self) -> None:
         figure = new_figure(
@@ -93,29 +117,38 @@ class DiagramPicture:
         )  # fmt: skip
         keys = [
             LegendItem(label=text, renderers=[figure.line([nan], [nan], color=c, line_dash=d, line_width=3)])
-            for text, c, d in OF_CYCLES.values()
+            for text, c, d in CYCLE_CURVE_LOOKS.values()
         ]
         self.legend = Legend(items=keys, location="top_left", visible=False)
         figure.add_layout(self.legend)
         figure.scatter("x", "y", size=6, color="colour", source=self.crossings)
         figure.scatter(
-            "x", "y", marker="cross", size=22, line_width=3, color=POINT, source=self.point, level="overlay"
-        )  # fmt: skip
+            "x",
+            "y",
+            marker="cross",
+            size=22,
+            line_width=3,
+            color=POINT_COLOUR,
+            source=self.point,
+            level="overlay",
+        )
         self.card = Card("diagram", figure)
 
     @property
     def is_drawn(self) -> bool:
-        """Whether the figure shows a diagram."""
+        """Whether the figure contains a diagram."""
         return len(self.cells.data["left"]) > 0
 
     def show(self, found: dict[str, Any], load: ControlScale, second: ControlScale) -> None:
-        """Draws an answer to the question `diagram`, in the units of the scales."""
+        """Draws the answer `found` to the question `diagram`, in the units of the controls `load` and
+        `second`.
+        """
         x = found["x"] * load.factor
         y = found["y"] * second.factor
         grid = cells(x, y, found["unstable_count"])
         data = {name: [getattr(cell, name) for cell in grid] for name in DiagramCell._fields}
-        shades = [shade(cell.unstable) for cell in grid]
-        data["words"] = [in_words(cell.unstable) for cell in grid]
+        shades = [stability_colour(cell.unstable) for cell in grid]
+        data["words"] = [unstable_count_words(cell.unstable) for cell in grid]
         data |= {"colour": [colour for colour, _ in shades], "alpha": [alpha for _, alpha in shades]}
         self.cells.data = data
         self._show_curves(found)
@@ -123,20 +156,24 @@ class DiagramPicture:
         self.crossings.data = {
             "x": found["crossing_x"] * load.factor,
             "y": found["crossing_y"] * second.factor,
-            "colour": [BOUNDARIES.get(kind, STABLE) for kind in kinds],
+            "colour": [BOUNDARY_COLOURS.get(kind, STABLE_COLOUR) for kind in kinds],
         }
         figure = self.card.figure
-        show_range(figure.x_range, float(x[0]), float(x[-1]))
-        show_range(figure.y_range, float(grid[0].bottom), float(grid[-1].top))
+        set_axis_range(figure.x_range, float(x[0]), float(x[-1]))
+        set_axis_range(figure.y_range, float(grid[0].bottom), float(grid[-1].top))
         figure.xaxis.axis_label = load.label
         figure.yaxis.axis_label = second.label
         self.card.reveal()
 
     def _show_curves(self, found: dict[str, Any]) -> None:
         x, y, kinds = _lines(found, "curve")
-        self.curves.data = {"x": x, "y": y, "colour": [BOUNDARIES.get(kind, STABLE) for kind in kinds]}
+        self.curves.data = {
+            "x": x,
+            "y": y,
+            "colour": [BOUNDARY_COLOURS.get(kind, STABLE_COLOUR) for kind in kinds],
+        }
         x, y, kinds = _lines(found, "cycle_curve")
-        looks = [OF_CYCLES[kind] for kind in kinds]
+        looks = [CYCLE_CURVE_LOOKS[kind] for kind in kinds]
         self.of_cycles.data = {
             "x": x,
             "y": y,
@@ -146,12 +183,16 @@ class DiagramPicture:
         self.legend.visible = len(kinds) > 0
 
     def move_point(self, x: float, y: float) -> None:
-        """Moves the mark of the page's rod."""
+        """Moves the mark of the page's rod to the load x and the second parameter y, in the units of the
+        axes.
+        """
         self.point.data = {"x": [x], "y": [y]}
 
 
 def _lines(found: dict[str, Any], name: str) -> tuple[list[Array], list[Array], list[str]]:
-    """x and y of each curve of an answer, (points,), and its kind; name: prefix of the variables."""
+    """(x, y, kind) of every curve in the answer `found`; x and y: (points,). name: prefix of the variables,
+    such as "curve".
+    """
     numbers = np.asarray(found[f"{name}_number"])
     lines = [np.flatnonzero(numbers == number) for number in np.unique(numbers)]
     x, y = ([found[f"{name}_{axis}"][line] for line in lines] for axis in "xy")

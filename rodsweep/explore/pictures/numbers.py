@@ -1,4 +1,4 @@
-"""The table of solved numbers, to eight digits, with units."""
+"""Table of the numbers in the latest answers, with eight digits and units."""
 
 from html import escape
 from typing import Any
@@ -7,7 +7,7 @@ import numpy as np
 
 from ..texts import PageText
 
-ROWS = {
+TABLE_ROWS = {
     "spectrum": {
         "growth_rate": "growth rate", "growth_rate_si": "growth rate", "frequency": "frequency",
         "frequency_hz": "frequency", "unstable_count": "unstable modes",
@@ -26,42 +26,47 @@ ROWS = {
         "pressure_hopf": "flutters from", "frequency_hopf_hz": "frequency at flutter",
     },
 }  # fmt: skip
-"""Rows of the table: label by variable, for each kind of question."""
+"""Rows of the table for each kind of question: label by variable."""
 HEADINGS = {"spectrum": "Leading mode", "cycle": "Cycle", "thresholds": "Thresholds"}
+"""Heading above the rows of each kind of question."""
 TABLE_DIGITS = 8
-"""Significant digits of a number."""
-SHOWN_IN = {"m": ("cm", 1e2), "Pa": ("kPa", 1e-3), "W": ("mW", 1e3)}
-"""(unit of the table, factor) by SI unit."""
-IN_SI = {
+"""Number of significant digits in the table."""
+TABLE_UNITS = {"m": ("cm", 1e2), "Pa": ("kPa", 1e-3), "W": ("mW", 1e3)}
+"""(unit shown in the table, conversion factor), by SI unit."""
+SI_NAMES = {
     "growth_rate": "growth_rate_si", "frequency": "frequency_hz",
     "crossing_frequency": "crossing_frequency_hz", "F_onset": "pressure_onset",
     "F_hopf": "pressure_hopf",
     "F_restabilization": "pressure_restabilization", "hopf_frequency": "frequency_hopf_hz",
 }  # fmt: skip
-"""SI variable by dimensionless variable, unless the SI variable is the same name with `_si`."""
+"""Name of the SI variable, by dimensionless variable; an unlisted variable has the same name with `_si`."""
 
 
 class NumbersTable:
-    """The table of the latest answers."""
+    """Table of the numbers in the latest answer to each kind of question."""
 
     def __init__(self) -> None:
         self.root = PageText(name="numbers")
         self.found: dict[str, dict[str, Any]] = {}
 
     def show(self, kind: str, found: dict[str, Any] | None) -> None:
-        """Fills the rows of a kind of question; None empties the rows."""
-        if kind not in ROWS:
+        """Replaces the rows for a kind of question by the numbers of the answer `found`; None removes the
+        rows.
+        """
+        if kind not in TABLE_ROWS:
             return
         if found is None:
             self.found.pop(kind, None)
         else:
             self.found[kind] = found
-        parts = [_rows(name, self.found[name]) for name in ROWS if name in self.found]
+        parts = [_rows(name, self.found[name]) for name in TABLE_ROWS if name in self.found]
         self.root.text = f"<table>{''.join(parts)}</table>"
 
 
-def written(value: Any, factor: float = 1.0) -> str:
-    """Text of the first number of an array, times `factor`; "" for a nonfinite number or negative count."""
+def number_text(value: Any, factor: float = 1.0) -> str:
+    """First number of the array `value` times `factor` as text; "" for a nonfinite number or a negative
+    count.
+    """
     first = np.ravel(value)[0]
     if np.issubdtype(np.asarray(first).dtype, np.integer):
         return str(int(first)) if first >= 0 else ""
@@ -70,11 +75,11 @@ def written(value: Any, factor: float = 1.0) -> str:
 
 def _rows(kind: str, found: dict[str, Any]) -> str:
     rows = []
-    for name, meaning in ROWS[kind].items():
-        if name not in found or IN_SI.get(name, f"{name}_si") in found:
+    for name, meaning in TABLE_ROWS[kind].items():
+        if name not in found or SI_NAMES.get(name, f"{name}_si") in found:
             continue
-        unit, factor = SHOWN_IN.get(found["units"][name], (found["units"][name], 1.0))
-        if text := written(found[name], factor):
+        unit, factor = TABLE_UNITS.get(found["units"][name], (found["units"][name], 1.0))
+        if text := number_text(found[name], factor):
             shown = "" if unit == "1" else escape(unit)
             rows.append(
                 f'<tr data-name="{name}"><td>{escape(meaning)}</td><td>{text}</td><td>{shown}</td></tr>'

@@ -1,4 +1,4 @@
-"""The leading eigenvalues in the complex plane, and the shape of the leading mode."""
+"""Pictures of the leading eigenvalues in the complex plane, and of the leading mode."""
 
 from typing import Any
 
@@ -6,23 +6,25 @@ import numpy as np
 from bokeh.models import Range1d
 
 from .card import (
-    NEUTRAL,
-    STABLE,
-    UNSTABLE,
+    NEUTRAL_COLOUR,
+    STABLE_COLOUR,
+    UNSTABLE_COLOUR,
     Card,
     columns,
     empty_source,
     limits,
     new_figure,
     sentence_of,
-    show_range,
+    set_axis_range,
     vertical_line,
 )
-from .numbers import IN_SI
+from .numbers import SI_NAMES
 
 
 class SpectrumPicture:
-    """Eigenvalues in the complex plane; eigenvalues right of the dashed line are unstable."""
+    """Eigenvalues of the straight rod in the complex plane. Eigenvalues right of the dashed line, the
+    imaginary axis, are unstable.
+    """
 
     def __init__(self) -> None:
         figure = new_figure(
@@ -31,14 +33,14 @@ class SpectrumPicture:
             x_range=Range1d(-1, 1), y_range=Range1d(-1, 1),
         )  # fmt: skip
         self.source = empty_source(("growth", "frequency", "colour"), "spectrum_source")
-        figure.add_layout(vertical_line(0, NEUTRAL, "dashed"))
+        figure.add_layout(vertical_line(0, NEUTRAL_COLOUR, "dashed"))
         figure.scatter("growth", "frequency", size=11, color="colour", source=self.source)
         self.card = Card("spectrum", figure)
         self.card.entitle("")
 
     def show(self, found: dict[str, Any]) -> None:
-        """Draws an answer of the task spectrum."""
-        names = [IN_SI[name] if IN_SI[name] in found else name for name in ("growth_rate", "frequency")]
+        """Draws the eigenvalues of an answer of the task `spectrum`."""
+        names = [SI_NAMES[name] if SI_NAMES[name] in found else name for name in ("growth_rate", "frequency")]
         growth, frequency = (found[name] for name in names)
         known = np.isfinite(growth)
         if not known.any():
@@ -46,21 +48,23 @@ class SpectrumPicture:
             return
         growth = growth[known]
         frequency = frequency[known]
-        colours = np.where(growth > 0, UNSTABLE, STABLE)
-        self.source.data = columns(growth=growth, frequency=frequency, colour=colours)
+        colour_script = np.where(growth > 0, UNSTABLE_COLOUR, STABLE_COLOUR)
+        self.source.data = columns(growth=growth, frequency=frequency, colour=colour_script)
         figure = self.card.figure
-        show_range(figure.x_range, *limits(np.append(growth, 0.0)))
-        show_range(figure.y_range, *limits(frequency))
+        set_axis_range(figure.x_range, *limits(np.append(growth, 0.0)))
+        set_axis_range(figure.y_range, *limits(frequency))
         figure.xaxis.axis_label, figure.yaxis.axis_label = (
             f"{word} ({found['units'][name]})"
             for word, name in zip(("growth rate", "frequency"), names, strict=True)
         )
-        self.card.entitle(count_of(found))
+        self.card.entitle(unstable_count_sentence(found))
         self.card.reveal()
 
 
-def count_of(found: dict[str, Any]) -> str:
-    """Number of unstable modes, and whether the number is certified; the status if it is not known."""
+def unstable_count_sentence(found: dict[str, Any]) -> str:
+    """Sentence with the number of unstable modes and whether it is certified; the status if the number is
+    unknown.
+    """
     count = int(found["unstable_count"])
     if count < 0:
         return found["sentence"]
@@ -69,28 +73,30 @@ def count_of(found: dict[str, Any]) -> str:
 
 
 class ModePicture:
-    """Real and imaginary part of the deflection of the leading mode."""
+    """Real and imaginary part of the deflection of the leading mode along the rod."""
 
     def __init__(self) -> None:
         figure = new_figure(
             "u along the arm", "deflection Y, Y(1) = 1", x_range=Range1d(0, 1), y_range=Range1d(-1, 1)
         )
         self.source = empty_source(("u", "real", "imaginary"), "mode_source")
-        figure.line("u", "real", line_width=2.5, color=STABLE, legend_label="real part", source=self.source)
         figure.line(
-            "u", "imaginary", line_width=2.5, color=UNSTABLE, line_dash="dashed",
+            "u", "real", line_width=2.5, color=STABLE_COLOUR, legend_label="real part", source=self.source
+        )
+        figure.line(
+            "u", "imaginary", line_width=2.5, color=UNSTABLE_COLOUR, line_dash="dashed",
             legend_label="imaginary part", source=self.source,
         )  # fmt: skip
         figure.legend.location = "top_left"
         self.card = Card("mode", figure)
 
     def show(self, found: dict[str, Any]) -> None:
-        """Draws the leading mode of an answer of the task spectrum."""
+        """Draws the leading mode of an answer of the task `spectrum`."""
         real = found["Y_real"][0]
         imaginary = found["Y_imag"][0]
         if not np.isfinite(real).all():
             self.card.say(sentence_of(found))
             return
         self.source.data = columns(u=found["u"], real=real, imaginary=imaginary)
-        show_range(self.card.figure.y_range, *limits(np.append(real, imaginary)))
+        set_axis_range(self.card.figure.y_range, *limits(np.append(real, imaginary)))
         self.card.reveal()

@@ -1,4 +1,4 @@
-"""Branches of cycles as the page draws them: pieces of equal stability, and special points."""
+"""Branches of cycles as the page draws them: parts of equal stability, and special points."""
 
 from typing import Any
 
@@ -8,12 +8,15 @@ from ...arrays import Array
 from ...post.branch_curves import RodBranches, runs_of
 
 Piece = tuple[Array, Array, int]
-"""F and y, (vertices,) each, and stability: 1, 0, or -1 where it is not known."""
+"""(F, largest y of the tip, stability) of a part of a branch; F and y: (vertices,). Stability: 1 stable, 0
+unstable, -1 unknown."""
 
 
 def drawn_branches(rod: RodBranches, stop: float) -> dict[str, Any]:
-    """pieces: of all branches, and of the straight state from F = 0 to `stop`. special: (F, y, kind, period)
-    of each special point but ends.
+    """Curves for the picture of the branches of a rod.
+
+    pieces: parts of the branches of cycles, and of the straight rod from F = 0 to `stop`. special: (F, y,
+    kind, period) of each special point other than ends.
     """
     pieces: list[Piece] = [
         (curve.at[run], curve.y[run], stable) for curve in rod.curves for run, stable in runs_of(curve.stable)

@@ -1,4 +1,6 @@
-"""The diagram of a page: stability of a rod or an arm over the load and a second parameter."""
+"""Stability diagram of a page: number of unstable modes of the straight rod over the load and a second
+parameter.
+"""
 
 from typing import Any
 
@@ -12,52 +14,52 @@ from ...model.units import in_si
 from ..state import LAWS, PageState, number
 
 Dataset = Any
-"""An xarray.Dataset, or an array in one."""
-ROWS = 20
-"""Number of values of the second parameter for uniform rods."""
-SLOW_ROWS = 8
-"""Number of values of the second parameter for other rods, whose thresholds take seconds each."""
-COLUMNS = 121
-"""Number of values of the load. Columns cost little, because crossings determine a whole row."""
-ARM_ROWS = 12
-"""Number of values of the second parameter for arms in SI units."""
-ARM_SPAN = 2.0
-"""Ratio of the largest value of an arm's quantity to the present value; small, so that all arms are
-slender."""
+"""An xarray.Dataset, or one of its arrays."""
+ROW_COUNT = 20
+"""Number of values of the second parameter, for uniform rods of linear material."""
+SLOW_ROW_COUNT = 8
+"""Number of values of the second parameter, for other rods, whose thresholds take seconds per value."""
+LOAD_COUNT = 121
+"""Number of values of the load. They are cheap: the thresholds of a row decide the stability at all its
+loads."""
+ARM_ROW_COUNT = 12
+"""Number of values of the second quantity, for arms in SI units."""
+ARM_SPAN_RATIO = 2.0
+"""Ratio of the largest value of the second quantity of an arm to its present value. It is small, so that all
+arms are slender."""
 CYCLE_ACCURACY = 1e-4
 """Relative error of the cycles between special points, which the diagram does not show. For the first rod of
-the page, up to F = 200, the default of 1e-6 takes three times the processor time for the same curves of folds
-and torus points, whose forces differ by 2e-8 at most.
-"""
+the page, up to F = 200, the default of 1e-6 takes three times as long, and moves the curves of folds and
+torus points by 2e-8 at most."""
 NOT_KNOWN = -1
-"""Value of `unstable_count` where the number is not known."""
+"""Value of `unstable_count` at a point whose number of unstable modes is unknown."""
 CRUSHED = -2
-"""Value of `unstable_count` for a load that crushes the rod."""
+"""Value of `unstable_count` at a point whose load crushes the rod."""
 SPAN_RATIO = 10.0
-"""Ratio of the largest value of the second parameter to the present value, and of the present to the
-smallest."""
-TAPERS = (0.4, 1.6)
-"""Range of the taper. Cones with a smaller taper take minutes."""
+"""Ratio of the largest value of the second parameter to its present value, and of the present to the smallest
+value."""
+TAPER_RANGE = (0.4, 1.6)
+"""(smallest, largest) taper of the diagram. Cones with a smaller taper take minutes."""
 
 
 def diagram(state: PageState) -> dict[str, Any]:
-    """The diagram around the point of a state, by name.
+    """Stability diagram around the rod or arm of `state`, as arrays by name.
 
-    x: load, (columns,). y: second parameter, (rows,). unstable_count: (rows, columns), -1 if not known.
-    curve_x, curve_y, curve_number, curve_kind: boundaries, (curve points,), and the same of curves of cycles,
-    cycle_curve_*. crossing_x, crossing_y, crossing_kind: crossings of the rows, (crossings,), empty
-    for uniform rods.
+    x: load, (columns,). y: second parameter, (rows,). unstable_count: (rows, columns), NOT_KNOWN or CRUSHED
+    if negative. curve_x, curve_y, curve_number, curve_kind: stability boundaries, (curve points,).
+    cycle_curve_*: the same for folds and torus points of cycles. crossing_x, crossing_y, crossing_kind:
+    thresholds on the rows, (crossings,), empty for uniform rods.
     """
     state.subject()
     if state.tab == "arm":
         return _of_arm(state)
-    return _of_phases(state) if uniform(state) else _of_thresholds(state)
+    return _of_phases(state) if has_uniform_rods(state) else _of_thresholds(state)
 
 
 def cycle_diagram(state: PageState) -> dict[str, Any]:
-    """The diagram with the curves of folds and torus points of cycles, of fewer rows."""
+    """The result of `diagram` with curves of folds and torus points of cycles, and with fewer rows."""
     state.subject()
-    if not has_cycle_curves(state):
+    if not can_follow_cycle_curves(state):
         raise InputError(
             "folds and torus points of cycles are followed for uniform rods of linear material only, "
             "on the tab Rod"
@@ -65,20 +67,22 @@ def cycle_diagram(state: PageState) -> dict[str, Any]:
     return _of_phases(state, with_cycles=True)
 
 
-def has_cycle_curves(state: PageState) -> bool:
-    """Whether folds and torus points of cycles can be followed in the diagram of a state."""
-    return state.tab == "rod" and uniform(state)
+def can_follow_cycle_curves(state: PageState) -> bool:
+    """Whether `cycle_diagram` can follow folds and torus points of cycles for this state."""
+    return state.tab == "rod" and has_uniform_rods(state)
 
 
-def uniform(state: PageState) -> bool:
+def has_uniform_rods(state: PageState) -> bool:
     """Whether all rods of the diagram are uniform and of linear material."""
     return state.law == "linear" and state.second != "taper" and "taper" not in state.parameters()
 
 
-def span(state: PageState, rows: int = ROWS) -> np.ndarray:
-    """Values of the second parameter, (rows,), around the present value."""
+def second_parameter_values(state: PageState, rows: int = ROW_COUNT) -> np.ndarray:
+    """Values of the second parameter, (rows,), around its present value; logarithmically spaced except for
+    the taper.
+    """
     if state.second == "taper":
-        return np.linspace(*TAPERS, rows)
+        return np.linspace(*TAPER_RANGE, rows)
     value = number(state.rod[state.second])
     if not (0 < value < np.inf):
         raise InputError(f"{state.second} = {value:g} has no diagram; it must be finite and above 0")
@@ -90,8 +94,8 @@ def _fixed(state: PageState) -> dict[str, Any]:
 
 
 def _of_phases(state: PageState, with_cycles: bool = False) -> dict[str, Any]:
-    F = np.linspace(0, state.largest_force(), COLUMNS)
-    rows = span(state, SLOW_ROWS if with_cycles else ROWS)
+    F = np.linspace(0, state.largest_force(), LOAD_COUNT)
+    rows = second_parameter_values(state, SLOW_ROW_COUNT if with_cycles else ROW_COUNT)
     keywords: dict[str, Any] = {"F": F, state.second: rows, **_fixed(state)}
     if with_cycles:
         keywords |= {
@@ -102,7 +106,9 @@ def _of_phases(state: PageState, with_cycles: bool = False) -> dict[str, Any]:
 
 
 def of_phases(data: Dataset, second: str) -> dict[str, Any]:
-    """The diagram from a result of the task phase_diagram or spectrum over F and a second parameter."""
+    """Diagram, as in `diagram`, from a result of the task `phase_diagram` or `spectrum` over F and the
+    parameter `second`.
+    """
     counts = data["unstable_count"].transpose(second, "F").values
     if "class" in data:
         is_crushed = words_of(data["class"].transpose(second, "F")) == "crushed"
@@ -117,18 +123,18 @@ def of_phases(data: Dataset, second: str) -> dict[str, Any]:
 
 
 def _of_thresholds(state: PageState) -> dict[str, Any]:
-    keywords: dict[str, Any] = {**_fixed(state), state.second: span(state, SLOW_ROWS)}
+    keywords: dict[str, Any] = {**_fixed(state), state.second: second_parameter_values(state, SLOW_ROW_COUNT)}
     keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
     data = sweep("thresholds", **keywords, F_max=state.largest_force(), progress=False)
     data = data.squeeze([n for n in ("k1", "k2", "gamma3", "taper") if n in data.dims and n != state.second])
-    return of_rows(data, span(state, SLOW_ROWS), "crossing_F", state.largest_force())
+    return of_rows(data, second_parameter_values(state, SLOW_ROW_COUNT), "crossing_F", state.largest_force())
 
 
 def _of_arm(state: PageState) -> dict[str, Any]:
     given = {name: text for name, text in state.arm.items() if name != "pressure"} | LAWS[state.law]
     quantity = QUANTITIES[state.second]
     middle = in_si(state.second, state.arm[state.second], quantity.unit, quantity.example)
-    values = np.geomspace(middle / ARM_SPAN, middle * ARM_SPAN, ARM_ROWS)
+    values = np.geomspace(middle / ARM_SPAN_RATIO, middle * ARM_SPAN_RATIO, ARM_ROW_COUNT)
     subject = state.subject()
     assert isinstance(subject, Arm)
     arms = given | {state.second: list(map(float, values))}
@@ -138,9 +144,10 @@ def _of_arm(state: PageState) -> dict[str, Any]:
 
 
 def of_arms(data: Dataset, values: np.ndarray, pressure: float) -> dict[str, Any]:
-    """The diagram from a result of the task thresholds for arms, (rows,), over values of a quantity, (rows,).
+    """Diagram, as in `diagram`, from a result of the task `thresholds` for arms with different values of one
+    quantity, (rows,).
 
-    It reaches to twice the pressure of the page, in Pa, or twice the least pressure of flutter.
+    The load extends to twice the larger of `pressure`, in Pa, and the smallest pressure of flutter.
     """
     flutter = data["pressure_hopf"].values
     known = flutter[np.isfinite(flutter)]
@@ -149,16 +156,16 @@ def of_arms(data: Dataset, values: np.ndarray, pressure: float) -> dict[str, Any
 
 
 def of_rows(data: Dataset, values: np.ndarray, name: str, largest: float) -> dict[str, Any]:
-    """The diagram from a result of the task thresholds over a second parameter.
+    """Diagram, as in `diagram`, from a result of the task `thresholds` over a second parameter.
 
-    values: second parameter, (rows,). name: variable with the load at crossings. largest: largest load of the
-    diagram.
+    values: second parameter, (rows,). name: variable with the loads at the thresholds. largest: largest load
+    of the diagram.
     """
     at = data[name].values
     after = data["unstable_after"].values
     kind = words_of(data["crossing_kind"])
-    x = np.linspace(0, largest, COLUMNS)
-    counts = np.zeros((len(values), COLUMNS), dtype=int)
+    x = np.linspace(0, largest, LOAD_COUNT)
+    counts = np.zeros((len(values), LOAD_COUNT), dtype=int)
     ends = data[name.replace("crossing_", "") + "_end"].values
     for row in range(len(values)):
         for load, count in zip(at[row], after[row], strict=True):
@@ -180,7 +187,9 @@ def _no_curves() -> dict[str, Any]:
 
 
 def words_of(array: Dataset) -> Any:
-    """The words of an array of flag values, in the shape of the array."""
+    """Words for an array of integer flags, an array of the same shape. The attributes of the array define the
+    words.
+    """
     words = str(array.attrs["flag_meanings"]).split()
     by_code = dict(zip(map(int, np.atleast_1d(array.attrs["flag_values"])), words, strict=True))
     return np.vectorize(lambda code: by_code.get(int(code), "none"), otypes=[object])(array.values)

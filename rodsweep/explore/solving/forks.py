@@ -1,13 +1,14 @@
-"""Solver processes are copies of a process that has imported everything, and has not started MPI or PETSc."""
+"""Fork server for solver processes: a process that has imported all modules, and has not started MPI or
+PETSc.
+"""
 
 from multiprocessing import forkserver, get_context
 
-FORKS = get_context("forkserver")
+FORK_SERVER = get_context("forkserver")
+"""Multiprocessing context that forks solver processes from the fork server."""
 
 
-def prepare() -> None:
-    """Starts the process from which solver processes are forked, so that it imports while the page imports
-    its own modules.
-    """
-    FORKS.set_forkserver_preload([f"{__package__}.worker"])
+def start_fork_server() -> None:
+    """Starts the fork server, so that it imports all modules while the page imports its own."""
+    FORK_SERVER.set_forkserver_preload([f"{__package__}.worker"])
     forkserver.ensure_running()

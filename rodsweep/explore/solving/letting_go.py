@@ -1,4 +1,4 @@
-"""The arm bent by the tip, and the motion after the release."""
+"""Equilibrium of the arm whose tip the user drags, and motion of the arm after the release."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -16,20 +16,24 @@ from ..scales import length_axis
 from ..state import LAWS, PageState, rod_of
 
 Tip = tuple[float, float]
-"""Place (x, y) of the tip, in lengths of the arm."""
+"""Coordinates (x, y) of the tip, in units of the arm's length L."""
 
 
 def bent(state: PageState, tip: Tip | None) -> dict[str, Any]:
-    """Shape x, y, (nodes,) in L, of the arm with its tip held at a place; the straight arm for None."""
+    """Equilibrium shape of the arm with its tip held at `tip`: x, y, (nodes,), in L. The straight arm for
+    None.
+    """
     x, y = bent_shape(_job(state), tip)
     return {"x": x, "y": y}
 
 
 def motion(state: PageState, tip: Tip) -> dict[str, Any]:
-    """The motion after the release, with shapes of the cycle at its end: fields of `ReleasedMotion`.
+    """Motion of the arm after its tip is released at `tip`: fields of `ReleasedMotion`, and shapes of the
+    cycle that it reaches.
 
-    frames: shapes per return of the tip. period: period of the cycle, tau2; NaN without a cycle. shape_x,
-    shape_y: (shapes, nodes) over a period; no shapes where the motion ends otherwise.
+    frames: number of shapes per return of the tip. period: period of the cycle, in tau2; NaN without a cycle.
+    shape_x, shape_y: (shapes, nodes) over a period, no shape without a cycle. Raises InputError if the motion
+    cannot be integrated.
     """
     found = released_motion(_job(state, shapes=48), tip)
     if found is None:
@@ -38,13 +42,15 @@ def motion(state: PageState, tip: Tip) -> dict[str, Any]:
     return vars(found) | _shapes(found) | own
 
 
-def film_of_motion(state: PageState, tip: Tip) -> dict[str, Any]:
-    """Film of the motion after the release of the tip, as bytes of a GIF by the name `gif`."""
+def motion_film_answer(state: PageState, tip: Tip) -> dict[str, Any]:
+    """Film of the motion after the release of the tip at `tip`: the content of a GIF file, under the name
+    `gif`.
+    """
     return {"gif": motion_film(filmed(state, motion(state, tip)))}
 
 
 def filmed(state: PageState, found: Mapping[str, Any]) -> FilmedMotion:
-    """A motion in the units of the page. found: answer to the question `motion`."""
+    """The motion `found`, as returned by `motion`, in the units of the page."""
     subject = state.subject()
     length = length_axis(state)
     tau2, time = (subject.tau2, "s") if isinstance(subject, Arm) else (1.0, "tau2")

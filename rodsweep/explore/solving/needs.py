@@ -1,6 +1,6 @@
-"""When each kind of question is asked, and which part of a page's state an answer depends on.
+"""When each kind of question is sent to a solver, and on which part of the page's state its answer depends.
 
-A question whose answer would be the same as the last one is not asked again.
+A question is not sent if its answer would equal the last answer of the same kind.
 """
 
 from dataclasses import replace
@@ -10,24 +10,28 @@ from .letting_go import Tip
 from .questions import Question
 
 Needs = tuple[PageState, Tip | None]
-"""What an answer depends on."""
-AT_ONCE = ("spectrum", "cycle", "thresholds", "growth")
-"""Kinds of questions that are asked after every change."""
-WHEN_IDLE = ("branch", "diagram")
-"""Kinds of questions that take seconds, and are asked when the page has rested."""
-ON_REQUEST = ("motion", "film", "cycles")
-"""Questions that only the user asks; a change of the rod drops them."""
-STOPPABLE = ("cycle", *WHEN_IDLE, *ON_REQUEST)
-"""Questions that the button "Stop" cancels."""
-OF_TIP = ("bent", "motion")
-"""Questions of a drag of the tip; an answer to another place of the tip is not shown."""
+"""Part of the page's state, and position of the dragged tip, that an answer depends on."""
+INSTANT_KINDS = ("spectrum", "cycle", "thresholds", "growth")
+"""Kinds of questions that are sent after every change of the controls."""
+IDLE_KINDS = ("branch", "diagram")
+"""Kinds of questions that take seconds; they are sent once the controls have not changed for
+IDLE_MILLISECONDS."""
+MANUAL_KINDS = ("motion", "film", "cycles")
+"""Kinds of questions that are sent only when the user asks, by a button or a drag. A change of the rod
+cancels them."""
+STOPPABLE_KINDS = ("cycle", *IDLE_KINDS, *MANUAL_KINDS)
+"""Kinds of questions that the button "Stop" cancels."""
+TIP_KINDS = ("bent", "motion")
+"""Kinds of questions about a dragged tip. An answer for an earlier position of the tip is not shown."""
 
 
 def needs(question: Question) -> Needs:
-    """The parts of the state that affect the answer, all others blank; and the place of the tip, or None."""
+    """Copy of the state of a question in which all values without effect on the answer are blank, and the
+    position of the tip, or None.
+    """
     kind = question.kind
     state = question.state
-    if kind in ("spectrum", "cycle", "film", *OF_TIP):
+    if kind in ("spectrum", "cycle", "film", *TIP_KINDS):
         return replace(state, across="", F_max=""), question.tip
     blank = {state.load: ""}
     if kind in ("diagram", "cycles"):

@@ -1,6 +1,6 @@
-"""Questions of the page and the answers of a solver process, as plain arrays without objects of solvers.
+"""Questions of the page and the functions that answer them in a solver process. Answers are plain arrays.
 
-The page shows progress, so that no solve displays it on the terminal, which all solver processes share.
+The page shows progress. No function displays progress on the terminal, which all solver processes share.
 """
 
 from collections.abc import Callable, Mapping
@@ -21,26 +21,27 @@ from ...post.branch_curves import RodBranches
 from ..state import LAWS, PageState, rod_of
 from .branches import drawn_branches
 from .diagrams import Dataset, cycle_diagram, diagram, words_of
-from .letting_go import Tip, bent, film_of_motion, motion
+from .letting_go import Tip, bent, motion, motion_film_answer
 
-Found = dict[str, Any]
-"""Variables of an answer by name, as arrays; `status`, `sentence` and `message` are text."""
-MODES = 6
+AnswerVariables = dict[str, Any]
+"""Variables of an answer, by name: arrays; text for `status`, `sentence` and `message`."""
+MODE_COUNT = 6
 """Number of eigenvalues in the picture of the spectrum."""
-SHAPES = 48
-"""Number of shapes of the arm over a period; the browser interpolates between shapes."""
-GROWTH_FORCES = 121
-"""Number of forces of the curve of growth rates."""
-BELOW_CRUSHING = 0.98
-"""Largest force of a curve, as a fraction of the force that crushes the thinnest section."""
+SHAPE_COUNT = 48
+"""Number of shapes of the arm per period of a cycle; the browser interpolates between them."""
+GROWTH_FORCE_COUNT = 121
+"""Number of forces at which growth rates are computed."""
+MAX_CRUSHING_FRACTION = 0.98
+"""Largest force of the growth rates, as a fraction of the force that crushes the rod."""
 
 
 @dataclass(frozen=True)
 class Question:
-    """A question of a page.
+    """Request of a page to a solver process.
 
-    kind: a key of `ANSWERS`, or of `ANSWERS_TO_TIP`, which need the place of the tip, in L.
-    state: state of the page when asked. stored: a cycle of a result file, of which a film needs no solve.
+    kind: a key of `ANSWERS`, or of `ANSWERS_TO_TIP` if there is a `tip`. state: state of the page at the
+    request. tip: position of the dragged tip, in L. stored: cycle of a result file, from which a film is made
+    without a solve.
     """
 
     kind: str
@@ -50,79 +51,84 @@ class Question:
 
 
 class Reply(NamedTuple):
-    """Reply of a solver process.
+    """Message of a solver process to the page.
 
-    outcome: "answer", "refused", "failed" or "cancelled"; "ready" is sent once, when the process has started,
-    and "progress" during a long solve, with `words` and `share` of a `SolvePosition` as content.
-    content: variables of an answer by name; for other outcomes a sentence by the name `sentence`. seconds:
-    time of the solve.
+    outcome: "answer", "refused", "failed" or "cancelled"; "ready" once the process has started; "progress"
+    during a long solve. content: variables of the answer by name; `words` and `share` of a `SolvePosition`
+    for progress; else an error message under the name `sentence`. seconds: time of the solve.
     """
 
     outcome: str
-    content: Found
+    content: AnswerVariables
     seconds: float
 
 
-def variables(answer: Answer) -> Found:
-    """All variables of an answer by name, with status, sentence, message and units."""
-    found: Found = {str(name): array.values for name, array in answer.data.variables.items()}
+def variables(answer: Answer) -> AnswerVariables:
+    """All variables of the result `answer` by name, with its status, the meaning of the status, message and
+    units.
+    """
+    found: AnswerVariables = {str(name): array.values for name, array in answer.data.variables.items()}
     return found | {
         "status": str(answer.status), "sentence": answer.sentence, "message": answer.message,
         "units": answer.units,
     }  # fmt: skip
 
 
-def spectrum(state: PageState) -> Found:
-    """Leading eigenvalues with their count, and the shapes of the modes."""
-    return variables(state.subject().spectrum(modes=MODES, vectors=True, progress=False))
+def spectrum(state: PageState) -> AnswerVariables:
+    """Leading eigenvalues of the straight rod with the number of unstable modes, and the shapes
+    of the modes.
+    """
+    return variables(state.subject().spectrum(modes=MODE_COUNT, vectors=True, progress=False))
 
 
-def thresholds(state: PageState) -> Found:
-    """Forces at which stability changes; `kinds` are the words of `crossing_kind`."""
+def thresholds(state: PageState) -> AnswerVariables:
+    """Forces at which the stability of the straight rod changes; `kinds`: words of `crossing_kind`."""
     answer = state.subject().thresholds(F_max=state.largest_force(), progress=False)
     return variables(answer) | {"kinds": words_of(answer.data["crossing_kind"]).tolist()}
 
 
-def growth(state: PageState) -> Found:
-    """Growth rates of the leading modes along F, in `unit`: 1/tau2 of a rod, 1/s of an arm."""
+def growth(state: PageState) -> AnswerVariables:
+    """Growth rates of the leading modes over F; `unit`: "1/tau2" for a rod, "1/s" for an arm."""
     subject = state.subject()
     tau2 = subject.tau2 if isinstance(subject, Arm) else 1.0
     rod = rod_of(subject)
     keywords: dict[str, Any] = {n: rod[n] for n in ("k1", "k2", "gamma3", "taper") if n in rod}
     keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
-    F = np.linspace(0, min(state.largest_force(), BELOW_CRUSHING * crushing_force(rod)), GROWTH_FORCES)
+    F = np.linspace(
+        0, min(state.largest_force(), MAX_CRUSHING_FRACTION * crushing_force(rod)), GROWTH_FORCE_COUNT
+    )
     data = sweep("spectrum", F=F, **keywords, certify=False, progress=False)
-    rates = data["growth_rate"].values.reshape(GROWTH_FORCES, -1) / tau2
+    rates = data["growth_rate"].values.reshape(GROWTH_FORCE_COUNT, -1) / tau2
     unit = "1/s" if isinstance(subject, Arm) else "1/tau2"
     count = data["unstable_count"].values.reshape(-1)
     return {"F": F, "growth_rate": rates, "unit": unit, "unstable_count": count}
 
 
-def cycle(state: PageState) -> Found:
-    """The limit cycle, with the shapes of the arm over a period; x, y: the straight arm."""
-    return variables(state.subject().cycle(shapes=SHAPES, progress=False)) | bent(state, None)
+def cycle(state: PageState) -> AnswerVariables:
+    """Limit cycle with shapes of the arm over a period; x, y: shape of the straight arm."""
+    return variables(state.subject().cycle(shapes=SHAPE_COUNT, progress=False)) | bent(state, None)
 
 
-def film(state: PageState) -> Found:
-    """Film that `rodsweep plot` makes of the limit cycle, as bytes by the name `gif`; InputError for a rod
-    without a cycle.
+def film(state: PageState) -> AnswerVariables:
+    """Film of the limit cycle, as made by `rodsweep plot`: the content of a GIF file, under the name `gif`.
+    Raises InputError for a rod without a cycle.
     """
-    answer = state.subject().cycle(shapes=SHAPES, progress=False)
+    answer = state.subject().cycle(shapes=SHAPE_COUNT, progress=False)
     if not np.isfinite(answer.data["shape_x"].values).all():
         raise InputError(f"there is no cycle to film: {answer.sentence}")
     return film_of(answer)
 
 
-def film_of(cycle: Answer | Dataset) -> Found:
-    """Film of a cycle whose shapes are solved, as bytes by the name `gif`."""
+def film_of(cycle: Answer | Dataset) -> AnswerVariables:
+    """Film of a limit cycle with solved shapes: the content of a GIF file, under the name `gif`."""
     return {"gif": plot(cycle, what="animation").image}
 
 
-def branch(state: PageState) -> Found:
-    """Branches of cycles along F.
+def branch(state: PageState) -> AnswerVariables:
+    """Branches of cycles over F.
 
-    pieces: (F, y, stable) of each piece of a branch or of the straight state; stable is 1 or 0, -1 if not
-    known. special: (F, y, kind, period) of each special point.
+    pieces: (F, y, stability) of each part of a branch or of the straight rod; stability is 1, 0, or -1 if
+    unknown. special: (F, y, kind, period) of each special point.
     """
     answer = state.subject().branch(stop=state.largest_force(), progress=False)
     rod = RodBranches(view_of_dataset(answer.whole, Path(answer.rod)))
@@ -131,11 +137,13 @@ def branch(state: PageState) -> Found:
 
 
 def crushing_force(rod: Mapping[str, float]) -> float:
-    """Force that crushes the thinnest section of a rod of linear material: k1, less for a thin tip."""
+    """Force that crushes the thinnest section of a rod of linear material, in k3/L^2: k1, or less for a
+    thinner tip.
+    """
     return rod["k1"] * min(1.0, rod.get("taper", DEFAULTS.get("taper", 1.0))) ** 2
 
 
-ANSWERS: dict[str, Callable[[PageState], Found]] = {
+ANSWERS: dict[str, Callable[[PageState], AnswerVariables]] = {
     "spectrum": spectrum,
     "thresholds": thresholds,
     "growth": growth,
@@ -145,15 +153,19 @@ ANSWERS: dict[str, Callable[[PageState], Found]] = {
     "cycles": cycle_diagram,
     "film": film,
 }
-ANSWERS_TO_TIP: dict[str, Callable[[PageState, Tip], Found]] = {
+"""Function that answers each kind of question about the state of the page."""
+ANSWERS_TO_TIP: dict[str, Callable[[PageState, Tip], AnswerVariables]] = {
     "bent": bent,
     "motion": motion,
-    "film": film_of_motion,
+    "film": motion_film_answer,
 }
+"""Function that answers each kind of question about a dragged tip."""
 
 
-def answer_to(question: Question) -> Found:
-    """The answer to a question; InputError for invalid values."""
+def answer_to(question: Question) -> AnswerVariables:
+    """Answer to a question: variables by name. Raises InputError for invalid values in the state
+    of the page.
+    """
     if question.stored is not None:
         return film_of(question.stored)
     if question.tip is not None:

@@ -1,5 +1,6 @@
-"""Solver processes, each for a group of questions. A new question of a kind replaces an older question of the
-kind."""
+"""Solver processes, each for a group of kinds of questions. A new question of a kind replaces an older
+question of this kind.
+"""
 
 import os
 import signal
@@ -14,41 +15,42 @@ from tornado.ioloop import IOLoop
 
 from ..state import PageState
 from . import worker
-from .forks import FORKS, prepare
+from .forks import FORK_SERVER, start_fork_server
 from .questions import Question, Reply
 
 Key = tuple[str, str]
-"""(session, kind): a new question replaces an older question with an equal key."""
-Done = Callable[[Reply], None]
-"""Callback that receives the reply to a question, or its progress."""
+"""(session, kind) of a question. A new question replaces an older question with an equal key."""
+ReplyCallback = Callable[[Reply], None]
+"""Callback for the reply to a question, or for a progress message."""
 
 
-def not_shown(reply: Reply) -> None:
-    """Receives progress that nobody shows."""
+def ignore_progress(reply: Reply) -> None:
+    """Ignores progress messages; used for questions whose progress is not shown."""
 
 
-GROUPS = {
+PROCESS_GROUPS = {
     "spectrum": "spectrum", "thresholds": "thresholds", "growth": "thresholds", "cycle": "cycle",
     "branch": "branch", "diagram": "diagram", "bent": "spectrum", "motion": "cycle", "film": "film",
     "cycles": "diagram",
 }  # fmt: skip
-"""Process group of each kind of question, so that fast questions never wait for slow questions."""
-NICENESS = {"spectrum": 0, "cycle": 10, "thresholds": 12, "branch": 15, "diagram": 15, "film": 15}
-"""Niceness of the process of each group. Only the spectrum has the priority of the page and of the browser.
-It is painted while the others solve.
-"""
+"""Process group of each kind of question. Fast questions never wait for slow questions in the same group."""
+GROUP_NICENESS = {"spectrum": 0, "cycle": 10, "thresholds": 12, "branch": 15, "diagram": 15, "film": 15}
+"""Unix niceness of the solver process of each group. Only the spectrum has the priority of the page and the
+browser, so its picture is drawn while other processes solve."""
 INTERRUPT_RETRY = 0.1
-"""Seconds until a cancellation that came before the process was ready is repeated."""
-WARMED_UP = ("spectrum", "cycle", "thresholds")
-"""Kinds of questions solved once at the start, to start the processes and load compiled code."""
+"""Time after which a cancellation is repeated if the process was not ready for it, in seconds."""
+WARM_UP_KINDS = ("spectrum", "cycle", "thresholds")
+"""Kinds of questions that are solved once at the start, which starts their processes and loads
+compiled code."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class SolverTimeLimits:
-    """Time limits of a solver, in seconds, when a newer question waits.
+    """Time limits of a solver process, in seconds, while a newer question waits.
 
-    interrupt: age at which the old question is cancelled. Faster answers are shown, so that pictures follow a
-    slider in motion. kill: time after which a cancelled solver that does not reply is killed and restarted.
+    interrupt: age of a question from which it is cancelled. Younger solves finish, so that pictures follow a
+    moving slider. kill: time after a cancellation after which a process without reply is killed and
+    restarted.
     """
 
     interrupt: float = 0.3
@@ -56,13 +58,13 @@ class SolverTimeLimits:
 
 
 class SolverProcess:
-    """One solver process, started by the first question, and restarted after it was killed."""
+    """One solver process. The first question starts it; the next question restarts it after it was killed."""
 
     def __init__(self, patience: SolverTimeLimits | None = None, niceness: int = 0):
         self.patience = patience or SolverTimeLimits()
         self.niceness = niceness
-        self.waiting: dict[Key, tuple[Question, Done, Done]] = {}
-        self.asked: tuple[Key, Done, Done] | None = None
+        self.waiting: dict[Key, tuple[Question, ReplyCallback, ReplyCallback]] = {}
+        self.asked: tuple[Key, ReplyCallback, ReplyCallback] | None = None
         self.number = 0
         """Number of questions sent so far. A timer compares this number, to act only on the question for
         which the timer was set."""
@@ -76,11 +78,15 @@ class SolverProcess:
 
     @property
     def pid(self) -> int | None:
-        """Process id; None if no process runs."""
+        """Id of the operating system's process; None if none runs."""
         return None if self._process is None else self._process.pid
 
-    def ask(self, key: Key, question: Question, done: Done, progress: Done = not_shown) -> None:
-        """Queues a question; an older question of the same key is dropped or, if being solved, cancelled."""
+    def ask(
+        self, key: Key, question: Question, done: ReplyCallback, progress: ReplyCallback = ignore_progress
+    ) -> None:
+        """Queues a question. An older question with the same key leaves the queue, or is cancelled if it is
+        being solved.
+        """
         self.waiting.pop(key, None)
         self.waiting[key] = question, done, progress
         if self.asked is None:
@@ -93,31 +99,33 @@ class SolverProcess:
             )
 
     def forget(self, session: str) -> None:
-        """Drops and cancels all questions of a session."""
+        """Removes all questions of a session from the queue, and cancels the one being solved."""
         for key in [key for key in self.waiting if key[0] == session]:
             del self.waiting[key]
         if self.asked is not None and self.asked[0][0] == session:
             self._interrupt(self.number)
 
     def drop(self, key: Key) -> None:
-        """Drops and cancels the questions of a key."""
+        """Removes the question with the given key from the queue, or cancels its solve."""
         self.waiting.pop(key, None)
         if self.asked is not None and self.asked[0] == key:
             self._interrupt(self.number)
 
     def close(self) -> None:
-        """Ends the process."""
+        """Ends the process and empties the queue."""
         self.waiting.clear()
         self._end()
 
     def start(self) -> None:
-        """Starts the process, if none runs."""
+        """Starts the process unless it runs already."""
         if self._process is not None:
             return
-        prepare()
-        self._connection, theirs = FORKS.Pipe()
-        watched, self._life = FORKS.Pipe(duplex=False)
-        self._process = FORKS.Process(target=worker.run, args=(theirs, watched, self.niceness), daemon=True)
+        start_fork_server()
+        self._connection, theirs = FORK_SERVER.Pipe()
+        watched, self._life = FORK_SERVER.Pipe(duplex=False)
+        self._process = FORK_SERVER.Process(
+            target=worker.run, args=(theirs, watched, self.niceness), daemon=True
+        )
         self._process.start()
         self.starts += 1
         self.is_ready = False
@@ -159,7 +167,9 @@ class SolverProcess:
             self._send_next()
 
     def _cancel(self, number: int, key: Key) -> None:
-        """Cancels question `number` if still being solved while a newer question with an equal key waits."""
+        """Cancels question `number` if it is still being solved while a newer question with an equal key
+        waits.
+        """
         if number == self.number and key in self.waiting:
             self._interrupt(number)
 
@@ -194,31 +204,34 @@ class SolverProcess:
 
 
 class Solvers:
-    """The solvers of all pages of a server."""
+    """Solver processes of all groups, shared by all pages of a server."""
 
     def __init__(self, patience: SolverTimeLimits | None = None):
-        self.groups = {group: SolverProcess(patience, niceness) for group, niceness in NICENESS.items()}
+        self.groups = {group: SolverProcess(patience, niceness) for group, niceness in GROUP_NICENESS.items()}
 
     def warm_up(self) -> None:
-        """Starts the processes of `WARMED_UP` with a question each, to load compiled code."""
-        for kind in WARMED_UP:
+        """Starts the processes of WARM_UP_KINDS with one question each, which loads compiled code."""
+        for kind in WARM_UP_KINDS:
             self.ask("warm up", Question(kind, PageState()), lambda reply: None)
 
-    def ask(self, session: str, question: Question, done: Done, progress: Done = not_shown) -> None:
-        """Queues a question of a session; `done` receives the reply, `progress` the progress of a long
-        solve."""
-        self.groups[GROUPS[question.kind]].ask((session, question.kind), question, done, progress)
+    def ask(
+        self, session: str, question: Question, done: ReplyCallback, progress: ReplyCallback = ignore_progress
+    ) -> None:
+        """Queues a question of a session. done: callback for the reply. progress: callback for progress
+        messages.
+        """
+        self.groups[PROCESS_GROUPS[question.kind]].ask((session, question.kind), question, done, progress)
 
     def drop(self, session: str, kind: str) -> None:
-        """Cancels a session's question of a kind."""
-        self.groups[GROUPS[kind]].drop((session, kind))
+        """Cancels the question of the given kind in a session."""
+        self.groups[PROCESS_GROUPS[kind]].drop((session, kind))
 
     def forget(self, session: str) -> None:
-        """Drops all questions of a session."""
+        """Cancels all questions of a session."""
         for solver in self.groups.values():
             solver.forget(session)
 
     def close(self) -> None:
-        """Ends all processes."""
+        """Ends all solver processes."""
         for solver in self.groups.values():
             solver.close()

@@ -1,7 +1,7 @@
-"""The process of one solver, which reads questions from a pipe and writes replies.
+"""Main loop of a solver process, which reads questions from a pipe and writes replies to it.
 
-SIGINT cancels the question being answered. The process ends when the pipe closes. A second pipe, held open
-only by the page's process, ends the solver process when the page's process ends, even during a solve.
+SIGINT cancels the question being solved. The process ends when the pipe closes. Only the page's process holds
+the other end of a second pipe, so the solver process ends with it, even during a solve.
 """
 
 import os
@@ -19,16 +19,16 @@ from ...sweep.stop import NoClaims, RankListener, StopRequest
 from ...watch import SolvePosition, reporting_to
 from .questions import Question, Reply, answer_to
 
-RETRY = 0.05
-"""Seconds until a cancellation is repeated that came during an import, or while progress was sent."""
+CANCELLATION_RETRY = 0.05
+"""Time, in seconds, after which a cancellation is repeated that arrived during an import, or while a progress
+message was sent."""
 
 
 class Cancellation:
-    """Handler of SIGINT that interrupts only a solve.
+    """Handler of SIGINT that raises KeyboardInterrupt only during a solve.
 
-    An import in progress is not interrupted, because a partly imported module would stay broken, nor is
-    progress that is being sent, because the page could not read half of it. SIGALRM then calls the handler
-    again.
+    It waits for the end of an import, because a module imported in part would stay broken, and of sending a
+    progress message, because the page could not read half a message. SIGALRM then calls the handler again.
     """
 
     def __init__(self) -> None:
@@ -42,14 +42,14 @@ class Cancellation:
             return
         self.is_due = True
         if self.is_sending or is_importing(frame):
-            signal.setitimer(signal.ITIMER_REAL, RETRY)
+            signal.setitimer(signal.ITIMER_REAL, CANCELLATION_RETRY)
             return
         self.is_solving = False
         raise KeyboardInterrupt
 
 
 def is_importing(frame: FrameType | None) -> bool:
-    """Whether the call stack of a frame contains an import."""
+    """Whether the call stack above `frame` contains an import of a module."""
     while frame is not None:
         if frame.f_code.co_filename.startswith("<frozen importlib"):
             return True
@@ -58,9 +58,10 @@ def is_importing(frame: FrameType | None) -> bool:
 
 
 def reply_to(question: Question, cancellation: Cancellation, send: Callable[[Reply], None]) -> Reply:
-    """The reply to one question; "failed" for an unexpected exception, printed on standard error.
+    """Reply to one question. An unexpected exception gives the outcome "failed", and is printed on standard
+    error.
 
-    send: sends the progress of a long solve to the page, as replies with the outcome "progress".
+    send: called with replies of the outcome "progress" during a long solve.
     """
 
     def send_progress(place: SolvePosition) -> None:
@@ -99,13 +100,17 @@ def reply_to(question: Question, cancellation: Cancellation, send: Callable[[Rep
 
 
 def end_with_page(life: "Connection[Any, Any]") -> None:
-    """Ends this process when the opposite end of a pipe closes; nothing is ever written to the pipe."""
+    """Ends this process when the other end of the pipe `life` closes. Nothing is ever written to
+    this pipe.
+    """
     life.poll(None)
     os._exit(0)
 
 
 def run(connection: "Connection[Reply, Question]", life: "Connection[Any, Any]", niceness: int) -> None:
-    """Answers questions of a connection until it closes. life: pipe of the page's process."""
+    """Answers the questions from a pipe until it closes. life: pipe that closes when the page's
+    process ends.
+    """
     os.setpgid(0, 0)  # out of reach of Ctrl-C, which ends the page; a session of its own would undo niceness
     os.nice(niceness)
     Thread(target=end_with_page, args=(life,), daemon=True).start()

@@ -1,4 +1,4 @@
-"""Figures of result files: a module per task, and `draw`, which writes the figure of any task."""
+"""Figures of result files: one module per task, and `draw`, which writes the figure of any task."""
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
@@ -22,7 +22,7 @@ from .modes import draw_modes
 from .phase_diagram import draw_phase_diagram
 from .request import FigureLook, FigureRequest, Shapes
 from .spectrum import draw_spectrum
-from .style import PRINT_STYLE, STYLE
+from .style import FIGURE_STYLE, PRINT_STYLE
 from .thresholds import draw_thresholds
 
 FIGURES: dict[str, Callable[[FigureRequest], str]] = {
@@ -34,16 +34,18 @@ FIGURES: dict[str, Callable[[FigureRequest], str]] = {
     "criticality": draw_criticality,
     "branch": draw_branch,
 }
-"""Function of each task that writes the figure and returns a description."""
+"""Function of each task that writes its figure and returns a description of the figure."""
 DEFAULT_LOOK = FigureLook()
-"""Default appearance of figures."""
+"""Appearance of figures without options of the user."""
 OMITTED = {"missing": "are not computed", "failed": "failed"}
-"""Statuses of points absent from all figures, with words for the number."""
+"""Statuses of points that no figure shows, with the words that follow the number of such points."""
 
 
 def _styled(look: FigureLook) -> AbstractContextManager[None]:
-    """Context with the settings of all figures and the user's; raises InputError for an unknown style."""
-    ours = STYLE if look.width is None else PRINT_STYLE
+    """Context in which matplotlib has the settings of all figures and of the user's style. Raises InputError
+    for an unknown style.
+    """
+    ours = FIGURE_STYLE if look.width is None else PRINT_STYLE
     if look.style is None:
         return matplotlib.rc_context(ours)
     try:
@@ -58,7 +60,10 @@ def _styled(look: FigureLook) -> AbstractContextManager[None]:
 
 
 class FigureChoices(TypedDict, total=False):
-    """Choice of the content: `roots` of spectra, `what` of several figures, `points` numbered from 1."""
+    """Options that choose the content of a figure.
+
+    roots: which roots a figure of spectra shows. what: kind of figure. points: numbers of points, from 1.
+    """
 
     roots: str | None
     what: str | None
@@ -66,7 +71,9 @@ class FigureChoices(TypedDict, total=False):
 
 
 def _drawn(request: FigureRequest) -> str:
-    """Writes the figure and returns a description; an arm has a map over the arm's quantities."""
+    """Writes the figure and returns a description of it. If quantities of an arm vary, the figure is a map
+    over them.
+    """
     if can_draw(request):
         return draw_arm_map(request)
     return FIGURES[request.views[0].task](replace(request, views=[view.listed for view in request.views]))
@@ -81,10 +88,10 @@ def draw(
     keep: Callable[[Figure], None] | None = None,
     **choices: Unpack[FigureChoices],
 ) -> str:
-    """Draws the figure of a file, or of several files, into `output`; returns a sentence.
+    """Draws the figure of one result file, or of several, into `output`; returns a sentence about it.
 
-    shapes: solves cycles without stored shapes. keep: receives the figure instead of a file. Raises
-    InputError if the files hold nothing to show.
+    shapes: function that solves cycles without stored shapes. keep: called with the finished figure, instead
+    of writing a file. Raises InputError if the files contain nothing to draw.
     """
     views = [views] if isinstance(views, View) else views
     if look.width and choices.get("what") == "animation":
@@ -112,7 +119,7 @@ def draw(
 
 
 def _omitted_points(views: Sequence[View]) -> str:
-    """Clause on the points without anything to draw, or an empty text."""
+    """Clause on the number of points that the figure omits; empty if there are none."""
     words = np.concatenate([view.outcomes for view in views])
     counts = (f"{np.count_nonzero(words == word)} {text}" for word, text in OMITTED.items() if word in words)
     omitted = " and ".join(counts)

@@ -1,6 +1,6 @@
-"""Bifurcation diagram of a rod: its stable and unstable cycles over the followed parameter.
+"""Bifurcation diagram of a rod: stable and unstable cycles over the followed parameter.
 
-A further panel compares the amplitudes near Hopf points with the prediction of the normal form.
+A third panel compares the amplitudes near Hopf points with the prediction of the normal form.
 """
 
 from collections.abc import Sequence
@@ -20,9 +20,9 @@ from .cycle.selection import shared_and_own_of_points
 from .request import FigureRequest
 from .smooth_branch import through_cycles
 
-LINES = {1: ("-", "stable"), 0: ("--", "unstable"), -1: (":", "not known")}
-"""Line style and legend entry of a piece of a branch, by stability."""
-MARKS = {
+STABILITY_LINES = {1: ("-", "stable"), 0: ("--", "unstable"), -1: (":", "not known")}
+"""(line style, legend entry) of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
+SPECIAL_POINT_MARKS = {
     "hopf": ("o", "Hopf point"),
     "fold": ("s", "fold"),
     "torus": ("D", "torus point"),
@@ -32,25 +32,39 @@ MARKS = {
     "no_cycle_found": ("x", "no further cycle found"),
     "list_full": ("|", "last cycle stored"),
 }
-"""Marker and legend entry of a special point, by kind or, for an end, by reason; other ends have none."""
-PREDICTED = (0, (4, 1, 1, 1))
+"""(marker, legend entry) of a special point, by kind, or by reason if it is an end. Unlisted ends have no
+mark."""
+PREDICTION_LINE = (0, (4, 1, 1, 1))
 """Line style of the amplitude that the normal form predicts near a Hopf point."""
-PREDICTED_WORD = "by the normal form"
-"""Legend entry of the predicted amplitude."""
-COLOURS = (style.FIRST, style.SECOND, "#6A3D9A", "#2E7D32", "#8D6E63", "#00838F", "#C2185B", "#9E9D24")
-"""Colours of the branches of a single rod, or of several rods, in order."""
+PREDICTION_WORD = "by the normal form"
+"""Legend entry of the amplitude that the normal form predicts."""
+BRANCH_COLOURS = (
+    style.BLUE,
+    style.VERMILION,
+    "#6A3D9A",
+    "#2E7D32",
+    "#8D6E63",
+    "#00838F",
+    "#C2185B",
+    "#9E9D24",
+)
+"""Colours of the branches of one rod, or of the rods if there are several, in order."""
 
 
 def draw_branch(request: FigureRequest) -> str:
-    """Draws the largest tip y and the period over the followed parameter, for one rod or several."""
+    """Draws the largest y of the tip and the period of cycles over the followed parameter, for one rod or
+    several; returns a sentence.
+    """
     view = request.only_view()
     rods = [RodBranches(view, number) for number in range(view.variables["status"].size)]
     beating = [rod for rod in rods if any(curve.cycles.any() for curve in rod.curves)]
     style.require(view, beating, "branch with cycles")
-    drawn = beating[: len(COLOURS)]
+    drawn = beating[: len(BRANCH_COLOURS)]
     curves = [curve for rod in drawn for curve in rod.curves]
     alone = len(rods) == 1
-    colours = COLOURS if alone else [COLOURS[k] for k, rod in enumerate(drawn) for _ in rod.curves]
+    colours = (
+        BRANCH_COLOURS if alone else [BRANCH_COLOURS[k] for k, rod in enumerate(drawn) for _ in rod.curves]
+    )
     along = followed_parameter(view)
     beside = any(curve.near_hopf_points() for curve in curves)
     figure = Figure(figsize=(5.6, 7.6 if beside else 5.6), layout="constrained")
@@ -67,7 +81,9 @@ def draw_branch(request: FigureRequest) -> str:
     handles = stability_entries(curves)
     shared, own = shared_and_own_of_points(view, [rod.rod + 1 for rod in drawn])
     handles += [
-        Line2D([], [], color=c, lw=2, label=text) for c, text in zip(COLOURS, own, strict=False) if text
+        Line2D([], [], color=c, lw=2, label=text)
+        for c, text in zip(BRANCH_COLOURS, own, strict=False)
+        if text
     ]
     style.legend_below(figure, [*handles, *marked.values()], columns=3)
     figure.suptitle(style.heading(view, shared))
@@ -78,7 +94,9 @@ def draw_branch(request: FigureRequest) -> str:
 def draw_curves(
     upper: Axes, lower: Axes, curves: Sequence[StoredBranch], colours: Sequence[str]
 ) -> dict[str, Line2D]:
-    """Draws branches into the panels of the largest y and of the period; returns legend entries by kind."""
+    """Draws branches into two panels, largest y of the tip and period; returns legend entries of special
+    points, by kind.
+    """
     marked: dict[str, Line2D] = {}
     for number, curve in enumerate(curves):
         at, y, period, stable = through_cycles(curve)
@@ -89,20 +107,25 @@ def draw_curves(
 
 
 def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
-    """Draws the straight rod, y = 0, with a line style for its stability."""
+    """Draws the straight rod as a line y = 0 whose style shows the stability."""
     for stable, ranges in zip((1, 0), rod.straight_ranges(_shown(rod)), strict=True):
         for low, high in ranges:
-            axes.plot([low, high], [0, 0], LINES[stable][0], color="k", lw=1.4)
+            axes.plot([low, high], [0, 0], STABILITY_LINES[stable][0], color="k", lw=1.4)
 
 
 def stability_entries(curves: Sequence[StoredBranch]) -> list[Line2D]:
-    """Legend entries for the line styles of the branches and of the straight rod."""
+    """Legend entries for the line styles, which show stability."""
     shown = {int(s) for curve in curves for s in curve.stable} | {1, 0}
-    return [Line2D([], [], color="k", ls=LINES[s][0], label=LINES[s][1]) for s in sorted(shown)[::-1]]
+    return [
+        Line2D([], [], color="k", ls=STABILITY_LINES[s][0], label=STABILITY_LINES[s][1])
+        for s in sorted(shown)[::-1]
+    ]
 
 
 def _left_out(rods: Sequence[RodBranches], beating: int, drawn: int) -> str:
-    """Clause on branches and rods not drawn."""
+    """Clause on branches and rods that the figure leaves out. beating, drawn: numbers of rods with cycles,
+    and of drawn rods.
+    """
     hidden = sum(rod.hidden for rod in rods)
     more = f"; {hidden} more have special points that are not stored" if hidden else ""
     if drawn < beating:
@@ -115,7 +138,9 @@ def _left_out(rods: Sequence[RodBranches], beating: int, drawn: int) -> str:
 
 
 def _shown(rod: RodBranches) -> Range:
-    """Range in which the straight rod is drawn: where it is not crushed, and not far beyond all cycles."""
+    """Range of the parameter in which the straight rod is drawn: not crushed, and not far beyond
+    all cycles.
+    """
     low, high = ends_of(rod.view)
     if rod.curves:
         high = min(high, 1.1 * max(float(np.nanmax(curve.at)) for curve in rod.curves))
@@ -130,27 +155,30 @@ def _shown(rod: RodBranches) -> Range:
 def _pieces(
     axes: Axes, x: np.ndarray, y: np.ndarray, stable: np.ndarray, colour: str, marker: str = ""
 ) -> None:
-    """Draws a curve, x and y of shape (n,), with a line style for each stability of its pieces, (n - 1,)."""
+    """Draws a curve, x and y of shape (n,), with line styles by stability. stable: between neighbouring
+    vertices, (n - 1,).
+    """
     for vertices, kind in runs_of(stable):
-        axes.plot(x[vertices], y[vertices], ls=LINES[kind][0], marker=marker, color=colour, lw=1.4)
+        axes.plot(x[vertices], y[vertices], ls=STABILITY_LINES[kind][0], marker=marker, color=colour, lw=1.4)
 
 
 def _mark(upper: Axes, lower: Axes, curve: StoredBranch, marked: dict[str, Line2D]) -> None:
-    """Marks the special points of a branch; adds legend entries, by kind, to `marked`."""
+    """Marks the special points of a branch in both panels; adds legend entries, by kind, to `marked`."""
     for special in curve.special:
         kind = special.reason if special.kind == "end" else special.kind
-        if kind not in MARKS:
+        if kind not in SPECIAL_POINT_MARKS:
             continue
-        marker, word = MARKS[kind]
+        marker, word = SPECIAL_POINT_MARKS[kind]
         (drawn,) = upper.plot(special.at, special.tip_y_max, marker, color="k", ms=5, ls="", label=word)
         lower.plot(special.at, special.period, marker, color="k", ms=5, ls="")
         marked.setdefault(kind, drawn)
 
 
 def _compare_prediction(axes: Axes, curves: list[StoredBranch], colours: Sequence[str], along: str) -> Line2D:
-    """Draws the cycles near Hopf points in units of a, and the common law of the normal form.
+    """Draws the amplitudes near Hopf points, and their prediction by the normal form, both in units of the
+    coefficient a; returns a legend entry.
 
-    A branch is drawn to the first fold: the law does not describe cycles beyond.
+    Each branch is drawn up to its first fold. The prediction does not hold beyond.
     """
     nearest = []
     farthest = []
@@ -160,7 +188,9 @@ def _compare_prediction(axes: Axes, curves: list[StoredBranch], colours: Sequenc
             nearest.append(float(at[0]))
             farthest.append(float(at[-1]))
     ends = np.array([min(nearest), max(farthest)])
-    (law,) = axes.plot(ends, ends**0.5, ls=PREDICTED, color="0.4", lw=1.4, zorder=0, label=PREDICTED_WORD)
+    (law,) = axes.plot(
+        ends, ends**0.5, ls=PREDICTION_LINE, color="0.4", lw=1.4, zorder=0, label=PREDICTION_WORD
+    )
     symbol = style.SYMBOLS[along]
     axes.set(xscale="log", yscale="log", ylabel="largest $y/|a|$")
     axes.set_xlabel(rf"$|{symbol}/{symbol}^\mathrm{{H}} - 1|$, distance from the Hopf point")

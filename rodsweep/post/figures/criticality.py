@@ -1,4 +1,6 @@
-"""Criticality of a rod's Hopf points and amplitude of the cycles near them: a map, or lines."""
+"""Criticality of the Hopf points of rods, and predicted amplitudes of the cycles near them: a
+map, or lines.
+"""
 
 from math import floor, log10
 
@@ -18,34 +20,40 @@ from .cycle.selection import shared_and_own_of_points
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
 
-FARTHEST_DRAWN = 0.1
-"""Largest |F/F_H - 1| of a drawn prediction; farther away cycles depart from the leading-order law."""
-LINES = {-1: ("-", "supercritical"), 1: ("--", "subcritical"), 0: (":", "side undecided")}
-"""Line style and word of the cycles of a Hopf point, by criticality."""
-COLOURS = (style.FIRST, style.SECOND, style.THIRD, "#CC79A7", "#56B4E9", "#000000")
+MAX_DRAWN_DISTANCE = 0.1
+"""Largest |F/F_H - 1| at which a predicted amplitude is drawn. Farther away cycles deviate from the
+leading-order law."""
+CRITICALITY_LINES = {-1: ("-", "supercritical"), 1: ("--", "subcritical"), 0: (":", "side undecided")}
+"""(line style, legend entry) of the predicted cycles, by sign of Re c: -1 supercritical, 1 subcritical, 0
+undecided."""
+ROD_COLOURS = (style.BLUE, style.VERMILION, style.GREEN, "#CC79A7", "#56B4E9", "#000000")
 """Colours of the rods, in order."""
-PREDICTION_POINTS = 60
-"""Number of points of a drawn prediction, dense near the Hopf point, where the curve is steep."""
-MARKS = {
-    -1: ("supercritical", style.FIRST, "o"),
-    1: ("subcritical", style.SECOND, "s"),
+PREDICTION_POINT_COUNT = 60
+"""Number of points of a predicted curve. They are dense near the Hopf point, where the curve is steep."""
+CRITICALITY_MARKS = {
+    -1: ("supercritical", style.BLUE, "o"),
+    1: ("subcritical", style.VERMILION, "s"),
     0: ("undecided", "0.3", "x"),
 }
-"""Word, colour and marker of a Hopf point, by criticality."""
-CLASSES = (
+"""(legend entry, colour, marker) of a Hopf point, by sign of Re c: -1 supercritical, 1 subcritical, 0
+undecided."""
+CRITICALITY_CLASSES = (
     ("no Hopf point with a normal form", "#DDDDDD"),
     ("supercritical", "#9CC3E4"),
     ("supercritical, a later one subcritical", "#4C8FC4"),
-    ("subcritical", style.SECOND),
+    ("subcritical", style.VERMILION),
     ("undecided", "0.4"),
 )
-"""Words and colours for a rod's first Hopf point; the colours differ for colour-blind readers and in grey."""
+"""(legend entry, colour) of a rod on a map, by the criticality of its Hopf points. Colour-blind readers and
+grey prints distinguish the colours."""
 LINEAR_FRACTION = 0.1
-"""Fraction of the Hopf points whose |Re c| lies on the linear part of the symmetric logarithmic axis."""
+"""Fraction of the Hopf points whose |Re c| lies in the linear range of the symmetric logarithmic axis."""
 
 
 def draw_criticality(request: FigureRequest) -> str:
-    """Maps the first Hopf points over two parameters; draws a and Re c over one; else predicted cycles."""
+    """Draws a map of the first Hopf points over two parameters; a and Re c over one parameter; else predicted
+    amplitudes. Returns a sentence.
+    """
     view = request.only_view()
     style.require(view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form")
     varied = varied_parameters(view)
@@ -59,7 +67,9 @@ def draw_criticality(request: FigureRequest) -> str:
 
 
 def _along(view: View, name: str) -> Figure:
-    """Figure of a above Re c over a parameter, each Hopf point marked by criticality."""
+    """Figure of the amplitude coefficient a, above Re c, over the parameter `name`. Markers show the
+    criticality.
+    """
     x = view.point_columns[name]
     keep = np.isfinite(x)
     figure = Figure(figsize=(5.6, 5.4), layout="constrained")
@@ -80,10 +90,12 @@ def _along(view: View, name: str) -> Figure:
 
 
 def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
-    """Marks Hopf points, x of shape (rods,), values and side (rods, crossings); returns legend entries."""
+    """Marks Hopf points by criticality; returns legend entries. x: (rods,). values, side: (rods, crossings);
+    side: sign of Re c.
+    """
     across = np.broadcast_to(x[:, None], values.shape)
     handles = []
-    for number, (word, colour, marker) in MARKS.items():
+    for number, (word, colour, marker) in CRITICALITY_MARKS.items():
         chosen = side == number
         if chosen.any():
             (drawn,) = axes.plot(across[chosen], values[chosen], marker, color=colour, ms=3.5, label=word)
@@ -92,64 +104,81 @@ def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
 
 
 def _map(view: View, points: PointMap, narrow: bool) -> Figure:
-    """Maps of the criticality of first Hopf points and of |a|; narrow: whether the maps are stacked."""
+    """Figure with two maps, criticality of the first Hopf points and |a|; narrow: whether the maps are
+    stacked.
+    """
     side = view.by_point("criticality")[points.at]
     a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.at])
     style.require(view, np.isfinite(a).any(), "first Hopf point with a normal form")
     figure, panels = map_panels(2, narrow)
     edges = cell_edges(points.x), cell_edges(points.y)
     classes = _classes(side)
-    norm = BoundaryNorm(np.arange(len(CLASSES) + 1) - 0.5, len(CLASSES))
-    colours = ListedColormap([colour for _, colour in CLASSES])
+    norm = BoundaryNorm(np.arange(len(CRITICALITY_CLASSES) + 1) - 0.5, len(CRITICALITY_CLASSES))
+    colours = ListedColormap([colour for _, colour in CRITICALITY_CLASSES])
     panels[0].pcolormesh(*edges, classes, cmap=colours, norm=norm, rasterized=True)
     style.colour_cells(panels[1], edges, a, "amplitude coefficient $|a|/L$")
-    panels[1].set_facecolor(CLASSES[0][1])
+    panels[1].set_facecolor(CRITICALITY_CLASSES[0][1])
     label_maps(panels, points)
-    entries = [Patch(facecolor=c, label=word) for i, (word, c) in enumerate(CLASSES) if (classes == i).any()]
+    entries = [
+        Patch(facecolor=c, label=word)
+        for i, (word, c) in enumerate(CRITICALITY_CLASSES)
+        if (classes == i).any()
+    ]
     style.legend_below(figure, entries, columns=3)
     figure.suptitle(style.heading(view, style.parameter_text(points.shared)))
     return figure
 
 
 def _classes(side: Array) -> Array:
-    """Index in CLASSES of every rod, (ny, nx). side: -1 for a supercritical Hopf point, 1 for a subcritical
-    one, (ny, nx, crossings).
+    """Index in CRITICALITY_CLASSES for every rod, (ny, nx).
+
+    side: sign of Re c at the Hopf points of the rods, (ny, nx, crossings); NaN for none.
     """
     first = side[..., 0]
     later = (side[..., 1:] == 1).any(axis=-1)
-    # The numbers are indices in CLASSES; a rod without a Hopf point has NaN and stays 0.
+    # The numbers are indices in CRITICALITY_CLASSES; a rod without a Hopf point has NaN and stays 0.
     classes = np.select([first == -1, first == 1, first == 0], [1.0, 3.0, 4.0], 0.0)
     return np.where((first == -1) & later, 2.0, classes)
 
 
 def draw_predictions(view: View) -> tuple[Figure, str]:
-    """Figure of the predicted amplitudes near every Hopf point, for the first rods; and a description."""
+    """(figure of the predicted amplitudes near all Hopf points of the first rods, description)."""
     kinds, F, a = map(view.by_point, ("criticality", "crossing_F", "amplitude_coefficient"))
     having = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))
     style.require(view, having.size, "Hopf point with a normal form")
-    drawn = having[: len(COLOURS)]
+    drawn = having[: len(ROD_COLOURS)]
     figure = Figure(figsize=(5.6, 3.8), layout="constrained")
     axes = figure.subplots()
     shared, own = shared_and_own_of_points(view, [int(rod) + 1 for rod in drawn])
-    distance = FARTHEST_DRAWN * np.linspace(0, 1, PREDICTION_POINTS) ** 2
-    for rod, colour in zip(drawn, COLOURS, strict=False):
+    distance = MAX_DRAWN_DISTANCE * np.linspace(0, 1, PREDICTION_POINT_COUNT) ** 2
+    for rod, colour in zip(drawn, ROD_COLOURS, strict=False):
         for kind, at, size in zip(kinds[rod], F[rod], a[rod], strict=True):
             if np.isfinite(kind) and np.isfinite(size):
                 # The cycles are above the Hopf point for a > 0, below it for a < 0.
                 beside = at * (1 + np.sign(size) * distance)
-                axes.plot(beside, abs(size) * np.sqrt(distance), LINES[int(kind)][0], color=colour, lw=1.4)
+                axes.plot(
+                    beside,
+                    abs(size) * np.sqrt(distance),
+                    CRITICALITY_LINES[int(kind)][0],
+                    color=colour,
+                    lw=1.4,
+                )
                 axes.plot(at, 0, "o", color=colour, ms=4, clip_on=False, zorder=3)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel=style.LABELS["F"], ylabel="predicted largest $y/L$ of the tip")
     axes.set_ylim(bottom=0)
     seen = {int(kind) for kind in kinds[drawn].ravel() if np.isfinite(kind)}
-    handles = [Line2D([], [], color="0.3", ls=ls, label=word) for k, (ls, word) in LINES.items() if k in seen]
+    handles = [
+        Line2D([], [], color="0.3", ls=ls, label=word)
+        for k, (ls, word) in CRITICALITY_LINES.items()
+        if k in seen
+    ]
     handles.append(Line2D([], [], color="0.3", marker="o", ms=4, ls="", label="Hopf point"))
-    pairs = zip(COLOURS, own, strict=False)
+    pairs = zip(ROD_COLOURS, own, strict=False)
     handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]
     style.legend_below(figure, handles, columns=3)
     figure.suptitle(style.heading(view, shared))
-    shown = f"the cycles that normal forms predict within {FARTHEST_DRAWN:.0%} of every Hopf point"
+    shown = f"the cycles that normal forms predict within {MAX_DRAWN_DISTANCE:.0%} of every Hopf point"
     if len(drawn) < having.size:
         shown += f", of the first {len(drawn)} of {having.size} rods with Hopf points"
     return figure, shown

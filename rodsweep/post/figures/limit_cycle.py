@@ -1,4 +1,4 @@
-"""Figures of limit cycles: the figure named by the user, or suited to the content of the file."""
+"""Figures of the task `limit_cycle`: the kind named by the user, or the kind that suits the file."""
 
 import numpy as np
 
@@ -6,31 +6,39 @@ from ...errors import InputError
 from ...results.file.view import View
 from .cycle.amplitudes.amplitude import BRANCH_LOOKS, draw_amplitude
 from .cycle.amplitudes.branches import abscissa
-from .cycle.animation import FILMS, write_animation
+from .cycle.animation import FILM_SUFFIXES, write_animation
 from .cycle.energy import draw_energy
 from .cycle.maps import draw_maps
 from .cycle.point_map import is_map, point_map, varied_parameters
 from .cycle.portrait import draw_portrait
-from .cycle.selection import ENERGIES, MAX_CYCLES, SHAPES, TRACE, chosen_cycles
+from .cycle.selection import (
+    ENERGY_BUDGET_VARIABLES,
+    MAX_CYCLES,
+    SHAPE_VARIABLES,
+    TRACE_VARIABLES,
+    chosen_cycles,
+)
 from .cycle.transient import draw_transients
 from .layout.fitting import MAP_ASPECT, STRIP_ASPECT
 from .request import KINDS_OF_TASK, FigureRequest
 
-ALL_POINTS = {"amplitude": "amplitudes", "maps": "maps"}
-"""Figures that show every point of a file, with names in a sentence."""
-NEEDS = {"cycle": SHAPES, "animation": SHAPES, "energy": ENERGIES}
-"""Variables of a cycle that a figure needs."""
+ALL_POINT_FIGURES = {"amplitude": "amplitudes", "maps": "maps"}
+"""Kinds of figures that show all points of a file, with their names in a sentence."""
+NEEDED_VARIABLES = {"cycle": SHAPE_VARIABLES, "animation": SHAPE_VARIABLES, "energy": ENERGY_BUDGET_VARIABLES}
+"""Variables of a cycle without which a kind of figure cannot be drawn."""
 FEW_POINT_FIGURES = {"cycle": draw_portrait, "energy": draw_energy, "transient": draw_transients}
-"""Functions of the figures of a few points, chosen by the user or the first points."""
+"""Function of each kind of figure that shows a few points."""
 
 
 def draw_limit_cycle(request: FigureRequest) -> str:
-    """Draws one file, or the amplitudes of several files; raises InputError if the choices do not fit."""
+    """Draws the figure of one file, or the amplitudes of several files; returns a sentence. Raises InputError
+    for unsuitable choices.
+    """
     points = request.points
     name = figure_name(request)
     view = _with_needs(request, name)
     if name == "animation":
-        request.check_output(*FILMS)
+        request.check_output(*FILM_SUFFIXES)
         if request.keep is not None:
             raise InputError("an animation is not a single figure; save it as a .gif")
         return write_animation(view, points, request.output)
@@ -43,9 +51,13 @@ def draw_limit_cycle(request: FigureRequest) -> str:
 
 
 def _with_needs(request: FigureRequest, name: str) -> View:
-    """The file with the variables needed by the figure; missing variables are solved if possible."""
+    """The file with the variables that the figure `name` needs; `request.shapes` solves for missing ones, if
+    given.
+    """
     view = request.views[0]
-    if request.shapes is None or all(variable in view.variables for variable in NEEDS.get(name, ())):
+    if request.shapes is None or all(
+        variable in view.variables for variable in NEEDED_VARIABLES.get(name, ())
+    ):
         return view
     numbers = request.points or [int(index) + 1 for index in np.flatnonzero(view.outcomes == "cycle")]
     chosen_cycles(view, request.points, ())  # refuses points without a cycle
@@ -53,7 +65,9 @@ def _with_needs(request: FigureRequest, name: str) -> View:
 
 
 def figure_name(request: FigureRequest) -> str:
-    """Name of the figure from --what or the files; raises InputError if the choices do not fit."""
+    """Kind of figure that the user chose by --what, or that suits the files. Raises InputError for unsuitable
+    choices.
+    """
     first, *others = request.views
     for view in others:
         if view.task != first.task:
@@ -63,18 +77,19 @@ def figure_name(request: FigureRequest) -> str:
         request.refuse_points(first)
     if others and name != "amplitude":
         raise InputError(f"--what {name} draws one file; only amplitudes of several files make one figure")
-    if request.points and name in ALL_POINTS:
-        raise InputError(f"--point is given, but {ALL_POINTS[name]} show all points; remove it")
+    if request.points and name in ALL_POINT_FIGURES:
+        raise InputError(f"--point is given, but {ALL_POINT_FIGURES[name]} show all points; remove it")
     return name
 
 
 def _suggested(request: FigureRequest) -> str:
-    """Name of the figure that suits the request.
+    """Kind of figure that suits the request.
 
-    An animation for its suffix; shapes or transients of few points; maps of many lines; otherwise amplitudes.
+    An animation for an output with its suffix; shapes or transients for a few points; maps for many lines;
+    else amplitudes.
     """
     first, *others = request.views
-    if request.output.suffix in FILMS:
+    if request.output.suffix in FILM_SUFFIXES:
         return "animation"
     if others:
         return "amplitude"
@@ -82,9 +97,9 @@ def _suggested(request: FigureRequest) -> str:
     chosen = [number - 1 for number in request.points]
     few_cycles = len(chosen) > 0 or beats.sum() <= MAX_CYCLES
     few_points = len(chosen) > 0 or beats.size <= MAX_CYCLES
-    shaped = SHAPES[0] in first.variables
+    shaped = SHAPE_VARIABLES[0] in first.variables
     drawable = shaped and beats.any() and beats[[n for n in chosen if 0 <= n < beats.size]].all()
-    if few_points and TRACE[0] in first.variables and not drawable:
+    if few_points and TRACE_VARIABLES[0] in first.variables and not drawable:
         return "transient"
     if chosen or (few_cycles and shaped):
         return "cycle"
@@ -95,7 +110,7 @@ def _suggested(request: FigureRequest) -> str:
 
 
 def _has_many_lines(view: View) -> bool:
-    """Whether the points form a map with more lines than the figure of amplitudes can show."""
+    """Whether the points form a map with more lines than a figure of amplitudes can show."""
     if not is_map(view):
         return False
     across = next(name for name in point_map(view).names if name != abscissa(view))

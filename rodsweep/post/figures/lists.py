@@ -1,4 +1,6 @@
-"""Lists of points in figures: as a grid if possible, else point after point."""
+"""Figures of a list of points: as a grid if the points form one, else with the number of the point on an
+axis.
+"""
 
 from dataclasses import replace
 
@@ -10,18 +12,18 @@ from ...model.arm.drag import DRAGS
 from ...model.arm.quantities import ALL_QUANTITIES, ARM_UNITS
 from ...model.units import compact
 from ...results.file.view import View
-from ..summary.arm.arm import word
+from ..summary.arm.arm import quantity_words
 
-BESIDE_POINTS = ("mode", "u", "crossing")
-"""Coordinates of further dimensions, possibly as long as the list."""
-FEW_POINTS = 12
-"""Largest number of points of a list that are all labelled on an axis."""
+OTHER_DIMENSIONS = ("mode", "u", "crossing")
+"""Dimensions other than the points, which may have the same length as the list."""
+MAX_LABELLED_POINTS = 12
+"""Largest number of points for which every point has a tick label."""
 
 
 def as_grid(view: View) -> View:
-    """The grid formed by the points of a list in any order; the view itself without such a grid.
+    """View of the grid that the points of a list form, in any order; the view itself if they form none.
 
-    The grid has at most two varied parameters, with each combination once.
+    The grid has at most two varied parameters, and each combination of their values once.
     """
     if view.is_grid:
         return view
@@ -36,27 +38,28 @@ def as_grid(view: View) -> View:
     order = np.argsort(places)
     variables = {name: data for name, data in view.variables.items() if name != "point"}
     for name, data in variables.items():
-        if data.shape[:1] == (count,) and name not in BESIDE_POINTS:
+        if data.shape[:1] == (count,) and name not in OTHER_DIMENSIONS:
             variables[name] = data[order].reshape(*sizes, *data.shape[1:])
     variables |= {name: unique for name, (unique, _) in values.items()}
     return replace(view, variables=variables)
 
 
 def shared_parameters(view: View) -> dict[str, float]:
-    """Common parameters of all points, with values."""
+    """Parameters that are equal at all points, by name."""
     columns = view.point_columns
     return {name: float(column[0]) for name, column in columns.items() if len(np.unique(column)) == 1}
 
 
 def number_points(axes: Axes, view: View, count: int) -> None:
-    """Labels an axis with the numbers of the points of a list, from 1, with margins at both ends.
+    """Labels an axis with the numbers of the points of a list, from 1; leaves a margin at both ends.
 
-    For an arm the label has the varied quantities, in SI units; a short list has them for each point.
+    For an arm the label names the varied quantities, in SI units. A short list has their values at each
+    point.
     """
     axes.set_xlim(0.5, count + 0.5)
-    axes.xaxis.set_major_locator(MaxNLocator(min(count, FEW_POINTS), integer=True, min_n_ticks=1))
+    axes.xaxis.set_major_locator(MaxNLocator(min(count, MAX_LABELLED_POINTS), integer=True, min_n_ticks=1))
     varied = _varied_quantities(view)
-    if varied and count <= FEW_POINTS:
+    if varied and count <= MAX_LABELLED_POINTS:
         columns = zip(*(numbers for _, numbers in varied), strict=True)
         axes.set_xticks(np.arange(1, count + 1), ["\n".join(numbers) for numbers in columns])
         axes.set_xlabel("\n".join(name for name, _ in varied))
@@ -66,17 +69,19 @@ def number_points(axes: Axes, view: View, count: int) -> None:
 
 
 def _varied_quantities(view: View) -> list[tuple[str, list[str]]]:
-    """(name with unit, value at each point) of an arm's quantities with several values."""
+    """(name with unit, value at each point as text) of each quantity of an arm that varies."""
     own = {name: values for name, values in view.quantities.items() if name not in ARM_UNITS}
     return [_described(name, values) for name, values in own.items() if len(np.unique(values)) > 1]
 
 
 def _described(name: str, values: np.ndarray) -> tuple[str, list[str]]:
-    """(name with unit, texts of (points,) values in this unit); a drag is stored as an index in DRAGS."""
+    """(name with unit, values as text) of a quantity; values: (points,). A drag is stored as an index in
+    DRAGS.
+    """
     if name == "drag":
-        return word(name), [DRAGS[int(value)].replace("_", " ") for value in values]
+        return quantity_words(name), [DRAGS[int(value)].replace("_", " ") for value in values]
     unit = ALL_QUANTITIES[name].unit
     if unit == "1":
-        return word(name), [f"{value:.4g}" for value in values]
+        return quantity_words(name), [f"{value:.4g}" for value in values]
     factor, unit = compact(float(np.abs(values).max()), unit)
-    return f"{word(name)} ({unit})", [f"{factor * value:.4g}" for value in values]
+    return f"{quantity_words(name)} ({unit})", [f"{factor * value:.4g}" for value in values]

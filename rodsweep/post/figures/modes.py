@@ -1,4 +1,4 @@
-"""The leading mode, the deformations and the adjoint, as in the paper's Figs. 7 to 9."""
+"""Leading mode of the straight rod, its deformations and its adjoint, as in the paper's Figs. 7 to 9."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -7,36 +7,38 @@ from matplotlib.lines import Line2D
 
 from ...results.file.view import View
 from .request import FigureRequest
-from .style import FIRST, SECOND, heading, legend_below, number, parameter_text, require
+from .style import BLUE, VERMILION, heading, legend_below, number, parameter_text, require
 
 MAX_RODS = 4
-"""Largest number of points in a single figure; a narrow figure shows one point."""
-PANELS = (
+"""Largest number of points in one figure; a narrow figure shows one point."""
+MODE_PANELS = (
     ("mode", (("Y", r"$Y_1$"), ("Theta", r"$\Theta_1$"))),
     ("deformations", (("h2", r"$h_2$"), ("Pi", r"$\Pi$"))),
     ("adjoint mode", (("adjoint_Y", r"$Y_1^\dagger$"), ("adjoint_Theta", r"$\Theta_1^\dagger$"))),
 )
-"""(title, ((field, label), (field, label))) of each panel of a point."""
+"""(title, two pairs of field and label) of each panel in the row of a point."""
 
 
 def draw_modes(request: FigureRequest) -> str:
-    """Draws a row of panels for each point: the leading mode, the deformations and the adjoint."""
+    """Draws a row of panels for each point: leading mode, its deformations and its adjoint; returns a
+    sentence.
+    """
     view = request.only_view()
     growth = view.variables["growth_rate"][..., 0].ravel()
     points = np.flatnonzero(np.isfinite(growth))
     require(view, points.size, "computed point")
     narrow = request.look.narrow
     drawn = points[: 1 if narrow else MAX_RODS]
-    rows, columns = (len(drawn) * len(PANELS), 1) if narrow else (len(drawn), len(PANELS))
+    rows, columns = (len(drawn) * len(MODE_PANELS), 1) if narrow else (len(drawn), len(MODE_PANELS))
     size = (4.6, 2.4 * rows + 0.4) if narrow else (10.0, 2.8 * rows + 0.4)
     figure = Figure(figsize=size, layout="constrained")
     panels = figure.subplots(rows, columns, squeeze=False)
-    for row, point in zip(panels.reshape(len(drawn), len(PANELS)), drawn, strict=True):
-        for panel, (word, fields) in zip(row, PANELS, strict=True):
+    for row, point in zip(panels.reshape(len(drawn), len(MODE_PANELS)), drawn, strict=True):
+        for panel, (word, fields) in zip(row, MODE_PANELS, strict=True):
             _panel(panel, view, int(point), fields)
             panel.set_title(word)
         if len(drawn) > 1:
-            row[1].set_title(f"{': '.join(_where(view, int(point)))}\n{PANELS[1][0]}")
+            row[1].set_title(f"{': '.join(_where(view, int(point)))}\n{MODE_PANELS[1][0]}")
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
     figure.suptitle(heading(view, *(_where(view, int(drawn[0])) if len(drawn) == 1 else ())))
@@ -49,18 +51,22 @@ def draw_modes(request: FigureRequest) -> str:
 
 
 def _parts(view: View, points: np.ndarray) -> list[Line2D]:
-    """Legend entries for solid and dotted lines; points: indices of the drawn points, shape (n,)."""
+    """Legend entries for real part (solid) and imaginary part (dotted). points: indices of the drawn points,
+    (n,).
+    """
     oscillates = view.by_point("frequency")[points, 0].any()
     looks = (("real part", "-"), ("imaginary part", ":"))[: 1 + bool(oscillates)]
     return [Line2D([], [], color="0.3", lw=1.5, ls=style, label=word) for word, style in looks]
 
 
 def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], ...]) -> None:
-    """Draws two fields of a point's leading mode over u, each with its own axis and a common zero."""
+    """Draws two fields of the leading mode over u, each with its own vertical axis. Both axes have 0 at the
+    same height.
+    """
     u = view.variables["u"]
     both = panel, panel.twinx()
     spans = []
-    for axes, (name, label), colour in zip(both, fields, (FIRST, SECOND), strict=True):
+    for axes, (name, label), colour in zip(both, fields, (BLUE, VERMILION), strict=True):
         shape = (-1, *view.variables[f"{name}_real"].shape[-2:])
         real, imag = (view.variables[f"{name}_{part}"].reshape(shape)[point, 0] for part in ("real", "imag"))
         axes.plot(u, real, color=colour, lw=1.5)
@@ -79,7 +85,7 @@ def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], .
 
 
 def _where(view: View, point: int) -> tuple[str, str]:
-    """(parameters of a point, its leading eigenvalue), as text."""
+    """(parameters of the point with index `point`, its leading eigenvalue) as text."""
     at = {name: values[point] for name, values in view.point_columns.items()}
     w = [float(view.by_point(name)[point, 0]) for name in ("growth_rate", "frequency")]
     imaginary = rf" + {number(w[1])}\,\mathrm{{i}}" if w[1] else ""

@@ -1,4 +1,4 @@
-"""Phase diagrams, as in the paper's Fig. 4: behaviour of the rod over two parameters, with its boundaries."""
+"""Phase diagrams, as in the paper's Fig. 4: class of the rod over two parameters, with boundary curves."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -22,7 +22,7 @@ from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, class_along_row, classes_between_crossings
 from .stability.diagram_curves import draw_curves, draw_cycle_curves, mark_cycles_on_rows
-from .stability.regions import PIXELS, ClassifiedPoints, DrawnPlane, coloured
+from .stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
 from .style import LABELS, SYMBOLS, heading, is_logarithmic, legend_below, parameter_text, require, scale
 from .style import number as number_text
 
@@ -35,19 +35,20 @@ STATE_COLOURS = {
     "undecided": CLASS_COLOURS["undecided"],
     "crushed": CLASS_COLOURS["crushed"],
 }
-"""Colours of the stable states; where both states are stable the colour lies between theirs."""
-LEGEND = {
+"""Colours of the words of `stable_states`. If two states are stable, the colour lies between the colours of
+both."""
+STATE_LEGEND = {
     "straight": "straight rod stable",
     "cycle": "cycle stable",
     "both": "both stable",
     "neither_known": "no stable state known",
 }
-"""Legend entries of the stable states; unlisted words are entries as they stand."""
+"""Legend entries for the words of `stable_states` and `class`; an unlisted word is its own entry."""
 
 
 @dataclass(frozen=True, slots=True)
 class Palette:
-    """Content of a map: a variable of words, its numbers and words, and the colours of the words."""
+    """Variable that a map shows as colours. words: (integer, word) of its values. colours: colour by word."""
 
     variable: str
     words: tuple[tuple[int, str], ...]
@@ -55,7 +56,7 @@ class Palette:
 
     @property
     def colours_of_numbers(self) -> dict[str, Any]:
-        """Arguments for matplotlib that colour a table of numbers."""
+        """Arguments for matplotlib that colour an array of the variable's integers."""
         numbers = [number for number, _ in self.words]
         return {
             "cmap": ListedColormap([self.colours[word] for _, word in self.words]),
@@ -63,25 +64,25 @@ class Palette:
         }
 
     def patches(self, table: Array) -> list[Patch]:
-        """Legend entries for the words in a table, (rows, columns)."""
+        """Legend entries for the words of the integers in `table`, (rows, columns)."""
         shown = (word for number, word in self.words if (table == number).any())
         return [
-            Patch(facecolor=self.colours[word], edgecolor="0.5", lw=0.5, label=LEGEND.get(word, word))
+            Patch(facecolor=self.colours[word], edgecolor="0.5", lw=0.5, label=STATE_LEGEND.get(word, word))
             for word in shown
         ]
 
 
 CLASS_PALETTE = Palette("class", CLASSES, CLASS_COLOURS)
-"""Palette of the behaviour of the straight rod."""
+"""Palette of the stability class of the straight rod."""
 STATE_PALETTE = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
-"""Palette of the stable states."""
-BESIDE_CRUSHING = 1 - np.linspace(0, 3e-3, 7)
-"""Values of F/k1 at which barriers separate colours. Curves of cycles end where F is within 1e-3 of k1; the
-barriers close the regions between the curves."""
+"""Palette of the stable states: straight rod, cycle, or both."""
+BARRIER_RATIOS = 1 - np.linspace(0, 3e-3, 7)
+"""Values of F/k1 of barriers between colours. Curves of cycles end where F is within 1e-3 of k1; the barriers
+close the gaps between these ends."""
 
 
 def draw_phase_diagram(request: FigureRequest) -> str:
-    """Draws the class of every point, the boundary curves and their folds."""
+    """Draws the class of the rod over a plane, the boundary curves and their folds; returns a sentence."""
     view = request.only_view()
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next((name for name in view.parameters if len(view.axes[name]) > 1), view.parameters[0])
@@ -121,7 +122,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
 
 
 def _fixed(view: View, line: str, row: str) -> str:
-    """Fixed parameters with values; gamma1 only if the figure shows cycles."""
+    """Text of the constant parameters. gamma1 is left out unless the figure shows cycles."""
     fixed = {name: values[0] for name, values in view.axes.items() if name not in (line, row)}
     if "curve_gamma1" in view.variables:
         fixed["gamma1"] = float(view.variables["curve_gamma1"])
@@ -131,13 +132,16 @@ def _fixed(view: View, line: str, row: str) -> str:
 
 
 def _crushed_at_k1(view: View, line: str, row: str) -> bool:
-    """Whether the axes are F and k1, and F = k1 crushes the rods, as it does if they are uniform and
-    linear."""
+    """Whether the axes are F and k1 and the rods are crushed at F = k1. Rods that are not uniform or not
+    linear are crushed elsewhere.
+    """
     return (line, row) == CRUSHING and has_covering(view.config)
 
 
 def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
-    """Covers the region x > y, where the force x crushes the rod, and draws its edge; returns the edge."""
+    """Covers the region x > y, in which the force x crushes the rod with k1 = y, and draws its edge; returns
+    the legend entry.
+    """
     if x[-1] <= y[0]:
         return []
     ends = np.linspace(max(x[0], y[0]), min(x[-1], y[-1]), 1000)
@@ -148,12 +152,14 @@ def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
 
 
 def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
-    """Figure with a bar for each row, for too few rows for a plane, or a row at infinity."""
+    """Figure with a bar for each row of a diagram, if its rows are too few for a plane, or one is at
+    infinity.
+    """
     x = view.variables[line]
     y = view.axes[row]
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
     axes = figure.subplots()
-    share = np.linspace(0, 1, PIXELS + 1)
+    share = np.linspace(0, 1, PIXEL_COUNT + 1)
     edges = x[0] * (x[-1] / x[0]) ** share if is_logarithmic(x) else x[0] + (x[-1] - x[0]) * share
     table = np.array([class_along_row(view, palette.variable, line, row, n, edges) for n in range(len(y))])
     looks: dict[str, Any] = {"rasterized": True} | palette.colours_of_numbers
@@ -170,9 +176,9 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
 
 
 def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: Array) -> Array:
-    """Behaviour of the rod at every pixel of the plane, bounded by the file's curves, ignoring crushing.
+    """Class of every pixel of the plane, bounded by the curves of the file; crushing is ignored.
 
-    table: classes of the computed points, (rows with a finite value, columns).
+    table: classes at the computed points, (rows with a finite value, columns).
     """
     y = view.axes[row]
     plane = DrawnPlane(view.variables[line], y[np.isfinite(y)])
@@ -193,5 +199,5 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: A
         curves += [plane.unit(v[f"{kind}_{line}"][one], v[f"{kind}_{row}"][one]) for one in ones]
     if _crushed_at_k1(view, line, row):
         edge = np.linspace(plane.y[0], plane.y[-1], 1000)
-        curves += [plane.unit(share * edge, edge) for share in BESIDE_CRUSHING]
-    return coloured(computed, further, curves)
+        curves += [plane.unit(share * edge, edge) for share in BARRIER_RATIOS]
+    return pixel_classes(computed, further, curves)

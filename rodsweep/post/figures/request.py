@@ -1,4 +1,4 @@
-"""Request for a figure: the common interface of the modules that draw the figures of each task."""
+"""Request for a figure: the common argument of the functions that draw the figures of the tasks."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -15,57 +15,57 @@ from .arm.validity import add_validity
 from .layout.fitting import MIN_ASPECT, fit
 
 Shapes = Callable[[View, Sequence[int]], View]
-"""Function from a file and points, numbered from 1, to the file with the shapes of their cycles."""
+"""Function that solves for the shapes of cycles. Arguments: view of a file, numbers of points from 1. Returns
+a view with the shapes."""
 Drawing = Figure
-"""Figure in functions that draw into a figure: matplotlib's own class."""
+"""Class of the figures that are drawn: matplotlib's `Figure`."""
 WIDTHS = {"single": 3.375, "double": 7.0}
-"""Widths of the columns of a journal, in inches."""
+"""Widths of the columns of a journal, in inches, by name."""
 ROOTS = ("rightmost", "smallest", "all")
-"""Choices of the roots in a line of spectra: one of two that are followed, or all stored roots."""
+"""Choices for the roots in a figure of spectra along a line: two followed roots, or all stored roots."""
 KINDS_OF_TASK = {
     "limit_cycle": ("cycle", "amplitude", "maps", "energy", "transient", "animation"),
     "thresholds": ("lines", "map"),
 }
-"""Kinds of figures of each task that has several."""
+"""Names of the kinds of figures, by task with several kinds."""
 KINDS = tuple(kind for kinds in KINDS_OF_TASK.values() for kind in kinds)
-"""Kinds of figures of all tasks."""
+"""Names of the kinds of figures of all tasks."""
 HEIGHT_POWER = 0.5
-"""Exponent of the ratio of widths by which the height shrinks; below 1, because the text keeps the size."""
-INCH = 0.0254
+"""The height of a figure scales as its width to this power. It is below 1, because the size of text stays."""
+METRES_PER_INCH = 0.0254
 """Length of an inch, in metres."""
-NARROW = 5.0
-"""Width, in inches, below which panels are stacked."""
-NARROWEST = 2.5
-"""Smallest width of a figure, in inches; in a narrower figure labels are wider than panels."""
-WIDEST = 20.0
+NARROW_WIDTH = 5.0
+"""Width of a figure, in inches, below which its panels are stacked."""
+MIN_WIDTH = 2.5
+"""Least width of a figure, in inches. In a narrower figure labels are wider than panels."""
+MAX_WIDTH = 20.0
 """Largest width of a figure, in inches."""
 
 
 @dataclass(frozen=True, slots=True)
 class FigureLook:
-    """Appearance of a figure, independent of the content.
+    """Appearance of a figure.
 
-    title: whether the figure has the title of the config. width: a name from WIDTHS, or a length with a unit;
-    None for the natural width of the figure. style: a style of matplotlib, by name or file. Raises InputError
-    for any other width.
+    title: whether the title of the config is shown. width: a name from WIDTHS, or a length with a unit; None
+    for the natural width. style: a style of matplotlib, by name or file. Raises InputError for a bad width.
     """
 
     title: bool = False
     width: str | None = None
     style: str | None = None
     inches: float | None = field(init=False)
-    """The width in inches; None for the natural width of the figure."""
+    """Width of the figure, in inches; None for the natural width."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "inches", None if self.width is None else _inches(self.width))
 
     @property
     def narrow(self) -> bool:
-        """Whether panels are stacked."""
-        return self.inches is not None and self.inches < NARROW
+        """Whether the figure is so narrow that its panels are stacked."""
+        return self.inches is not None and self.inches < NARROW_WIDTH
 
     def fit(self, figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
-        """Gives a figure the width, and fits the content."""
+        """Scales a figure to the width, and lays it out."""
         if self.inches is not None:
             across, down = figure.get_size_inches()
             figure.set_size_inches(self.inches, down * min(1.0, self.inches / across) ** HEIGHT_POWER)
@@ -73,22 +73,25 @@ class FigureLook:
 
 
 def _inches(width: str) -> float:
-    """A width given by the user, in inches; raises InputError if no page has room for it."""
+    """Width in inches, from a name in WIDTHS or a length with a unit. Raises InputError if no page has room
+    for it.
+    """
     if width in WIDTHS:
         return WIDTHS[width]
     refusal = f"width = {width!r} is not allowed; choose {', '.join(WIDTHS)}, or a length as '89 mm'"
     try:
-        inches = in_si("width", width, "m", "89 mm") / INCH
+        inches = in_si("width", width, "m", "89 mm") / METRES_PER_INCH
     except InputError:
         raise InputError(refusal) from None
-    if not NARROWEST <= inches <= WIDEST:
-        raise InputError(f"{refusal}, from {NARROWEST * INCH * 1e3:.0f} to {WIDEST * INCH * 1e3:.0f} mm")
+    if not MIN_WIDTH <= inches <= MAX_WIDTH:
+        low, high = (1e3 * METRES_PER_INCH * limit for limit in (MIN_WIDTH, MAX_WIDTH))
+        raise InputError(f"{refusal}, from {low:.0f} to {high:.0f} mm")
     return inches
 
 
 @dataclass(frozen=True, slots=True)
 class FigureRequest:
-    """Files to draw, the file to write, and the choices of the user: the options of `rodsweep plot`."""
+    """Result files to draw, output file, and options of `rodsweep plot`."""
 
     views: Sequence[View]
     output: Path
@@ -96,21 +99,25 @@ class FigureRequest:
     what: str | None = None
     points: Sequence[int] = ()
     taken: bool = False
-    """Whether the output is a file to draw, or exists and is no regular file."""
+    """Whether the output is one of the files to draw, or exists and is no regular file."""
     look: FigureLook = FigureLook()
     shapes: Shapes | None = None
-    """Solves cycles whose shapes a file lacks."""
+    """Function that solves for the shapes of cycles that a file does not store."""
     keep: Callable[[Figure], None] | None = None
-    """Receives the finished figure instead of a file."""
+    """Called with the finished figure, instead of writing a file."""
 
     def only_view(self, *kinds: str) -> View:
-        """The single file to draw; InputError for several files, points, or a --what outside `kinds`."""
+        """The only file to draw. Raises InputError for several files, for chosen points, and for a --what
+        outside `kinds`.
+        """
         self.refuse_choices(self.views[0], kinds)
         self.check_output()
         return self.views[0]
 
     def refuse_choices(self, view: View, kinds: Sequence[str] = ()) -> None:
-        """Raises InputError for any choice that the task of `view` does not offer."""
+        """Raises InputError for options that the task of `view` does not have. kinds: values of --what that
+        it has.
+        """
         self.refuse_points(view, kinds)
         if self.views[1:]:
             raise InputError(
@@ -119,7 +126,9 @@ class FigureRequest:
             )
 
     def refuse_points(self, view: View, kinds: Sequence[str] = ()) -> None:
-        """Raises InputError for points, or a figure outside `kinds`, which the task of `view` lacks."""
+        """Raises InputError for chosen points, and for a --what outside `kinds`, which the task of `view`
+        does not have.
+        """
         if self.points:
             raise InputError(
                 f"{view.path}: --point is for results of limit_cycle, and this is a result of {view.task}"
@@ -132,7 +141,9 @@ class FigureRequest:
             )
 
     def check_output(self, *suffixes: str) -> None:
-        """Raises InputError unless the output has one of the suffixes, by default an image's, and is free."""
+        """Raises InputError unless the output ends in one of the suffixes, by default of images, and `taken`
+        is False.
+        """
         suffixes = suffixes or (".png", ".pdf", ".svg")
         if self.output.suffix not in suffixes:
             raise InputError(f"--output {self.output}: the name must end in {', '.join(suffixes)}")
@@ -140,9 +151,9 @@ class FigureRequest:
             raise InputError(f"--output {self.output} is not a name for a figure; choose another")
 
     def write(self, figure: Figure, shown: str, min_aspect: float = MIN_ASPECT) -> str:
-        """Writes the figure, with SI scales if the rod is an arm; returns the sentence `shown`.
+        """Writes the figure, with a second scale in SI units for an arm; returns the sentence `shown`.
 
-        min_aspect: smallest height of a panel, in units of the panel's width.
+        min_aspect: least ratio of height to width of a panel.
         """
         add_si_scales(figure, self.views)
         # Figures over an arm's quantities show the validity themselves.

@@ -1,4 +1,4 @@
-"""Sections of a grid or a list: the points with chosen values of some parameters."""
+"""Sections of a grid or a list: the points at which some parameters have chosen values."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -14,19 +14,20 @@ from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.units import in_si
 from ...results.file.view import View
-from .lists import BESIDE_POINTS
+from .lists import OTHER_DIMENSIONS
 
 TYPED_TOLERANCE = 1e-6
-"""Largest relative difference between a typed value and the value in the file, which has all digits."""
-MAX_NAMED = 8
-"""Largest number of values that a refusal lists."""
+"""Largest relative difference between a value that the user types and the equal value in the file, which has
+all digits."""
+MAX_LISTED_VALUES = 8
+"""Largest number of values that an error message lists."""
 
 
 def section(view: View, at: Mapping[str, float | str]) -> View:
-    """Points of a file with these values of parameters, or of an arm's quantities.
+    """View of the points at which parameters, or an arm's quantities, have the values in `at`, by name.
 
-    Quantities are numbers in SI units, or text with a unit. Raises InputError, with the values in the file,
-    if no point has the chosen value.
+    A quantity is a number in SI units, or text with a unit. Raises InputError, which lists the values in the
+    file, if no point has the value.
     """
     for name, value in at.items():
         view = _cut(view, name, _number(name, value))
@@ -34,7 +35,9 @@ def section(view: View, at: Mapping[str, float | str]) -> View:
 
 
 def _number(name: str, value: float | str) -> float:
-    """A value as a number, in SI units for a quantity; raises InputError for anything else."""
+    """The value of the parameter or quantity `name` as a number; a quantity in SI units. Raises InputError
+    for other text.
+    """
     if name == "drag" and value in DRAGS:
         return float(DRAGS.index(str(value)))
     try:
@@ -48,7 +51,7 @@ def _number(name: str, value: float | str) -> float:
 
 
 def _cut(view: View, name: str, value: float) -> View:
-    """Points at a value of a parameter or quantity; raises InputError if no point has the value."""
+    """View of the points at which `name` has the given value. Raises InputError if there is none."""
     listed = {} if view.is_grid else {n: v for n, v in view.quantities.items() if np.ndim(v)}
     axes = view.over or (*view.parameters, *listed)
     if name not in axes:
@@ -61,8 +64,8 @@ def _cut(view: View, name: str, value: float) -> View:
     chosen = np.isclose(values, value, rtol=TYPED_TOLERANCE, atol=0.0)
     if not chosen.any():
         unique = np.unique(values)
-        named = [f"{one:.15g}" for one in unique[:MAX_NAMED]]
-        more = f", ... {unique[-1]:.15g}" if len(unique) > MAX_NAMED else ""
+        named = [f"{one:.15g}" for one in unique[:MAX_LISTED_VALUES]]
+        more = f", ... {unique[-1]:.15g}" if len(unique) > MAX_LISTED_VALUES else ""
         raise InputError(
             f"--at {name}={value:.15g}: {view.path} has no point there; it has {name} = "
             f"{', '.join(named)}{more}"
@@ -70,14 +73,14 @@ def _cut(view: View, name: str, value: float) -> View:
     if view.is_grid or view.over:
         return _grid_at(view, name, chosen)
     variables = {
-        key: data[chosen] if data.shape[:1] == chosen.shape and key not in BESIDE_POINTS else data
+        key: data[chosen] if data.shape[:1] == chosen.shape and key not in OTHER_DIMENSIONS else data
         for key, data in view.variables.items()
     }
     return replace(view, variables=variables)
 
 
 def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
-    """A grid restricted to the chosen places of an axis, a mask of the axis."""
+    """View of a grid restricted along the axis `name`. chosen: mask of its values."""
     names = view.over or view.parameters
     shape = view.variables["status"].shape
     axis = names.index(name)
@@ -86,7 +89,7 @@ def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
     for key, data in view.variables.items():
         if key in along and np.ndim(data):
             variables[key] = data[chosen]
-        elif data.shape[: len(shape)] == shape and key not in (*names, *BESIDE_POINTS):
+        elif data.shape[: len(shape)] == shape and key not in (*names, *OTHER_DIMENSIONS):
             variables[key] = np.compress(chosen, data, axis=axis)
         else:
             variables[key] = data
@@ -94,7 +97,7 @@ def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
 
 
 def without_infinite(view: View) -> View:
-    """A grid without infinite values of its axes, which have no place in a figure."""
+    """View of a grid without the infinite values of its axes, which a figure cannot show."""
     for name, values in view.axes.items():
         finite = np.isfinite(values)
         if len(values) > 1 and not finite.all():
@@ -103,7 +106,9 @@ def without_infinite(view: View) -> View:
 
 
 def choices_of(given: Mapping[str, float | str]) -> dict[str, float | str]:
-    """Values by parameter, given in Python; raises InputError for a value that is neither number nor text."""
+    """Copy of the values by name that a Python caller gives. Raises InputError for a value that is neither a
+    number nor text.
+    """
     try:
         return {str(n): value if isinstance(value, str) else float(value) for n, value in given.items()}
     except (AttributeError, TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""A drawn branch: a curve through the stored cycles, smooth between corners."""
+"""Smooth curve through the stored cycles of a branch, with corners where the branch has corners."""
 
 from itertools import pairwise
 
@@ -10,47 +10,51 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ..branch_curves import StoredBranch
 
-MIRRORED = 3
-"""Cycles beside a Hopf point whose mirror images continue the branch beyond the point."""
-IMAGE = np.array([1.0, -1.0, 1.0])
-"""Factors of (parameter, y, log period) that make the mirror image of a cycle."""
-SHARES = np.array([0.5, 1.0, 1.0])
-"""Weights of parameter, y and log period in the length of a chord, each in units of the branch's extent."""
-WITHOUT_Y = np.array([1.0, 0.0, 1.0])
-"""Factors that leave y out of the length of a chord."""
-VARIABLES = ((SHARES, 1.0), (SHARES, 0.5), (np.array([0.1, 1.0, 0.1]), 1.0))
-"""Weights and powers of chords whose sums are tried as variable of the curve. The length is best on most
-branches, the sum of roots where the steps grow at a bend. A length close to y is best on a branch that ends
-next to its Hopf point, where parameter and period go with the square of y."""
-SLOPE_CYCLES = 5
-"""Number of cycles in the polynomial for the slope of the curve at the middle cycle."""
-CORNER_CYCLES = 4
-"""Number of cycles on each side of a corner whose cubics locate the corner; fewer at an end of the branch."""
+MIRRORED_CYCLE_COUNT = 3
+"""Number of cycles next to a Hopf point whose mirror images (y to -y) extend the branch beyond the point."""
+MIRROR_FACTORS = np.array([1.0, -1.0, 1.0])
+"""Factors of (parameter, y, log period) that turn a cycle into its mirror image."""
+CHORD_WEIGHTS = np.array([0.5, 1.0, 1.0])
+"""Weights of parameter, y and log period in the length of a chord; each is scaled by its range on
+the branch."""
+WEIGHTS_WITHOUT_Y = np.array([1.0, 0.0, 1.0])
+"""Weights of parameter, y and log period in the length of a chord that ignores y."""
+CHORD_VARIABLES = ((CHORD_WEIGHTS, 1.0), (CHORD_WEIGHTS, 0.5), (np.array([0.1, 1.0, 0.1]), 1.0))
+"""(weights, power) of the chords whose sum is tried as the variable of the interpolation. The length (power
+1) is best on most branches, the sum of square roots where steps grow at a bend. A length close to y is best
+on a branch that ends next to its Hopf point, where parameter and period are quadratic in y."""
+SLOPE_CYCLE_COUNT = 5
+"""Number of neighbouring cycles through which the polynomial for the slope at the middle cycle passes."""
+CORNER_CYCLE_COUNT = 4
+"""Number of cycles on each side of a corner; cubics through them locate it. Fewer at an end of the branch."""
 MIN_ANGLE = 0.25
-"""Smallest jump of slope drawn as a corner, in units of the steepest chord beside the corner. A smaller jump
-moves the curve by a few per cent of the chord at most."""
-ANGLE_RATIO = 3.0
-"""Smallest ratio of the jump of slope in y to the jumps in parameter and period, which are smooth at a
-corner. At a sharp bend that the cycles do not resolve all three jumps are alike."""
-COINCIDENT = 1e-9
-"""Rounding, in units of the branch's extent (of distances) and of a step (of imaginary parts of roots)."""
-PIECES = 12
-"""Number of straight pieces drawn between two cycles."""
+"""Least jump of the slope that is drawn as a corner, in units of the steepest chord near the corner. A
+smaller jump moves the curve by a few per cent of the chord at most."""
+MIN_ANGLE_RATIO = 3.0
+"""Least ratio of the jump of slope in y to the jumps in parameter and period, which are smooth at a corner.
+At a sharp bend that the cycles do not resolve, all three jumps are similar."""
+COINCIDENCE_TOLERANCE = 1e-9
+"""Rounding tolerance: of distances, as a fraction of the branch's range; of imaginary parts of roots, in
+units of a step."""
+SEGMENT_COUNT = 12
+"""Number of straight segments that are drawn between two cycles."""
 
 
 def through_cycles(curve: StoredBranch) -> tuple[Array, Array, Array, NDArray[np.integer]]:
-    """(parameter, y, period, stable) of the drawn branch, (n,), the last (n - 1,): smooth between corners.
+    """(parameter, y, period, stable) of the smooth curve through the cycles of a branch; (n,), the last (n -
+    1,).
 
-    A branch has a corner where another maximum of y(t) becomes the largest.
+    The branch has a corner where another maximum of y(t) becomes the largest; the curve is smooth between
+    corners.
     """
     places = np.column_stack([curve.at, curve.y, np.log(curve.period)])
     extent = np.ptp(places, axis=0)
     extent[extent == 0] = 1.0
     # The end of the range is stored as a cycle and as a special point.
-    moves = (np.abs(np.diff(places, axis=0)) > COINCIDENT * extent).any(axis=1)
+    moves = (np.abs(np.diff(places, axis=0)) > COINCIDENCE_TOLERANCE * extent).any(axis=1)
     own = places[np.append(True, moves)]
     stable = curve.stable[moves]
-    if len(own) <= MIRRORED:
+    if len(own) <= MIRRORED_CYCLE_COUNT:
         return curve.at, curve.y, curve.period, curve.stable
     corners = corners_of(own, extent)
     for i in sorted(corners, reverse=True):
@@ -59,48 +63,57 @@ def through_cycles(curve: StoredBranch) -> tuple[Array, Array, Array, NDArray[np
     inner = [i + 1 + k for k, i in enumerate(sorted(corners))]
     parts = [_smooth(own[low : high + 1], extent) for low, high in pairwise([0, *inner, len(own) - 1])]
     at, y, log_period = np.concatenate([*(part[:-1] for part in parts), parts[-1][-1:]]).T
-    return at, y, np.exp(log_period), np.repeat(stable, PIECES)
+    return at, y, np.exp(log_period), np.repeat(stable, SEGMENT_COUNT)
 
 
 def _smooth(own: Array, extent: Array) -> Array:
-    """Vertices of a smooth curve through cycles, both (n, 3), with PIECES pieces between two cycles.
+    """Vertices of a smooth curve through the cycles `own`, both (n, 3); SEGMENT_COUNT segments between two
+    cycles.
 
-    At a Hopf point a branch is symmetric under the change from y to -y. The cycles are therefore mirrored
-    beyond the point, which gives the curve the square root.
+    At a Hopf point the branch is symmetric under y to -y. Mirror images of cycles beyond the point therefore
+    give the curve its square-root shape.
     """
-    before = own[MIRRORED:0:-1] * IMAGE
-    behind = own[-2 : -MIRRORED - 2 : -1] * IMAGE
+    before = own[MIRRORED_CYCLE_COUNT:0:-1] * MIRROR_FACTORS
+    behind = own[-2 : -MIRRORED_CYCLE_COUNT - 2 : -1] * MIRROR_FACTORS
     first = len(before) if own[0, 1] == 0 else 0
     last = len(behind) if own[-1, 1] == 0 else 0
     whole = np.concatenate([before[:first], own, behind[:last]])
-    variables = [_lengths(whole, extent, shares, power) for shares, power in VARIABLES]
+    variables = [_lengths(whole, extent, shares, power) for shares, power in CHORD_VARIABLES]
     s = min(variables, key=lambda variable: _roughness(variable, whole / extent))
     ends = s[first : first + len(own)]
-    finer = np.append(np.linspace(ends[:-1], ends[1:], PIECES, endpoint=False, axis=1).ravel(), ends[-1])
+    finer = np.append(
+        np.linspace(ends[:-1], ends[1:], SEGMENT_COUNT, endpoint=False, axis=1).ravel(), ends[-1]
+    )
     places: Array = scipy.interpolate.CubicHermiteSpline(s, whole, slopes_at_cycles(s, whole))(finer)
     return places
 
 
 def corners_of(own: Array, extent: Array) -> dict[int, Array]:
-    """Corners of a branch through cycles, (n, 3), by index of the cycle before: (at, y, log period), (3,).
+    """Corners of a branch through the cycles `own`, (n, 3): (parameter, y, log period), (3,), by index of the
+    cycle before.
 
-    At a corner two polynomials for y meet, through the cycles before and through the cycles behind. The
-    second polynomial rises more steeply, because y is the larger of two maxima of y(t). The variable is the
-    length along the curve of parameter and period, which has no corner. Polynomials that reach beyond a
-    corner meet elsewhere at a smaller angle: of neighbouring intervals the largest angle has the corner.
+    A corner is the intersection of two polynomials for y, through the cycles before and through the cycles
+    behind. The second rises more steeply, because y is the larger of two maxima of y(t). Their variable is
+    the length of the curve of parameter and period, which has no corner. Polynomials that reach across a
+    corner intersect elsewhere at a smaller angle, so of neighbouring intervals that with the largest angle
+    has the corner.
     """
-    lengths = _lengths(own * WITHOUT_Y, extent)
+    lengths = _lengths(own * WEIGHTS_WITHOUT_Y, extent)
     found: dict[int, tuple[float, Array]] = {}
     for i in range(1, len(own) - 2):
-        window = slice(max(0, i + 1 - CORNER_CYCLES), i + 1 + CORNER_CYCLES)
+        window = slice(max(0, i + 1 - CORNER_CYCLE_COUNT), i + 1 + CORNER_CYCLE_COUNT)
         if (np.diff(lengths[window]) == 0).any():
             continue  # y alone changes, which a jump between two maxima does not do
         x = (lengths[window] - lengths[i]) / (lengths[i + 1] - lengths[i])
         rises = [_rise(x, column) for column in own[window].T]
         for root in rises[1].roots():
             angles = [float(rise.deriv()(root.real)) for rise in rises]
-            is_between = abs(root.imag) < COINCIDENT and 0 < root.real < 1
-            if is_between and angles[1] > MIN_ANGLE and angles[1] > ANGLE_RATIO * max(map(abs, angles[::2])):
+            is_between = abs(root.imag) < COINCIDENCE_TOLERANCE and 0 < root.real < 1
+            if (
+                is_between
+                and angles[1] > MIN_ANGLE
+                and angles[1] > MIN_ANGLE_RATIO * max(map(abs, angles[::2]))
+            ):
                 place = scipy.interpolate.barycentric_interpolate(x, own[window], root.real)
                 place[1] = scipy.interpolate.barycentric_interpolate(
                     x[x < 0.5], own[window][x < 0.5, 1], root.real
@@ -109,29 +122,33 @@ def corners_of(own: Array, extent: Array) -> dict[int, Array]:
     return {
         i: place
         for i, (angle, place) in found.items()
-        if angle == max(found[k][0] for k in found if abs(k - i) < CORNER_CYCLES)
+        if angle == max(found[k][0] for k in found if abs(k - i) < CORNER_CYCLE_COUNT)
     }
 
 
 def _rise(x: Array, values: Array) -> Polynomial:
-    """Polynomial through values at x > 0.5 minus polynomial through the rest, over the steepest chord."""
+    """Polynomial through the values at x > 0.5 minus the polynomial through all others, divided by the slope
+    of the steepest chord.
+    """
     before, behind = (
         Polynomial.fit(x[side], values[side], side.sum() - 1).convert() for side in (x < 0.5, x > 0.5)
     )
     return (behind - before) / (np.abs(np.diff(values) / np.diff(x)).max() or 1.0)
 
 
-def _lengths(places: Array, extent: Array, shares: Array = SHARES, power: float = 1.0) -> Array:
-    """Sums of powers of the chords from the first place to each, (n,).
+def _lengths(places: Array, extent: Array, shares: Array = CHORD_WEIGHTS, power: float = 1.0) -> Array:
+    """Sum of the chords, each to the given power, from the first point to each point, (n,).
 
-    places: shape (n, 3). shares: weights in a chord, (3,).
+    places: points, (n, 3). extent: range of the branch, (3,). shares: weights in a chord, (3,).
     """
     chords = np.linalg.norm(np.diff(places / extent * shares, axis=0), axis=1)
     return np.append(0.0, np.cumsum(chords**power))
 
 
 def _roughness(s: Array, places: Array) -> float:
-    """Largest distance of a place from the cubic through two places on each side; places: (n, columns)."""
+    """Largest distance of a point from the cubic through two neighbours on each side. s: variable, (n,).
+    places: points, (n, columns).
+    """
     beside = (-2, -1, 1, 2)
     off = [
         places[i]
@@ -144,8 +161,10 @@ def _roughness(s: Array, places: Array) -> float:
 
 
 def slopes_at_cycles(s: Array, places: Array) -> Array:
-    """Derivatives of places by s, both (n, columns), from polynomials through SLOPE_CYCLES neighbours."""
-    count = min(SLOPE_CYCLES, len(s))
+    """Derivatives of the points by s, (n, columns), from polynomials through SLOPE_CYCLE_COUNT neighbours. s:
+    (n,). places: points, (n, columns).
+    """
+    count = min(SLOPE_CYCLE_COUNT, len(s))
     slopes = np.empty_like(places)
     for i, start in enumerate(np.clip(np.arange(len(s)) - count // 2, 0, len(s) - count)):
         beside = s[start : start + count] - s[i]

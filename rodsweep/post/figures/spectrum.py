@@ -1,4 +1,4 @@
-"""Figures of the task spectrum: lines of spectra as in the paper's Fig. 2, a map, or single spectra."""
+"""Figures of the task `spectrum`: lines of spectra as in the paper's Fig. 2, a map, or single spectra."""
 
 from collections.abc import Sequence
 from string import ascii_lowercase
@@ -31,29 +31,33 @@ from .spectra.line import (
 from .style import LABELS, fixed_text, heading, legend_below, long_axes, require, scale
 
 MAX_PANELS = 12
-"""Largest number of panels on a page."""
+"""Largest number of panels in one figure."""
 PANEL_HEIGHT = {1: 2.1, 2: 2.6}
-"""Height of a panel, in inches, by the number of columns."""
+"""Height of a panel, in inches, by number of columns."""
 FIGURE_WIDTH = {1: 3.375, 2: 7.0}
-"""Width of the figure, in inches, by the number of columns."""
+"""Width of the figure, in inches, by number of columns."""
 THRESHOLD_WORDS = {
     "onset": "onset of oscillation",
     "hopf": "change of stability",
     "restabilization": "change of stability",
 }
-"""Entries of the common legend for lines at thresholds; the panel titles have names and forces."""
+"""Legend entry of the lines at thresholds, by kind; the titles of the panels have symbols and forces."""
 MAP_COLOURS = "PuOr_r"
+"""Colour map of growth rates, with different colours for negative and positive rates."""
 SHADES_PER_SIGN = 40
-"""Number of colours of a map on each side of zero growth."""
+"""Number of colours of a map for negative growth rates, and for positive growth rates."""
 MAX_LINE_PANELS = 6
-"""Largest number of values of a parameter that get a panel each; for more values a map interpolates."""
-SMALLEST_SHADE = 1e-4
-"""Growth rate, in units of the largest, below which the colour scale is linear."""
+"""Largest number of values of a second parameter that get a panel each; more values are drawn as a map."""
+LINEAR_SHADE_FRACTION = 1e-4
+"""Growth rate, as a fraction of the largest, below which the colour scale of a map is linear."""
 GROWTH_LABEL = r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$"
+"""Label of the colour bar."""
 
 
 def draw_spectrum(request: FigureRequest) -> str:
-    """Draws lines, of several files side by side, a map, or the eigenvalues of points without a long axis."""
+    """Draws lines of spectra, a map, or the eigenvalues of single points, whichever suits the files; returns
+    a sentence.
+    """
     if len(request.views) > 1:
         return _several(request)
     view = as_grid(request.only_view())
@@ -75,21 +79,23 @@ def draw_spectrum(request: FigureRequest) -> str:
 
 
 def _lines(view: View, few: str, request: FigureRequest) -> str:
-    """Draws a panel for each value of a parameter with few values; a map between them would mislead."""
+    """Draws a panel of spectra for each value of the parameter `few`, which has few values; a map would
+    interpolate too far.
+    """
     lines = [without_infinite(section(view, {few: float(value)})) for value in view.axes[few]]
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
     return _in_panels(views, request, few)
 
 
 def _in_panels(views: Sequence[View], request: FigureRequest, each: str) -> str:
-    """Draws a panel for each of some lines of spectra."""
+    """Draws a panel for each of several lines of spectra; returns a sentence. each: noun for a line."""
     roots = roots_to_follow(views, request.roots)
     figure = draw_panels(views, roots, request.look.narrow)
     return request.write(figure, f"{FOLLOWED_ROOTS[roots]}, in a panel for each {each}")
 
 
 def _several(request: FigureRequest) -> str:
-    """Draws a panel for each file; raises InputError unless every file is a line of spectra."""
+    """Draws a panel for each file. Raises InputError unless every file is a line of spectra."""
     request.refuse_points(request.views[0])
     request.check_output()
     if len(request.views) > MAX_PANELS:
@@ -101,7 +107,7 @@ def _several(request: FigureRequest) -> str:
 
 
 def _line_of(view: View, request: FigureRequest) -> View:
-    """A file of several to draw; raises InputError unless the file is a line of spectra."""
+    """View of a file that shares a figure with others. Raises InputError unless it is a line of spectra."""
     if view.task != request.views[0].task:
         raise InputError(f"{view.path} is of the task {view.task}; only lines of spectra can share a figure")
     view = as_grid(view)
@@ -116,7 +122,7 @@ def _line_of(view: View, request: FigureRequest) -> View:
 
 
 def _map(view: View, names: list[str]) -> Figure:
-    """Map of the leading growth rate over two parameters."""
+    """Map of the largest growth rate over the two parameters `names`."""
     horizontal, vertical = names
     growth = view.variables["growth_rate"][..., 0].squeeze()
     x = view.axes[horizontal]
@@ -124,7 +130,7 @@ def _map(view: View, names: list[str]) -> Figure:
     figure = Figure(figsize=(5.6, 4.4), layout="constrained")
     axes = figure.subplots()
     reach = float(np.nanmax(np.abs(growth)))
-    linear = max(1.0, reach * SMALLEST_SHADE)
+    linear = max(1.0, reach * LINEAR_SHADE_FRACTION)
     norm = matplotlib.colors.SymLogNorm(linear, vmin=-reach, vmax=reach)
     # Zero is a level of the filled contours, so that the line of zero growth and the colours agree.
     shades = norm.inverse(np.linspace(0.0, 1.0, 2 * SHADES_PER_SIGN + 1))
@@ -147,7 +153,7 @@ def _map(view: View, names: list[str]) -> Figure:
 
 
 def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -> None:
-    """Adds an invisible scatter of the points of a map, from which `rodsweep report` reads their values."""
+    """Adds an invisible scatter plot of a map's points, from which `rodsweep report` reads their values."""
     limits = axes.axis()
     across, up = np.meshgrid(x, y, indexing="ij")
     axes.scatter(across.ravel(), up.ravel(), c=growth.ravel(), visible=False, label=GROWTH_LABEL)
@@ -155,7 +161,9 @@ def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -
 
 
 def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
-    """Figure of the followed roots of each file, in one column if narrow, with a common legend."""
+    """Figure with a panel of followed roots for each view; narrow: whether the panels are stacked. All share
+    one legend.
+    """
     columns = 1 if narrow else 2
     rows = -(-len(views) // columns)
     size = FIGURE_WIDTH[columns], PANEL_HEIGHT[columns] * rows + 0.8

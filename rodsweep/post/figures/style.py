@@ -1,4 +1,4 @@
-"""Common style of figures: symbols, labels, colours and titles, scales of axes, and refusals."""
+"""Style shared by all figures: symbols, labels, colours, titles, scales of axes, and error messages."""
 
 from collections.abc import Mapping, Sequence
 from math import isinf
@@ -16,28 +16,31 @@ from ...model.parameters import PARAMETERS
 from ...results.file.view import View
 
 SYMBOLS = {name: parameter.symbol for name, parameter in PARAMETERS.items()}
-"""Symbols of parameters in TeX."""
+"""Symbols of the parameters in TeX, by name."""
 LABELS = {name: f"{p.meaning} ${p.symbol}$" for name, p in PARAMETERS.items()}
-"""Labels of axes. The tilde marks a dimensionless symbol, which has no unit."""
-CRITICAL_FORCE = f"critical force ${SYMBOLS['F']}$"
-INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$"
-FIRST = "#0072B2"
-"""Blue of Okabe and Ito's palette, whose colours are distinct for colour-blind readers."""
-SECOND = "#D55E00"
-"""Vermilion of the same palette."""
-THIRD = "#009E73"
-"""Green of the same palette."""
-DECADE = 10
+"""Labels of axes, by parameter. A tilde marks a dimensionless symbol, which needs no unit."""
+CRITICAL_FORCE_LABEL = f"critical force ${SYMBOLS['F']}$"
+"""Label of an axis of critical forces."""
+INVERSE_DRAG_LABEL = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$"
+"""Label of an axis of 1/gamma3."""
+BLUE = "#0072B2"
+"""Blue of Okabe and Ito's palette, whose colours colour-blind readers can distinguish."""
+VERMILION = "#D55E00"
+"""Vermilion of Okabe and Ito's palette."""
+GREEN = "#009E73"
+"""Green of Okabe and Ito's palette."""
+LOGARITHMIC_RATIO = 10
 """Ratio of the largest to the smallest value of a map above which its colours are logarithmic."""
-FEW_DECADES = 50
-"""Ratio of the ends of a logarithmic axis below which 1, 2 and 5 of each decade have labels."""
-IN_ONE_DECADE = 6
-"""Ratio of the ends below which more numbers have labels, because few of 1, 2 and 5 may be visible."""
+FEW_DECADES_RATIO = 50
+"""Ratio of the ends of a logarithmic axis below which 1, 2 and 5 of each decade have tick labels."""
+SHORT_AXIS_RATIO = 6
+"""Ratio of the ends of a logarithmic axis below which further numbers have tick labels; 1, 2 and 5 could all
+be outside."""
 MIN_POWER = 2
-"""Smallest exponent of a power of ten written as a power."""
+"""Least exponent of a power of ten that is written as 10^n."""
 PLAIN_BELOW = 4
-"""Exponent of ten below which numbers are written without a power of ten."""
-STYLE = {
+"""Exponent of ten below which a number is written without a power of ten."""
+FIGURE_STYLE = {
     "font.size": 10,
     "axes.titlesize": 9,
     "figure.titlesize": 9,
@@ -54,24 +57,26 @@ STYLE = {
 """Settings of matplotlib for all figures."""
 FONT_SIZES = ("font.size", "axes.titlesize", "axes.labelsize", "figure.titlesize", "legend.fontsize",
            "xtick.labelsize", "ytick.labelsize")  # fmt: skip
-"""Settings of font sizes."""
-PRINT_STYLE = STYLE | dict.fromkeys(FONT_SIZES, 8)
-"""Settings for a figure in print, all of whose text has 8 points."""
+"""Names of matplotlib's settings of font sizes."""
+PRINT_STYLE = FIGURE_STYLE | dict.fromkeys(FONT_SIZES, 8)
+"""Settings of matplotlib for a figure with a width for print; all text has 8 points."""
 
 
 def plain(text: object) -> str:
-    """A user's text for matplotlib, in which a dollar does not start mathematics."""
+    """A user's text for matplotlib, with dollar signs that do not start mathematics."""
     return str(text).replace("$", r"\$")
 
 
 def heading(view: View, *lines: str) -> str:
-    """Title of the file, given by the user, above further lines."""
+    """Title of the file, if the user wants it, above the given lines."""
     title = " ".join(plain(view.attributes.get("title", "")).split())
     return "\n".join(filter(None, (title, material_text(view), *lines)))
 
 
 def material_text(view: View) -> str:
-    """Law and profile of the arms of a file; empty for arms of linear material without a profile."""
+    """Constitutive law and profile of the arms of a file as text; empty for uniform arms of
+    linear material.
+    """
     material = view.config.get("material", {})
     law = material.get("law", "linear")
     words = [] if law == "linear" else [f"neo-Hookean, {material.get('section', 'fixed')} section"]
@@ -79,7 +84,9 @@ def material_text(view: View) -> str:
 
 
 def name_in(view: View, views: Sequence[View]) -> str:
-    """Name of a file in a figure of several: its law or title if all differ, else its path."""
+    """Text that identifies a file in a figure of several files: its law, or its title, if these differ; else
+    its path.
+    """
     laws = [material_text(each) or "linear" for each in views]
     if len(set(laws)) == len(laws):
         return laws[list(views).index(view)]
@@ -89,7 +96,7 @@ def name_in(view: View, views: Sequence[View]) -> str:
 
 
 def number(value: float, digits: int = 6) -> str:
-    """A number in TeX without dollars: 1e4 is 10^4, 2.5e-4 is 2.5 x 10^-4, and 200 stays 200."""
+    """A number as TeX without dollar signs: 1e4 gives 10^4, 2.5e-4 gives 2.5 x 10^-4, 200 stays 200."""
     if isinf(value):
         return r"\infty" if value > 0 else r"-\infty"
     if value == 0:
@@ -105,17 +112,19 @@ def number(value: float, digits: int = 6) -> str:
 
 
 def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
-    """Parameters with values, as a line of text."""
+    """Parameters with their symbols and values, as one line of TeX."""
     return ", ".join(f"${SYMBOLS[name]} = {number(value, digits)}$" for name, value in parameters.items())
 
 
 def fixed_text(view: View, *drawn: str) -> str:
-    """Parameters away from the axes of the figure, with values."""
+    """Constant parameters with their values, as text. drawn: names of the parameters on axes."""
     return parameter_text({name: values[0] for name, values in view.axes.items() if name not in drawn})
 
 
 def long_axes(view: View) -> list[str]:
-    """Parameters of a grid with several values; raises InputError unless one or two are found."""
+    """Names of the parameters of a grid that have several values. Raises InputError unless there are one or
+    two.
+    """
     long = [name for name, values in view.axes.items() if len(values) > 1]
     if not 1 <= len(long) <= 2:
         raise InputError(
@@ -126,18 +135,20 @@ def long_axes(view: View) -> list[str]:
 
 
 def require(view: View, available: object, what: str) -> None:
-    """Raises InputError, naming the missing `what`, unless anything is available to draw."""
+    """Raises InputError unless `available` is true (or not empty). what: noun for the missing content."""
     if not available:
         raise InputError(f"{view.path} holds no {what} that could be drawn")
 
 
 def legend_below(figure: Figure, handles: list[Any], columns: int) -> None:
-    """Draws the legend of a whole figure, below its panels."""
+    """Draws one legend for the whole figure, below its panels."""
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
 
 
 def is_logarithmic(values: np.ndarray) -> bool:
-    """Whether an axis, shape (n,), has equal ratios without equal steps, or spans more than a decade."""
+    """Whether an axis with these values, (n,), is logarithmic: equal ratios but not equal steps, or more than
+    a decade.
+    """
     if len(values) < 2 or values[0] <= 0 or not np.isfinite(values).all():
         return False
     steps = np.diff(values)
@@ -149,7 +160,7 @@ def is_logarithmic(values: np.ndarray) -> bool:
 
 
 def scale(axes: Axes, which: Literal["x", "y"], values: np.ndarray) -> None:
-    """Makes an axis logarithmic for logarithmic values, shape (n,), with labels that do not overlap."""
+    """Makes the axis `which` logarithmic if its values, (n,), are; its tick labels do not overlap."""
     if not is_logarithmic(values):
         return
     axes.set(**{f"{which}scale": "log"})
@@ -157,9 +168,11 @@ def scale(axes: Axes, which: Literal["x", "y"], values: np.ndarray) -> None:
 
 
 def label_few_decades(axis: Axis, low: float, high: float) -> None:
-    """Labels 1, 2 and 5 of each decade of a short logarithmic axis, all as plain numbers or all as powers."""
-    if high < FEW_DECADES * low:
-        subs = (1, 2, 5) if high > IN_ONE_DECADE * low else (1, 1.5, 2, 3, 4, 6, 8)
+    """Labels 1, 2 and 5 of each decade on a short logarithmic axis from `low` to `high`, all as numbers or
+    all as powers of ten.
+    """
+    if high < FEW_DECADES_RATIO * low:
+        subs = (1, 2, 5) if high > SHORT_AXIS_RATIO * low else (1, 1.5, 2, 3, 4, 6, 8)
         axis.set_major_locator(LogLocator(subs=subs))
         written_out = low >= 10.0**-MIN_POWER and high < 10.0 ** (PLAIN_BELOW + 1)
         axis.set_major_formatter(
@@ -169,7 +182,9 @@ def label_few_decades(axis: Axis, low: float, high: float) -> None:
 
 
 def label_outer(axes: Axes, xlabel: str, ylabel: str) -> None:
-    """Labels the axes of a panel in a grid of panels that share axes; inner panels get no labels."""
+    """Labels the axes of a panel in a grid of panels that share axes. Only panels at the left and bottom get
+    labels.
+    """
     place = axes.get_subplotspec()
     if place is None or place.is_last_row():
         axes.set_xlabel(xlabel)
@@ -185,13 +200,14 @@ def colour_cells(
     colours: str = "viridis",
     ratios: bool = True,
 ) -> None:
-    """Draws cells in colours of their values, (ny, nx), NaN for no value, with a labelled colour bar.
+    """Draws coloured cells with a labelled colour bar. edges: of the cells along x and y. values: (ny, nx),
+    NaN for no colour.
 
     ratios: whether the colours are logarithmic if the values span more than a decade.
     """
     low = float(np.nanmin(values))
     high = float(np.nanmax(values))
-    if ratios and high > DECADE * low > 0:
+    if ratios and high > LOGARITHMIC_RATIO * low > 0:
         norm: Normalize = LogNorm(low, high)
     else:
         # Equal zeros would give a scale below zero.

@@ -1,4 +1,6 @@
-"""Critical forces over parameters: lines, a map over two parameters, or bars of single rods."""
+"""Figures of the task `thresholds`: lines over parameters, a map over two parameters, or bars of
+single rods.
+"""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -23,13 +25,15 @@ from .stability.threshold_lines import (
 )
 
 NO_THRESHOLD = "#DDDDDD"
-"""Colour of rods without the threshold."""
+"""Colour of rods without a threshold of the kind that a map shows."""
 SEARCH_DIGITS = 4
-"""Number of digits of the largest searched force."""
+"""Number of significant digits of the largest searched force in the description of a figure."""
 
 
 def draw_thresholds(request: FigureRequest) -> str:
-    """Draws the first thresholds over one or two parameters; otherwise a bar of classes for each rod."""
+    """Draws the first thresholds over one or two parameters, or else a bar of classes for each rod; returns a
+    sentence.
+    """
     if request.views[1:]:
         return _of_files(request)
     view = as_grid(request.only_view("lines", "map"))
@@ -58,7 +62,9 @@ def draw_thresholds(request: FigureRequest) -> str:
 
 
 def _of_files(request: FigureRequest) -> str:
-    """Draws the thresholds of several files over the one parameter that varies in all of them."""
+    """Draws the thresholds of several files over the one parameter that varies in all files; returns a
+    sentence.
+    """
     request.refuse_points(request.views[0], ("lines",))
     request.check_output()
     views = request.views
@@ -75,14 +81,16 @@ def _of_files(request: FigureRequest) -> str:
 
 
 def searched(*views: View) -> str:
-    """Range of forces in which thresholds were sought; a missing threshold may lie beyond."""
+    """Clause on the range of forces in which thresholds were searched; a missing threshold may lie beyond."""
     ends = np.concatenate([view.variables["F_end"].ravel() for view in views])
     low, high = (style.number(float(end(ends)), SEARCH_DIGITS) for end in (np.nanmin, np.nanmax))
     return rf"searched up to $\tilde F = {low}$" + (f" to ${high}$" if low != high else "")
 
 
 def _map(view: View, names: list[str], narrow: bool) -> tuple[Figure, str]:
-    """(figure with a map for each threshold over two parameters, clause on values without a place)."""
+    """(figure with a map over two parameters for each kind of threshold, clause on infinite values of the
+    parameters).
+    """
     points = point_map(view)
     figure, panels = map_panels(len(names), narrow)
     lacking = False

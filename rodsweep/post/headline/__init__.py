@@ -1,1 +1,3 @@
-"""First lines about the result of one rod: the answer, and the numbers and the list behind it."""
+"""First lines printed about the result of one rod: a sentence with the answer, the numbers, and the list
+behind it.
+"""

@@ -1,4 +1,4 @@
-"""The result of one rod: its numbers and lists as text, for the first lines that are printed about it."""
+"""Numbers and lists in the result of one rod as text, with as many digits as their errors allow."""
 
 from collections.abc import Mapping, Sequence
 
@@ -14,16 +14,17 @@ from ..tables import Tables
 from ..tables.columns import Column
 from ..tables.contents import POINTS
 
-YES_NO = ("no", "yes")
-EXACT = ("F_end",)
-"""Variables that repeat an option."""
+BOOLEAN_WORDS = ("no", "yes")
+"""Words for the boolean values 0 and 1."""
+EXACT_VARIABLES = ("F_end",)
+"""Variables without an error, because they repeat an option of the config."""
 
 
-class Digits:
-    """Texts of the columns of a table, or of the numbers of one rod, with digits by their errors.
+class ColumnTexts:
+    """Columns of a table as text, with as many digits as the errors allow.
 
-    columns: of equal length. si: name of the SI variable of a variable, by the variable's name. beside:
-    absolute errors of variables whose errors are stored elsewhere, (rows,).
+    columns: of equal length, (rows,). si: name of the SI variable, by dimensionless variable. beside:
+    absolute errors of variables whose error is in another table, (rows,).
     """
 
     def __init__(
@@ -39,12 +40,12 @@ class Digits:
         return np.where(column.absent, np.nan, column.values.astype(float))
 
     def error(self, name: str) -> Array:
-        """Absolute errors of a variable, (rows,); NaN where no error is known."""
+        """Absolute error of the variable `name`, (rows,); NaN where the error is unknown."""
         base = self._base.get(name)
         if base in self.columns:
             with np.errstate(divide="ignore", invalid="ignore"):
                 return self.error(base) * np.abs(self._values[name] / self._values[base])
-        if name in EXACT:
+        if name in EXACT_VARIABLES:
             return np.zeros_like(self._values[name])
         if name in self._beside:
             return self._beside[name]
@@ -53,10 +54,10 @@ class Digits:
         return known if has_error else np.where(known > 0, known, np.nan)
 
     def pairs(self, name: str) -> list[tuple[str, str]]:
-        """(value, absolute error) of a variable, as text, in every row; the error may be empty."""
+        """(value, absolute error) of the variable `name` as text, for every row; the error may be empty."""
         column = self.columns[name]
         if column.is_boolean:
-            return [(YES_NO[int(value)], "") for value in column.values]
+            return [(BOOLEAN_WORDS[int(value)], "") for value in column.values]
         if column.words or column.values.dtype.kind != "f":
             return [(text, "") for text in column.text()]
         if column.is_estimate:
@@ -67,9 +68,8 @@ class Digits:
         return [("", "") if none else number_and_error(float(x), float(dx)) for x, dx, none in rows]
 
     def _rounding(self, error: str) -> Array:
-        """Largest rounding, by row, of the printed numbers whose error is the variable `error`, (rows,).
-
-        Relative if that error is relative.
+        """Largest rounding error of the printed values whose error is the variable `error`, (rows,); relative
+        if this error is relative.
         """
         largest = np.zeros_like(self._values[error])
         for table, relative in ((ABSOLUTE_ERRORS, False), (RELATIVE_ERRORS, True)):
@@ -82,77 +82,82 @@ class Digits:
         return largest
 
     def texts(self, name: str) -> list[str]:
-        """Values of a variable as text, in every row."""
+        """Values of the variable `name` as text, for every row."""
         return [text for text, _ in self.pairs(name)]
 
     def short(self, name: str, row: int = 0) -> str:
-        """A value for a sentence: at most six digits, with the unit."""
+        """Value of the variable `name` in a row, for use in a sentence: at most six digits, with the unit."""
         column = self.columns[name]
         value = float(self._values[name][row])
         error = float(np.nan_to_num(self.error(name)[row]))
         return f"{rounded(value, error)} {'' if column.unit == '1' else column.unit}".rstrip()
 
 
-EVENTS = ("onset", "hopf", "restabilization")
-"""Kinds of thresholds whose first force is a number of the rod."""
+FIRST_THRESHOLD_KINDS = ("onset", "hopf", "restabilization")
+"""Kinds of thresholds for which the result stores the first force as a number of its own."""
 CROSSINGS = "crossings"
+"""Name of the table of crossings."""
 
 
 class OneRod:
-    """Numbers and lists of a file of one rod. For an arm every name means the variable in SI units."""
+    """Numbers and lists in the result of one rod. For an arm, every name stands for its SI variable."""
 
     def __init__(self, view: View):
         self.view = view
         self.tables = Tables(view)
         self.si = _si_names(view)
         own = [column for column in self.tables.table(POINTS).columns if not column.given]
-        self.lists: dict[str, Digits] = {
-            name: Digits(self.tables.items(name), self.si) for name in self.tables.contents.tables[1:]
+        self.lists: dict[str, ColumnTexts] = {
+            name: ColumnTexts(self.tables.items(name), self.si) for name in self.tables.contents.tables[1:]
         }
-        self.points = Digits(own, self.si, self._threshold_errors())
+        self.points = ColumnTexts(own, self.si, self._threshold_errors())
 
     def _threshold_errors(self) -> Mapping[str, np.ndarray]:
-        """Absolute errors of the first forces of each kind, from the list of crossings; each (1,)."""
+        """Absolute errors, (1,) each, of the first threshold force of each kind, read from the list of
+        crossings.
+        """
         if CROSSINGS not in self.lists or "crossing_error" not in self.lists[CROSSINGS].columns:
             return {}
         columns = self.lists[CROSSINGS].columns
         at = next((columns[name] for name in ("crossing_F", "crossing_at") if name in columns), None)
         found = {}
-        for event in EVENTS:
+        for event in FIRST_THRESHOLD_KINDS:
             force = self.view.variables.get(f"F_{event}")
             if at is not None and force is not None:
                 error = columns["crossing_error"].values[at.values == force.ravel()[0]]
                 found[f"F_{event}"] = error[:1] if error.size else np.array([np.nan])
         return found
 
-    def preferred(self, digits: Digits, name: str) -> str:
-        """Name under which a variable is printed: its SI variable if the table has one, else the variable
-        itself.
+    def preferred(self, digits: ColumnTexts, name: str) -> str:
+        """Name of the variable that is printed for `name`: its SI variable if `digits` has such a column,
+        else `name` itself.
         """
         return self.si.get(name, name) if self.si.get(name) in digits.columns else name
 
     def column(self, name: str) -> Column | None:
-        """A number of the rod, None if the task has no such number, or the rod none."""
+        """The variable `name` of the rod as a column of one row; None if the result has no such variable or
+        no value.
+        """
         column = self.points.columns.get(self.preferred(self.points, name))
         return None if column is None or column.absent[0] else column
 
     def text(self, name: str) -> str:
-        """A number of the rod for a sentence, with its unit; empty for a missing number."""
+        """The variable `name` of the rod for use in a sentence, with its unit; empty for a missing value."""
         column = self.column(name)
         return "" if column is None else self.points.short(column.name)
 
     def count(self, name: str) -> int | None:
-        """A count of the rod, None if not known."""
+        """The integer variable `name` of the rod; None if its value is missing."""
         column = self.points.columns.get(name)
         return None if column is None or column.absent[0] else int(column.values[0])
 
     def words(self, table: str, name: str) -> list[str]:
-        """Words of a list."""
+        """Words in the column `name` of the table `table`, one for each row."""
         return self.lists[table].columns[name].text()
 
 
 def _si_names(view: View) -> dict[str, str]:
-    """Names of the SI variables of an arm's result by the dimensionless variable; empty for a rod."""
+    """Name of the SI variable of an arm, by dimensionless variable; empty for a rod."""
     if view.config["parameters"].get("arm") is None:
         return {}
     layout = layout_of(view.config)

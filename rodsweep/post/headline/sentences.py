@@ -1,4 +1,6 @@
-"""The answer of each task about one rod in one sentence, and the numbers and the list to print below it."""
+"""For each task, the answer about one rod in one sentence, and which numbers and which list to
+print below.
+"""
 
 from collections import Counter
 from collections.abc import Callable
@@ -12,10 +14,11 @@ from .one_rod import OneRod
 
 @dataclass(frozen=True, slots=True)
 class Headline:
-    """Sentence, numbers and list that are printed first of a task's result.
+    """First lines printed about the result of a task for one rod.
 
-    sentence: the answer, empty where the rod has none. numbers: variables of the rod. table: name of a list,
-    empty for none. columns: columns of the list. The most important numbers and columns come first.
+    sentence: function that gives the answer; its text is empty if there is none. numbers: variables of the
+    rod to print. table: name of the list to print; empty for none. columns: columns of this list. The most
+    important numbers and columns come first.
     """
 
     sentence: Callable[[OneRod], str]
@@ -25,7 +28,7 @@ class Headline:
 
 
 def eigenvalue_sentence(rod: OneRod) -> str:
-    """Number of unstable modes, and the leading eigenvalue."""
+    """Sentence on the number of unstable modes and the leading eigenvalue."""
     count = rod.count("unstable_count")
     stability = "the straight rod is stable" if count == 0 else f"{counted(count or 0, 'unstable mode')}"
     stability = "number of unstable modes not known" if count is None else stability
@@ -37,7 +40,7 @@ def eigenvalue_sentence(rod: OneRod) -> str:
 
 
 def threshold_sentence(rod: OneRod) -> str:
-    """First force of each kind of threshold."""
+    """Sentence on the first force of each kind of threshold."""
     if rod.count("crossing_count") is None:
         return ""
     verbs = {"onset": "oscillates from", "hopf": "flutters from", "restabilization": "stable again from"}
@@ -52,7 +55,7 @@ def threshold_sentence(rod: OneRod) -> str:
 
 
 def hopf_sentence(rod: OneRod) -> str:
-    """Number of Hopf points of each criticality."""
+    """Sentence on the numbers of supercritical, subcritical and undecided Hopf points."""
     count = rod.count("crossing_count")
     if count is None:
         return ""
@@ -64,7 +67,9 @@ def hopf_sentence(rod: OneRod) -> str:
 
 
 def branch_sentence(rod: OneRod) -> str:
-    """Number of branches and cycles, the range of the parameter and the largest tip y."""
+    """Sentence on the numbers of branches and cycles, the range of the parameter, and the largest y of the
+    tip.
+    """
     branches = rod.count("branch_count")
     if branches is None:
         return ""
@@ -82,7 +87,9 @@ def branch_sentence(rod: OneRod) -> str:
 
 
 def cycle_sentence(rod: OneRod) -> str:
-    """Period and amplitude of the cycle, or the straight rod; empty for any other outcome."""
+    """Sentence on the period and amplitude of the cycle, or on the straight rod; empty for any
+    other status.
+    """
     if period := rod.text("period"):
         status = str(rod.view.outcomes[0])
         beats = "the rod beats" if status == "cycle" else status.replace("_", " ")
@@ -91,18 +98,19 @@ def cycle_sentence(rod: OneRod) -> str:
 
 
 def _end(rod: OneRod) -> str:
-    """Largest load of the search as text, like "F = 200"; empty if not known."""
+    """Largest load of the search as text, like "F = 200"; empty if unknown."""
     column = rod.column("F_end")
     return "" if column is None else f"{column.name.removesuffix('_end')} = {rod.text('F_end')}"
 
 
 def _not_known_beyond(rod: OneRod) -> str:
-    """Clause on the loads beyond the end of a search that ended early; empty for a search to its end."""
+    """Clause on the loads beyond the point where a search stopped early; empty for a complete search."""
     early = "; not known beyond {}, where the search ended early"
     return early.format(_end(rod)) if rod.view.with_status("ended_early").all() else ""
 
 
 EIGENVALUES = ("mode", "growth_rate", "frequency")
+"""First columns in the list of eigenvalues."""
 HEADLINES = {
     "spectrum": Headline(eigenvalue_sentence, (), "modes", (*EIGENVALUES, "longitudinal_rate")),
     "modes": Headline(
@@ -142,4 +150,4 @@ HEADLINES = {
         ),
     ),
 }
-"""Headline of each task of one rod."""
+"""Headline of the result of one rod, by task."""

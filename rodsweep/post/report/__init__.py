@@ -1,8 +1,8 @@
-"""One HTML page about results, to be sent and opened without a network: `rodsweep report`.
+"""One self-contained HTML page about results, readable without a network: `rodsweep report`.
 
-The page has the answer and the tables of `rodsweep show`, the figures of `rodsweep plot` with their values
-under the pointer, the tables of `rodsweep export`, the config and the provenance. Fonts, images and scripts
-from elsewhere are forbidden by the page itself.
+The page contains the lines of `rodsweep show`, the figures of `rodsweep plot` with values under the pointer,
+the tables of `rodsweep export`, the config and the provenance. The page itself forbids the browser to load
+anything from elsewhere.
 """
 
 import re
@@ -20,30 +20,32 @@ from ...results.file.view import View
 from ...wording import counted
 from ..figures.request import Shapes
 from ..whole_file import require_name, written_whole
-from .dark_colours import in_the_dark
+from .dark_colours import dark_page_colour
 from .page_tables import MAX_ROWS
 from .pictures import Pictures, pictures_of
-from .reported import ReportContents, reported
+from .reported import ReportContents, report_contents
 from .vector_picture import VectorPicture
 
 QUOTED = re.compile("`([^`]*)`")
-"""A command or a key in a sentence."""
+"""Text between backquotes in a sentence: a command, or a key of a config."""
 
 
 def require_page(output: Path, inputs: Sequence[Path]) -> None:
-    """Raises InputError unless a page can be written under this name; inputs: files to report."""
+    """Raises InputError unless an HTML page can be written to `output`. inputs: result files, which must not
+    be overwritten.
+    """
     require_name(output, (".html",), "page", inputs)
 
 
 def write_report(views: Sequence[View], output: Path, shapes: Shapes | None = None) -> str:
-    """Writes the page about results and returns a sentence.
+    """Writes an HTML page about results and returns a sentence.
 
-    shapes: solves cycles whose shapes are not stored, for the figure of limit cycles. Raises InputError for a
-    name that is no name for a page.
+    shapes: function that solves cycles without stored shapes, for the figure of limit cycles. Raises
+    InputError for an output name that does not suit an HTML page.
     """
     require_page(output, [view.path for view in views])
     numbers = count(1)
-    results = [reported(view, pictures_of([view], shapes, numbers)) for view in views]
+    results = [report_contents(view, pictures_of([view], shapes, numbers)) for view in views]
     together = pictures_of(views, shapes, numbers) if views[1:] else Pictures(())
     text = page_text(results, together)
     with written_whole(output) as stream:
@@ -53,7 +55,7 @@ def write_report(views: Sequence[View], output: Path, shapes: Shapes | None = No
 
 
 def page_text(results: Sequence[ReportContents], together: Pictures) -> str:
-    """The page as HTML; together: figures that show several results."""
+    """HTML text of the page. together: figures that each show several results."""
     pictures = [each.picture for result in results for each in result.pictures.shown]
     pictures += [each.picture for each in together.shown]
     title = "; ".join(result.title for result in results)
@@ -61,7 +63,9 @@ def page_text(results: Sequence[ReportContents], together: Pictures) -> str:
 
 
 def rendered(template: str, drawn: Sequence[VectorPicture], **contents: Any) -> str:
-    """A page from a template of this package; drawn: all pictures of the page."""
+    """HTML text from a template of this package. drawn: all pictures of the page. contents: variables of the
+    template.
+    """
     environment = Environment(
         loader=PackageLoader(__name__),
         autoescape=True,
@@ -74,7 +78,7 @@ def rendered(template: str, drawn: Sequence[VectorPicture], **contents: Any) -> 
     environment.filters["with_code"] = _with_code
     colours = sorted(set[str]().union(*(picture.colours for picture in drawn)))
     return environment.get_template(template).render(
-        colours=[(colour, in_the_dark(colour)) for colour in colours],
+        colours=[(colour, dark_page_colour(colour)) for colour in colours],
         max_rows=MAX_ROWS,
         version=__version__,
         written=now(),
@@ -83,5 +87,5 @@ def rendered(template: str, drawn: Sequence[VectorPicture], **contents: Any) -> 
 
 
 def _with_code(text: str) -> Markup:
-    """A sentence as HTML, its words in backquotes as code."""
+    """A sentence as HTML, with the words between backquotes as code."""
     return Markup(QUOTED.sub(r"<code>\1</code>", str(escape(text))))

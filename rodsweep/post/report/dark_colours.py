@@ -1,34 +1,39 @@
-"""Colours of figures on a dark page: greys are inverted, and colours too dark for the page are lightened."""
+"""Colours of figures on a dark page: greys are inverted, and colours that are too dark are lightened."""
 
-INK = 232
-"""Brightness of black ink on the dark page, from 0 to 255."""
-PAPER = 27
-"""Brightness, on the dark page, of what is white on the light page: the brightness of the dark page
-itself."""
+INK_BRIGHTNESS = 232
+"""Brightness, from 0 to 255, that black has on the dark page."""
+PAPER_BRIGHTNESS = 27
+"""Brightness, from 0 to 255, that white has on the dark page: the brightness of the page's background."""
 MIN_CONTRAST = 4.5
-"""Contrast of a line with the page that WCAG 2 asks of text; it asks 3 of graphics, without thin lines."""
-STEPS = 20
-"""Number of steps from a colour to white."""
+"""Least contrast ratio of a line with the dark page. WCAG 2 asks 4.5 of text, and 3 of graphics that are not
+thin."""
+LIGHTENING_STEP_COUNT = 20
+"""Number of steps from a colour to white in which a colour is lightened."""
 
 
-def in_the_dark(colour: str) -> str:
-    """The dark page's colour for a colour of the light page; both are six hexadecimal digits."""
+def dark_page_colour(colour: str) -> str:
+    """Colour on the dark page that replaces a colour of the light page; both as six hexadecimal digits."""
     parts = [int(colour[place : place + 2], 16) for place in (0, 2, 4)]
     if len(set(parts)) == 1:
-        parts = [round(INK + (PAPER - INK) * part / 255) for part in parts]
+        parts = [round(INK_BRIGHTNESS + (PAPER_BRIGHTNESS - INK_BRIGHTNESS) * part / 255) for part in parts]
     else:
-        lighter = ([part + (255 - part) * step / STEPS for part in parts] for step in range(STEPS + 1))
+        lighter = (
+            [part + (255 - part) * step / LIGHTENING_STEP_COUNT for part in parts]
+            for step in range(LIGHTENING_STEP_COUNT + 1)
+        )
         parts = next([round(part) for part in each] for each in lighter if _contrast(each) >= MIN_CONTRAST)
     return "".join(f"{part:02x}" for part in parts)
 
 
 def _contrast(parts: list[float]) -> float:
-    """Contrast ratio, as WCAG 2 defines it, of a lighter colour with the dark page."""
-    return (_luminance(parts) + 0.05) / (_luminance([PAPER] * 3) + 0.05)
+    """Contrast ratio, as defined by WCAG 2, of a colour with the dark page. parts: red, green and blue, from
+    0 to 255.
+    """
+    return (_luminance(parts) + 0.05) / (_luminance([PAPER_BRIGHTNESS] * 3) + 0.05)
 
 
 def _luminance(parts: list[float]) -> float:
-    """Relative luminance, from 0 to 1, of red, green and blue from 0 to 255, as WCAG 2 defines it."""
+    """Relative luminance, from 0 to 1, as defined by WCAG 2. parts: red, green and blue, from 0 to 255."""
     linear = [
         part / 255 / 12.92 if part <= 0.04045 * 255 else ((part / 255 + 0.055) / 1.055) ** 2.4
         for part in parts

@@ -1,7 +1,7 @@
-"""Values of a drawn figure with their places, for the text under the pointer.
+"""Values in a drawn figure with their positions, for the text that a page shows under the pointer.
 
-It reads lines, scattered points, bars and coloured cells from matplotlib's figure, so that the modules that
-draw need not know of pages.
+The values are read from the lines, scatter plots, bars and coloured cells of a matplotlib figure. The modules
+that draw figures therefore know nothing of pages.
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,21 +23,21 @@ from ..figures.cycle.point_map import cell_centres
 from .label_text import label_text
 
 MAX_POINTS = 2500
-"""Largest number of values of a figure with a text; of longer curves every n-th point has one. A value takes
-some 100 bytes on the page."""
-ALWAYS = 24
-"""Number of points up to which a curve keeps all its texts."""
+"""Largest number of values of a figure that get a text; of more values every n-th gets one. A text takes some
+100 bytes."""
+MAX_UNTHINNED_POINTS = 24
+"""Number of points up to which every point of a curve keeps its text."""
 POINTER_DIGITS = 8
-"""Number of digits of a value under the pointer."""
+"""Number of significant digits of a value under the pointer."""
 POINTS_PER_INCH = 72
-"""Unit of matplotlib's SVG."""
-MARGIN = 1.0
-"""Distance beyond the frame of a panel, in points, within which a value still belongs to the panel."""
+"""Length unit of matplotlib's SVG files: points per inch."""
+FRAME_MARGIN = 1.0
+"""Distance outside the frame of a panel, in points, within which a value still belongs to the panel."""
 
 
 @dataclass(frozen=True, slots=True)
 class HoverPoint:
-    """A drawn value: its place from the upper left corner of the figure, in points, and its text."""
+    """Text for a value in a figure. x, y: position from the upper left corner of the figure, in points."""
 
     x: float
     y: float
@@ -46,30 +46,32 @@ class HoverPoint:
 
 @dataclass(frozen=True, slots=True)
 class HoverSeries:
-    """Values drawn together: places in pixels from the lower left corner, (n, 2), and n texts."""
+    """Texts for n values of a curve. places: positions from the lower left corner of the figure, in pixels,
+    (n, 2).
+    """
 
     places: Array
     texts: Sequence[str]
 
 
 def hover_points(figure: Figure) -> list[HoverPoint]:
-    """The values of a figure whose layout is final, in the order of drawing."""
+    """Texts for all values in a figure, in the order of drawing. The layout of the figure must be final."""
     words = _legend_words(figure)
     found = [series for axes in figure.axes for series in _of_panel(axes, words)]
-    long = sum(len(series.texts) for series in found if len(series.texts) > ALWAYS)
+    long = sum(len(series.texts) for series in found if len(series.texts) > MAX_UNTHINNED_POINTS)
     step = max(1, ceil(long / MAX_POINTS))
     height = figure.get_size_inches()[1] * POINTS_PER_INCH
     scale = POINTS_PER_INCH / figure.dpi
     points = []
     for series in found:
-        every = step if len(series.texts) > ALWAYS else 1
+        every = step if len(series.texts) > MAX_UNTHINNED_POINTS else 1
         for (x, y), text in zip(series.places[::every], series.texts[::every], strict=True):
             points.append(HoverPoint(float(scale * x), float(height - scale * y), text))
     return points
 
 
 def _of_panel(axes: Axes, words: dict[str, str]) -> Iterator[HoverSeries]:
-    """Yields the values of a panel that lie within its frame. words: words of the legend, by colour."""
+    """Yields the texts for all values inside the frame of a panel. words: legend entries, by colour."""
     if axes.get_label() == "<colorbar>" or not axes.get_visible():
         return
     names = (axis_name(axes, "x"), axis_name(axes, "y"))
@@ -78,7 +80,7 @@ def _of_panel(axes: Axes, words: dict[str, str]) -> Iterator[HoverSeries]:
         if line.get_visible():
             found.append(_line(axes, line, names))
     found += [_scatter(dots, names) for dots in axes.collections if isinstance(dots, PathCollection)]
-    frame = axes.bbox.padded(MARGIN)
+    frame = axes.bbox.padded(FRAME_MARGIN)
     for series in found:
         inside = np.isfinite(series.places).all(axis=1)
         inside[inside] = [frame.contains(x, y) for x, y in series.places[inside]]
@@ -86,7 +88,9 @@ def _of_panel(axes: Axes, words: dict[str, str]) -> Iterator[HoverSeries]:
 
 
 def _line(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSeries:
-    """Vertices of a line; of a line across the whole panel, such as a threshold, the middle and the name."""
+    """Texts for the vertices of a line. A line across the whole panel, such as a threshold, has one text at
+    its middle, its legend entry.
+    """
     data = np.ma.filled(np.ma.asarray(line.get_xydata(), float), np.nan).reshape(-1, 2)
     with np.errstate(all="ignore"):  # a logarithmic axis has no place for zero
         places = line.get_transform().transform(data)
@@ -98,9 +102,9 @@ def _line(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSeries:
 
 
 def _scatter(dots: PathCollection, names: tuple[str, str]) -> HoverSeries:
-    """Scattered points, by their colours' values if there are any.
+    """Texts for scattered points, with the value that sets the colour of a point, if any.
 
-    An invisible scatter holds the points from which filled contours are drawn.
+    An invisible scatter stands for the points from which filled contours are interpolated.
     """
     data = np.ma.filled(np.ma.asarray(dots.get_offsets(), float), np.nan)
     places = dots.get_offset_transform().transform(data)
@@ -120,9 +124,7 @@ def _scatter(dots: PathCollection, names: tuple[str, str]) -> HoverSeries:
 
 
 def _cells(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[HoverSeries]:
-    """Yields the places and texts of coloured cells. A text is the cell's value on the colour bar, or the
-    word of its colour in the legend.
-    """
+    """Yields the texts for coloured cells: the value on the colour bar, or the legend entry of the colour."""
     for mesh in axes.collections:
         if not isinstance(mesh, QuadMesh):
             continue
@@ -144,7 +146,7 @@ def _cells(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterato
 
 
 def _bars(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[HoverSeries]:
-    """Yields the middles of bars, with the ends of each."""
+    """Yields the texts for bars, at their middles: the values at both ends of a bar."""
     for bars in axes.containers:
         if not isinstance(bars, BarContainer):
             continue
@@ -158,7 +160,7 @@ def _bars(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator
 
 
 def axis_name(axes: Axes, which: Literal["x", "y"]) -> str:
-    """Name of an axis as plain text, from the panel or from a panel that shares the axis."""
+    """Label of an axis as plain text, from the panel itself or from a panel that shares the axis."""
     shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
     for each in (axes, *shared.get_siblings(axes), *_beside(axes, which)):
         label = each.get_xlabel() if which == "x" else each.get_ylabel()
@@ -168,7 +170,7 @@ def axis_name(axes: Axes, which: Literal["x", "y"]) -> str:
 
 
 def _beside(axes: Axes, which: Literal["x", "y"]) -> list[Axes]:
-    """Other panels in the same column (for "x") or row (for "y") that have the same limits on this axis."""
+    """Other panels in the same column (for "x") or row (for "y") with the same limits on this axis."""
 
     def place(panel: Axes) -> object:
         grid = panel.get_subplotspec()
@@ -184,7 +186,7 @@ def _beside(axes: Axes, which: Literal["x", "y"]) -> list[Axes]:
 
 
 def _legend_words(figure: Figure) -> dict[str, str]:
-    """Words of the legends by the colour of their patches."""
+    """Legend entries of coloured patches in a figure, by colour."""
     legends = [*figure.legends, *(legend for axes in figure.axes if (legend := axes.get_legend()))]
     words = {}
     for legend in legends:
@@ -195,20 +197,20 @@ def _legend_words(figure: Figure) -> dict[str, str]:
 
 
 def _series_name(label: object) -> str:
-    """Name of a curve in the legend; empty for a curve without an entry."""
+    """Legend entry of a curve; empty for a curve that is not in the legend."""
     text = str(label)
     return "" if text.startswith("_") else label_text(text)
 
 
 def _texts(names: tuple[str, str], data: Array, series: str) -> list[str]:
-    """Text shown at each point: name of the curve, and both coordinates. data: points in units of the axes,
-    (n, 2).
+    """Text for each point of a curve: its legend entry and both coordinates. data: points in data
+    coordinates, (n, 2).
     """
     return ["\n".join(filter(None, (series, _text(names, at)))) for at in data]
 
 
 def _text(names: tuple[str, str], at: Array) -> str:
-    """Values of a point in units of the axes, (2,), a line each."""
+    """Coordinates of a point as text, one line each. at: point in data coordinates, (2,)."""
     return "\n".join(f"{name} = {_number(value)}" for name, value in zip(names, at, strict=True))
 
 

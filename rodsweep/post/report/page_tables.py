@@ -1,4 +1,6 @@
-"""Tables of a result on its page: rounded numbers with all digits under the pointer, no empty columns."""
+"""Tables of a result on its HTML page: rounded numbers, with all digits under the pointer, and no empty
+columns.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,14 +13,14 @@ from ..tables.columns import Column
 from ..tables.contents import DEFAULT_TABLE, POINTS
 
 MAX_ROWS = 60
-"""Largest number of rows of a table on the page; `rodsweep export` writes all."""
+"""Largest number of rows of a table on the page. `rodsweep export` writes all rows."""
 CELL_DIGITS = 6
-"""Number of digits of a number in a table; the number under the pointer has all."""
+"""Number of significant digits of a number in a table; all digits are shown under the pointer."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A value: the rounded text, and the value in full where it is longer."""
+    """Cell of a table. text: rounded value. full: the value with all digits, if longer."""
 
     text: str
     full: str = ""
@@ -26,10 +28,11 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class PageTable:
-    """A table on the page.
+    """Table on the page.
 
-    heads: (name, unit, meaning) of every column. rows: cells of every row. total: number of rows of the whole
-    table. constant: (name, cell, unit, meaning) of columns with one value in all rows.
+    heads: (name, unit, meaning) of every column. rows: cells of the shown rows. total: number of rows before
+    cutting to MAX_ROWS. constant: (name, cell, unit, meaning) of columns with equal values in all rows, which
+    are listed beside the table.
     """
 
     name: str
@@ -40,7 +43,9 @@ class PageTable:
 
 
 def page_tables(view: View) -> Iterator[PageTable]:
-    """Yields the tables of a result that have a row: the task's own table, the points, all further lists."""
+    """Yields all tables of a result that have rows: first the default table of the task, then the points,
+    then all other lists.
+    """
     tables = Tables(view)
     names = dict.fromkeys((DEFAULT_TABLE[view.task], POINTS, *tables.contents.tables))
     for name in names:
@@ -51,7 +56,7 @@ def page_tables(view: View) -> Iterator[PageTable]:
 
 
 def _shown(table: Table) -> PageTable:
-    """A table without empty columns; columns with one value are listed beside it."""
+    """The table for the page: without empty columns, and with columns of equal values listed beside it."""
     filled = [column for column in table.columns if not column.absent.all()]
     alike = [column for column in filled if table.rows > 1 and _is_constant(column)]
     shown = [column for column in filled if column not in alike]
@@ -69,7 +74,7 @@ def _shown(table: Table) -> PageTable:
 
 
 def _is_constant(column: Column) -> bool:
-    """Whether every row has the same value; a status is shown in every row."""
+    """Whether all rows of a column have the same value; always False for a status."""
     if column.name == "status" or column.absent.any():
         return False
     return len(np.unique(column.values)) == 1
@@ -81,7 +86,7 @@ def _cells(column: Column) -> list[Cell]:
 
 
 def _cell(column: Column, text: str, value: float) -> Cell:
-    """A value as a cell; text: the value in full, empty if it is missing."""
+    """Cell for a value. text: the value with all digits; empty if it is missing."""
     is_number = column.values.dtype.kind == "f" and not column.words and not column.is_estimate
     if not text or not is_number:
         return Cell(text)
@@ -90,5 +95,5 @@ def _cell(column: Column, text: str, value: float) -> Cell:
 
 
 def _unit(column: Column) -> str:
-    """Unit of a column; empty for a number without unit."""
+    """Unit of a column; empty for a dimensionless number."""
     return "" if column.unit == "1" else column.unit

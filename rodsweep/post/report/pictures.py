@@ -1,4 +1,4 @@
-"""Figures on the page of a result: all figures of `rodsweep plot` that the content of the file allows."""
+"""Figures on the HTML page of a result: all figures of `rodsweep plot` that the result file allows."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -14,9 +14,9 @@ from ..figures.request import KINDS_OF_TASK, Shapes
 from .vector_picture import VectorPicture, vector_picture
 
 ANIMATION_KIND = "animation"
-"""The kind of figure that consists of several pictures."""
-UNWRITTEN = Path("figure.svg")
-"""Name that requests a figure in SVG, which goes into the page, not into a file."""
+"""Kind of figure that is an animation, which a page cannot show as one picture."""
+SVG_REQUEST_NAME = Path("figure.svg")
+"""Output name that requests a figure in SVG for the page; no file of this name is written."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,17 +29,17 @@ class CaptionedPicture:
 
 @dataclass(frozen=True, slots=True)
 class Pictures:
-    """Pictures of a result; refusal: why there are none, or empty."""
+    """Pictures of a result. refusal: reason why there are none; empty if there are some."""
 
     shown: tuple[CaptionedPicture, ...]
     refusal: str = ""
 
 
 def pictures_of(views: Sequence[View], shapes: Shapes | None, numbers: "count[int]") -> Pictures:
-    """Every kind of figure of the results, the one that `rodsweep plot` draws first.
+    """Every kind of figure of the results, with the default figure of `rodsweep plot` first.
 
-    shapes: solves the cycles of the first figure whose shapes are not stored. numbers: counter of the
-    pictures on the page.
+    shapes: function that solves cycles without stored shapes, for the first figure. numbers: counter that
+    numbers the pictures of the page.
     """
     # Without its folders, so that no sentence on the page names them.
     views = [replace(view, path=Path(view.path.name)) for view in views]
@@ -54,11 +54,11 @@ def pictures_of(views: Sequence[View], shapes: Shapes | None, numbers: "count[in
             kept.append(figure)
 
         try:
-            sentence = draw(views, UNWRITTEN, what=kind, shapes=wanted, keep=keep)
+            sentence = draw(views, SVG_REQUEST_NAME, what=kind, shapes=wanted, keep=keep)
         except InputError as error:
             refusal = refusal or str(error)
             continue
-        caption = sentence.removeprefix(f"wrote {UNWRITTEN}: ")
+        caption = sentence.removeprefix(f"wrote {SVG_REQUEST_NAME}: ")
         if caption not in found:
             found[caption] = CaptionedPicture(caption, vector_picture(kept[0], next(numbers), caption))
     return Pictures(tuple(found.values()), "" if found else refusal)

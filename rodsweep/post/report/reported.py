@@ -1,4 +1,4 @@
-"""Contents of the page about one result: texts and tables, without any HTML."""
+"""Contents of an HTML page about one result as plain text, tables and pictures, before they become HTML."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from ..summary.summary_lines import Summary, TextTable, region
 from .page_tables import PageTable, page_tables
 from .pictures import Pictures
 
-VERSIONS = {
+VERSION_WORDS = {
     "rodsweep_version": "rodsweep",
     "git_commit": "commit",
     "format": "format of the file",
@@ -30,7 +30,7 @@ VERSIONS = {
     "finished": "finished",
     "fingerprint": "fingerprint of the config",
 }
-"""Attributes of the file on the page with their words; none names a machine or a user."""
+"""Words for the attributes of the result file that the page lists. None of them names a machine or a user."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,9 +38,9 @@ class ReportContents:
     """Contents of the page about one result."""
 
     name: str
-    """Name of the file."""
+    """Name of the result file."""
     title: str
-    """Title of the config, or the file's name."""
+    """Title in the config, or else the name of the result file."""
     task: str
     summary: Summary
     statuses: TextTable
@@ -48,15 +48,15 @@ class ReportContents:
     """Figures of the result."""
     tables: Sequence[PageTable]
     config: str
-    """Config as typed by the user."""
+    """Config as the user typed it."""
     complete: str
-    """Config with all defaults."""
+    """Config with the defaults of all keys filled in."""
     versions: Sequence[tuple[str, str]]
-    """Versions of the software as (name, version)."""
+    """(software, version) of the programs that computed the result."""
 
 
-def reported(view: View, pictures: Pictures) -> ReportContents:
-    """Contents of the page about a result."""
+def report_contents(view: View, pictures: Pictures) -> ReportContents:
+    """Contents of the page about the result `view`, with its `pictures`."""
     a = view.attributes
     summary = summary_of(view)
     name = printable(view.path.name)
@@ -70,12 +70,14 @@ def reported(view: View, pictures: Pictures) -> ReportContents:
         tables=list(page_tables(view)),
         config=str(a.get("config", "")).strip("\n"),
         complete=yaml_of(view.config).strip("\n"),
-        versions=[(word, str(a[key])) for key, word in VERSIONS.items() if str(a.get(key, ""))],
+        versions=[(word, str(a[key])) for key, word in VERSION_WORDS.items() if str(a.get(key, ""))],
     )
 
 
 def _with_places(view: View, statuses: TextTable) -> TextTable:
-    """The table of statuses; of several statuses with the ranges of the parameters in which each is found."""
+    """Table of statuses; if there are several, with the ranges of the parameters in which each status is
+    found.
+    """
     if len(statuses.rows) == 1:
         return statuses
     listed = view.listed

@@ -1,4 +1,4 @@
-"""A matplotlib figure as SVG within a page: values under the pointer, colours that follow the page."""
+"""A matplotlib figure as SVG inside an HTML page, with texts under the pointer and colours for dark pages."""
 
 import re
 from dataclasses import dataclass
@@ -12,9 +12,11 @@ from .hover_points import hover_points
 
 SVG = "http://www.w3.org/2000/svg"
 XLINK = "http://www.w3.org/1999/xlink"
-COLOUR = re.compile(r"#([0-9a-f]{6})(?![0-9a-f])")
-RADIUS = "4"
-"""Radius, in points, of the place around a value that shows its text without a script."""
+HEX_COLOUR = re.compile(r"#([0-9a-f]{6})(?![0-9a-f])")
+"""Colour in SVG: # and six hexadecimal digits."""
+HOVER_RADIUS = "4"
+"""Radius, in points, of the invisible circle around a value whose title the browser shows under
+the pointer."""
 
 ElementTree.register_namespace("", SVG)
 ElementTree.register_namespace("xlink", XLINK)
@@ -22,21 +24,21 @@ ElementTree.register_namespace("xlink", XLINK)
 
 @dataclass(frozen=True, slots=True)
 class VectorPicture:
-    """A figure as an SVG element.
+    """Figure as an SVG element of an HTML page.
 
-    colours: colours, as six hexadecimal digits, that the page may change; empty for a picture with colours
-    stored as an image, which needs white paper.
+    colours: colours, as six hexadecimal digits, that the page replaces when it is dark. Empty for a picture
+    that contains an image, whose colours cannot be replaced; its background stays white.
     """
 
     svg: str
     colours: frozenset[str]
     width: float
-    """Natural width, in points."""
+    """Natural width of the picture, in points."""
 
 
 def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
-    """The figure as SVG. number: number of the picture on its page. caption: description for readers who do
-    not see the picture.
+    """The figure as an SVG element. number: number of the picture on its page. caption: description for
+    readers who cannot see the picture.
     """
     written = BytesIO()
     # Pictures of a page must not share the names of their clipping paths.
@@ -59,7 +61,7 @@ def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
 
 
 def _remove(root: ElementTree.Element, place: str) -> None:
-    """Removes the first element at a place, given by names below the root."""
+    """Removes the first element at the path `place` below `root`, given by names of elements."""
     *above, name = place.split("/")
     parent = root.find("/".join(f"{{{SVG}}}{each}" for each in above)) if above else root
     if parent is not None and (found := parent.find(f"{{{SVG}}}{name}")) is not None:
@@ -67,20 +69,20 @@ def _remove(root: ElementTree.Element, place: str) -> None:
 
 
 def _name_colours(root: ElementTree.Element) -> frozenset[str]:
-    """Replaces the colours of all elements by variables of the page; returns the colours."""
+    """Replaces the colours of all elements by CSS variables; returns the colours."""
     found = {"000000"}
     for element in root.iter():
         for attribute in ("style", "fill", "stroke"):
             if text := element.get(attribute):
-                found |= set(COLOUR.findall(text))
-                element.set(attribute, COLOUR.sub(r"var(--c\1, \g<0>)", text))
+                found |= set(HEX_COLOUR.findall(text))
+                element.set(attribute, HEX_COLOUR.sub(r"var(--c\1, \g<0>)", text))
     return frozenset(found)
 
 
 def _add_texts(root: ElementTree.Element, figure: Figure) -> None:
-    """Adds an invisible circle with a title at every value of the figure."""
+    """Adds an invisible circle with a title at every value of the figure, for the text under the pointer."""
     group = ElementTree.SubElement(root, f"{{{SVG}}}g", {"class": "values"})
     for point in hover_points(figure):
-        place = {"cx": f"{point.x:.1f}", "cy": f"{point.y:.1f}", "r": RADIUS}
+        place = {"cx": f"{point.x:.1f}", "cy": f"{point.y:.1f}", "r": HOVER_RADIUS}
         circle = ElementTree.SubElement(group, f"{{{SVG}}}circle", place)
         ElementTree.SubElement(circle, f"{{{SVG}}}title").text = point.text

@@ -1,4 +1,6 @@
-"""The portrait of a rod in words: thresholds, criticality, branches, coexistence, cycles, missing results."""
+"""Portrait of a rod in words: thresholds, criticality, branches, coexisting states, cycles,
+missing results.
+"""
 
 from collections.abc import Iterator, Sequence
 from math import isfinite
@@ -12,14 +14,14 @@ from ...wording import counted, is_or_are
 from ..branch_curves import StoredBranch
 from ..summary.arm.validity import plane_lines, validity_sentence
 from ..summary.branch import SPECIAL_WORDS
-from ..summary.criticality import SIDES
+from ..summary.criticality import CRITICALITY_WORDS
 from ..summary.ranges import rounded
 from ..summary.thresholds import ENDED_EARLY
 from .results import RodResults
 
-SAME_FORCE = 1e-6
-"""Largest relative distance of a Hopf point of one task from the same Hopf point of another."""
-EVENTS = {
+SAME_FORCE_TOLERANCE = 1e-6
+"""Largest relative difference between the forces that two tasks find for the same Hopf point."""
+THRESHOLD_CLAUSES = {
     "onset": "it starts to oscillate at {F}",
     "hopf": "a pair of modes becomes unstable at {F}",
     "hopf_reverse": "a pair becomes stable at {F}, where other modes stay unstable",
@@ -28,15 +30,15 @@ EVENTS = {
     "real_leads": "a real eigenvalue takes the lead at {F}",
     "pair_leads": "a complex pair takes the lead at {F}",
 }
-"""Clauses on the straight rod at a threshold, by kind."""
-SEARCHES = ("thresholds", "criticality", "branch")
-"""Tasks whose statuses are stated where they are not `SUCCEEDED`."""
-SUCCEEDED = "ok"
-"""Status of thresholds, criticality and branches without reservation."""
+"""Clause on the straight rod at a threshold, by kind of threshold."""
+SEARCH_TASKS = ("thresholds", "criticality", "branch")
+"""Tasks whose status the paragraph states unless it is `SUCCESS_STATUS`."""
+SUCCESS_STATUS = "ok"
+"""Status of a search for thresholds, criticality or branches that is complete."""
 
 
 def paragraph(results: RodResults) -> str:
-    """Everything about the rod, in one paragraph."""
+    """All results about the rod, as one paragraph of text."""
     sentences = [
         *_rod(results),
         *_thresholds(results),
@@ -48,7 +50,7 @@ def paragraph(results: RodResults) -> str:
 
 
 def _rod(results: RodResults) -> Iterator[str]:
-    """Yields sentences on the rod, its units in SI and the searched range."""
+    """Yields sentences on the parameters of the rod, and the searched range of the force."""
     end = float(results.views["thresholds"].of_point(0)["F_end"])
     units = results.units
     reached = units.force_at(end)
@@ -67,7 +69,7 @@ def _rod(results: RodResults) -> Iterator[str]:
 
 
 def _arm(results: RodResults) -> Iterator[str]:
-    """Yields sentences on an arm: its units, whether the model applies, and the plane of its motion."""
+    """Yields sentences on an arm: its units, whether the model applies, and the plane in which it moves."""
     view = results.views["thresholds"]
     quantities = {name: float(values.ravel()[0]) for name, values in view.quantities.items()}
     yield (
@@ -81,7 +83,7 @@ def _arm(results: RodResults) -> Iterator[str]:
 
 
 def _thresholds(results: RodResults) -> Iterator[str]:
-    """Yields sentences on the thresholds of the straight rod, with the criticality of Hopf points."""
+    """Yields sentences on the thresholds of the straight rod, with the criticality of its Hopf points."""
     view = results.views["thresholds"]
     v = view.of_point(0)
     places = np.flatnonzero(v["crossing_kind"] > 0)
@@ -90,7 +92,7 @@ def _thresholds(results: RodResults) -> Iterator[str]:
     clauses = []
     for i in places:
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
-        clause = EVENTS[kind].format(F=units.force_at(v["crossing_F"][i], v["crossing_error"][i]))
+        clause = THRESHOLD_CLAUSES[kind].format(F=units.force_at(v["crossing_F"][i], v["crossing_error"][i]))
         if frequency := float(v["crossing_frequency"][i]):
             clause += f" (frequency {units.frequency_text(frequency)}"
             clause += f"{_side(results, float(v['crossing_F'][i]))})"
@@ -106,21 +108,23 @@ def _thresholds(results: RodResults) -> Iterator[str]:
 
 
 def _side(results: RodResults, F: float) -> str:
-    """Clause on the criticality of the Hopf point at a force; empty for another threshold."""
+    """Clause on the criticality of the Hopf point at the force F; empty if there is no Hopf point at F."""
     view = results.views.get("criticality")
     if view is None:
         return ""
     v = view.of_point(0)
-    same = np.abs(v["crossing_F"] - F) <= SAME_FORCE * abs(F)
+    same = np.abs(v["crossing_F"] - F) <= SAME_FORCE_TOLERANCE * abs(F)
     sides = v["criticality"][same & np.isfinite(v["criticality"])]
     if not sides.size:
         return ""
     a = float(v["amplitude_coefficient"][same][0])
-    return f"; {SIDES[int(sides[0])]}, its cycles are {'above' if a > 0 else 'below'} it"
+    return f"; {CRITICALITY_WORDS[int(sides[0])]}, its cycles are {'above' if a > 0 else 'below'} it"
 
 
 def _branches(results: RodResults) -> Iterator[str]:
-    """Yields sentences on the branches of cycles, their special points and ranges of stability."""
+    """Yields sentences on the branches of cycles, their special points, and the ranges in which cycles are
+    stable.
+    """
     rod = results.branches
     if rod is None:
         return
@@ -157,10 +161,11 @@ def _branches(results: RodResults) -> Iterator[str]:
 
 
 def _beside(ranges: str, is_decided: bool, kind: str) -> str:
-    """Sentence on loads with both a stable cycle and a stable straight rod, or on their absence.
+    """Sentence on the loads at which a stable cycle and the stable straight rod coexist, or that there are
+    none.
 
-    ranges: the loads as text, empty if none are known. is_decided: whether all stabilities are known. kind:
-    rod or arm.
+    ranges: the loads as text; empty if none are found. is_decided: whether the stability of all states is
+    known. kind: "rod" or "arm".
     """
     if ranges:
         return f"A stable cycle exists beside the stable straight {kind} at {ranges}."
@@ -170,7 +175,7 @@ def _beside(ranges: str, is_decided: bool, kind: str) -> str:
 
 
 def _special(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[str]:
-    """Loads at the special points of a kind, each point once. factor: the load at F = 1."""
+    """Distinct loads, as text, at the special points of the given kind. factor: the load at F = 1."""
     found = {
         rounded(factor * special.at, factor * special.error): None
         for curve in curves
@@ -181,7 +186,7 @@ def _special(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[s
 
 
 def _cycles(results: RodResults) -> Iterator[str]:
-    """Yields a sentence on the cycles that are drawn, and on forces at which none was found."""
+    """Yields a sentence on the drawn cycles, and a sentence on the forces at which no cycle was found."""
     units = results.units
     clauses = []
     for F, view in results.cycles:
@@ -206,9 +211,9 @@ def _cycles(results: RodResults) -> Iterator[str]:
 
 
 def _missing(results: RodResults) -> Iterator[str]:
-    """Yields sentences on results that are missing or have a reservation."""
+    """Yields sentences on missing results, and on results whose status is not `SUCCESS_STATUS`."""
     for task, reason in results.missing.items():
         yield f"Not solved, {task.replace('_', ' ')}: {reason}."
-    for task in SEARCHES:
-        if (view := results.views.get(task)) and (word := str(view.outcomes[0])) != SUCCEEDED:
+    for task in SEARCH_TASKS:
+        if (view := results.views.get(task)) and (word := str(view.outcomes[0])) != SUCCESS_STATUS:
             yield f"About {task}, {word.replace('_', ' ')}: {view.sentences.get(word, word)}."

@@ -1,4 +1,6 @@
-"""The portrait of a rod as a figure: thresholds along F, branches of cycles, modes at onset, three cycles."""
+"""Portrait of a rod as a figure: thresholds along F, branches of cycles, modes at the thresholds, three
+cycles.
+"""
 
 import textwrap
 from collections.abc import Sequence
@@ -13,43 +15,47 @@ from matplotlib.lines import Line2D
 from ...results.file.view import View
 from ...results.layouts.limit_cycle import CYCLE_WORDS
 from ..figures import style
-from ..figures.branch import COLOURS, draw_curves, draw_straight_rod, stability_entries
-from ..figures.cycle.portrait import ARROW_LENGTH, LIGHTEST_ARM, draw_clamp, force_arrow
+from ..figures.branch import BRANCH_COLOURS, draw_curves, draw_straight_rod, stability_entries
+from ..figures.cycle.portrait import ARROW_LENGTH, UNUSED_COLOUR_FRACTION, draw_clamp, force_arrow
 from ..figures.stability.class_bars import class_entries, draw_class_bar, mark_thresholds_on_bars
 from .paragraph import paragraph
 from .results import RodResults
 from .units import rescale_panel
 
-SIZE = (10.0, 10.4)
-"""Width and height of the picture, in inches."""
-HEIGHTS = (0.4, 2.4, 1.5, 2.2)
-"""Relative heights of the thresholds, the largest y, the periods, and the modes with the cycles."""
+PORTRAIT_SIZE = (10.0, 10.4)
+"""Width and height of the figure, in inches."""
+ROW_HEIGHTS = (0.4, 2.4, 1.5, 2.2)
+"""Relative heights of the rows of panels: thresholds, largest y of the tip, periods, and modes
+with cycles."""
 MODE_WIDTH = 0.65
-"""Width of the panel of a mode, in units of the width of that of a cycle."""
-LINE_WIDTH = 162
-"""Characters in a line of the paragraph."""
-PANEL_WIDTH = 26
-"""Characters in a line of the sentence that replaces the panel of a missing mode or cycle."""
-CYCLES = 3
-"""Number of cycles of a portrait."""
-BESIDE_STRAIGHT = ("#009E73", "stable cycle beside a stable straight rod")
-TWO_CYCLES = ("#CC79A7", "two stable cycles")
+"""Width of the panel of a mode, in units of the width of the panel of a cycle."""
+PARAGRAPH_WIDTH = 162
+"""Largest length of a line of the paragraph, in characters."""
+PANEL_TEXT_WIDTH = 26
+"""Largest length of a line, in characters, of the sentence in a panel whose mode or cycle is missing."""
+CYCLE_COUNT = 3
+"""Number of cycles in the figure."""
+COEXISTENCE_LOOK = ("#009E73", "stable cycle beside a stable straight rod")
+"""Colour and legend entry of ranges of F in which a stable cycle and the stable straight rod coexist."""
+TWO_CYCLES_LOOK = ("#CC79A7", "two stable cycles")
+"""Colour and legend entry of ranges of F in which two stable cycles coexist."""
 CYCLE_WORD = "cycle drawn below"
-FAINT_PART = 1e-3
-"""Fraction of a mode below which its imaginary part is not drawn: at a double eigenvalue half of the digits
-are rounding errors."""
+"""Legend entry of the marks at cycles whose shapes are drawn."""
+MIN_DRAWN_PART = 1e-3
+"""Size of the imaginary part of a mode, as a fraction of the mode, below which it is not drawn. At a double
+eigenvalue half of the digits are rounding errors."""
 
 
 def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
-    """The portrait; with_words: whether the paragraph stands above the panels.
+    """Figure of the portrait; with_words: whether the paragraph stands above the panels.
 
-    A result that is missing has its reason in its place.
+    The panel of a missing result shows the reason in a sentence.
     """
-    with matplotlib.rc_context(style.STYLE):
-        figure = Figure(figsize=SIZE, layout="constrained")
+    with matplotlib.rc_context(style.FIGURE_STYLE):
+        figure = Figure(figsize=PORTRAIT_SIZE, layout="constrained")
         modes = list(results.modes) or [""]
-        widths = [MODE_WIDTH] * len(modes) + [1.0] * CYCLES
-        grid = figure.add_gridspec(4, len(widths), height_ratios=HEIGHTS, width_ratios=widths)
+        widths = [MODE_WIDTH] * len(modes) + [1.0] * CYCLE_COUNT
+        grid = figure.add_gridspec(4, len(widths), height_ratios=ROW_HEIGHTS, width_ratios=widths)
         bar = figure.add_subplot(grid[0, :])
         upper = figure.add_subplot(grid[1, :], sharex=bar)
         lower = figure.add_subplot(grid[2, :], sharex=bar)
@@ -58,17 +64,17 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
         _show_units((bar, upper, lower), results)
         for place, kind in enumerate(modes):
             _draw_mode(figure.add_subplot(grid[3, place]), results, kind)
-        panels = [figure.add_subplot(grid[3, len(modes) + number]) for number in range(CYCLES)]
+        panels = [figure.add_subplot(grid[3, len(modes) + number]) for number in range(CYCLE_COUNT)]
         _draw_cycles(panels, results)
         style.legend_below(figure, handles, columns=4)
         if with_words:
-            text = textwrap.fill(paragraph(results), LINE_WIDTH)
+            text = textwrap.fill(paragraph(results), PARAGRAPH_WIDTH)
             figure.suptitle(style.plain(text), x=0.01, ha="left", fontsize=8)
         return figure
 
 
 def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
-    """Draws the panels of the thresholds, the largest y and the period, which share their loads, in units."""
+    """Converts the panels of the thresholds, the largest y and the period to the units of the portrait."""
     units = results.units
     end = panels[0].get_xlim()[1]
     for axes, y in zip(panels, (1.0, units.length.factor, units.time.factor), strict=True):
@@ -78,14 +84,14 @@ def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
 
 
 def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
-    """Draws the behaviour of the straight rod along F, with its thresholds; returns legend entries."""
+    """Draws the stability of the straight rod along F, with its thresholds; returns legend entries."""
     view = results.views["thresholds"]
     v = view.of_point(0)
     axes.set(ylim=(-0.6, 0.6), yticks=[])
     axes.spines["left"].set_visible(False)
     axes.tick_params(labelbottom=False)
     if not np.isfinite(v["F_end"]):
-        _say(axes, f"thresholds: {_outcome(view)}", LINE_WIDTH)
+        _say(axes, f"thresholds: {_outcome(view)}", PARAGRAPH_WIDTH)
         return []
     axes.set_xlim(0, float(v["F_end"]))
     seen = draw_class_bar(axes, view, 0, upright=False)
@@ -95,19 +101,24 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
 
 
 def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist]:
-    """Draws the branches and ranges with two stable states; returns legend entries."""
+    """Draws the branches of cycles, and the ranges with two stable states; returns legend entries."""
     rod = results.branches
     if rod is None or not rod.curves:
         lower.set_axis_off()
-        _say(upper, results.missing.get("branch", "no branch of cycles begins in this range"), LINE_WIDTH)
+        _say(
+            upper, results.missing.get("branch", "no branch of cycles begins in this range"), PARAGRAPH_WIDTH
+        )
         return []
     handles: list[Artist] = [
         *stability_entries(rod.curves),
-        *draw_curves(upper, lower, rod.curves, COLOURS).values(),
+        *draw_curves(upper, lower, rod.curves, BRANCH_COLOURS).values(),
     ]
     draw_straight_rod(upper, rod)
     if not rod.hidden:
-        for ranges, (colour, word) in ((rod.coexistence, BESIDE_STRAIGHT), (rod.two_cycles, TWO_CYCLES)):
+        for ranges, (colour, word) in (
+            (rod.coexistence, COEXISTENCE_LOOK),
+            (rod.two_cycles, TWO_CYCLES_LOOK),
+        ):
             bands = [upper.axvspan(*ends, color=colour, alpha=0.25, lw=0, label=word) for ends in ranges]
             handles += bands[:1]
     handles += _mark_cycles(upper, lower, results)
@@ -120,7 +131,7 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
 
 
 def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
-    """Marks the cycles whose shapes are drawn; returns a legend entry."""
+    """Marks the cycles whose shapes are drawn in the panels of the branches; returns a legend entry."""
     beating = [(F, view.of_point(0)) for F, view in results.cycles if view.with_status(*CYCLE_WORDS).all()]
     handles: list[Line2D] = []
     for axes, name in ((upper, "tip_y_max"), (lower, "period")):
@@ -132,31 +143,31 @@ def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
 
 
 def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
-    """Draws the deflection of the leading mode at a threshold."""
+    """Draws the deflection of the leading mode at the first threshold of the given kind."""
     if kind not in results.modes:
-        _say(axes, f"no mode: {results.missing['modes']}", PANEL_WIDTH)
+        _say(axes, f"no mode: {results.missing['modes']}", PANEL_TEXT_WIDTH)
         return
     F, view = results.modes[kind]
     v = view.of_point(0)
     axes.set_title(results.units.mode_title(kind, F))
     if not np.isfinite(v["Y_real"][0]).all():
-        _say(axes, f"no mode: {_outcome(view)}", PANEL_WIDTH)
+        _say(axes, f"no mode: {_outcome(view)}", PANEL_TEXT_WIDTH)
         return
     parts = {part: v[f"Y_{part}"][0] for part in ("real", "imag")}
     for part, line, label in (("real", "-", "Re"), ("imag", ":", "Im")):
-        if np.abs(parts[part]).max() > FAINT_PART * np.abs(parts["real"]).max():
-            axes.plot(view.variables["u"], parts[part], line, color=style.FIRST, lw=1.5, label=label)
+        if np.abs(parts[part]).max() > MIN_DRAWN_PART * np.abs(parts["real"]).max():
+            axes.plot(view.variables["u"], parts[part], line, color=style.BLUE, lw=1.5, label=label)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel="$u/L$", ylabel="$Y_1$", xlim=(0, 1))
     axes.legend(frameon=False, loc="upper left", fontsize=7, handlelength=1.2, borderpad=0)
 
 
 def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
-    """Draws the shapes of three cycles, later ones darker, on the same scale."""
+    """Draws the shapes of up to three cycles on the same scale; later shapes of a period are darker."""
     if not results.cycles:
         for axes in panels[1:]:
             axes.set_axis_off()
-        _say(panels[0], f"no cycle: {results.missing['limit_cycle']}", PANEL_WIDTH)
+        _say(panels[0], f"no cycle: {results.missing['limit_cycle']}", PANEL_TEXT_WIDTH)
         return
     drawn = [view.of_point(0) for _, view in results.cycles if view.with_status(*CYCLE_WORDS).all()]
     units = results.units
@@ -167,9 +178,9 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
         force = units.force_title(F)
         if not view.with_status(*CYCLE_WORDS).all():
             axes.set_title(force)
-            _say(axes, f"no cycle: {_outcome(view)}", PANEL_WIDTH)
+            _say(axes, f"no cycle: {_outcome(view)}", PANEL_TEXT_WIDTH)
             continue
-        shades = matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST_ARM, 1, len(v["shape_x"])))
+        shades = matplotlib.colormaps["viridis_r"](np.linspace(UNUSED_COLOUR_FRACTION, 1, len(v["shape_x"])))
         draw_clamp(axes, length)
         for x, y, theta, shade in zip(v["shape_x"], v["shape_y"], v["shape_theta"], shades, strict=True):
             axes.plot(length * x, length * y, color=shade, lw=1.3)
@@ -183,13 +194,13 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
 
 
 def _outcome(view: View) -> str:
-    """The meaning of the status of the single point of a view."""
+    """Meaning of the status of the only point in `view`."""
     word = str(view.outcomes[0])
     return view.sentences.get(word, word)
 
 
 def _say(axes: Axes, sentence: str, width: int) -> None:
-    """Writes a sentence in the place of a drawing."""
+    """Writes a sentence into an empty panel, in lines of `width` characters."""
     axes.set_axis_off()
     text = style.plain(textwrap.fill(f"{sentence[:1].upper()}{sentence[1:]}.", width))
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=8)

@@ -1,4 +1,4 @@
-"""What a portrait is drawn from: the results of one rod, and the reasons where a result is missing."""
+"""Results of one rod from which its portrait is made, and the reasons for missing results."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -11,25 +11,26 @@ from .units import PortraitUnits, units_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DescribedRod:
-    """A rod as a user describes it."""
+    """Description of a rod or an arm by the user."""
 
     parameters: Mapping[str, float] = field(default_factory=dict)
-    """Values by name; for an arm only values that replace the arm's own."""
+    """Parameters of the rod by name; for an arm, only parameters that the user gives instead of the arm's
+    own."""
     material: Mapping[str, Any] = field(default_factory=dict)
-    """Section `material` of a config, empty for a uniform rod of linear material."""
+    """Section `material` of a config; empty for a uniform rod of linear material."""
     arm: Mapping[str, Any] = field(default_factory=dict)
-    """Section `parameters.arm` of a config without load, empty for a rod."""
+    """Section `parameters.arm` of a config, without the load; empty for a rod."""
     load: str = "pressure"
-    """The load of the arm, "pressure" or "force"."""
+    """Kind of load on the arm: "pressure" or "force"."""
 
     @property
     def kind(self) -> str:
-        """The word for it in a sentence."""
+        """The word "rod" or "arm", for use in a sentence."""
         return "arm" if self.arm else "rod"
 
     @property
     def words(self) -> str:
-        """The quantities of an arm, the parameters but F, and the material."""
+        """Description of the rod as text: quantities of an arm, parameters other than F, and material."""
         words = [f"{name.replace('_', ' ')} {_quantity(value)}" for name, value in self.arm.items()]
         words += [f"{name} = {value:g}" for name, value in self.parameters.items() if name != "F"]
         words += [f"{name} {self.material[name]}" for name in ("law", "section") if name in self.material]
@@ -39,34 +40,34 @@ class DescribedRod:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RodResults:
-    """Results of one rod, each a view of a single point."""
+    """Results of several tasks for one rod, each a view with a single point."""
 
     rod: DescribedRod
     F_max: float
-    """Largest requested force."""
+    """Largest force of the searches, in k3/L^2, as requested."""
     views: Mapping[str, View]
-    """Thresholds, and criticality and branch unless missing."""
+    """Result by task: "thresholds", "criticality" and "branch"; missing tasks are left out."""
     modes: Mapping[str, tuple[float, View]]
-    """(force, modes there) at the first thresholds, by kind."""
+    """(force, modes at this force) at the first threshold of each kind, by kind."""
     cycles: Sequence[tuple[float, View]]
-    """(force, limit cycle there), increasing."""
+    """(force, limit cycle at this force), in increasing order of the force."""
     missing: Mapping[str, str]
-    """Reason, in a sentence, for every task without a result."""
+    """Reason, as a sentence, for every task without a result, by task."""
 
     @property
     def units(self) -> PortraitUnits:
-        """Units of the portrait, chosen for the largest force of the search."""
+        """Units of the portrait. Their prefixes suit the largest force of the search."""
         view = self.views["thresholds"]
         return units_of(view, self.rod.load, float(view.variables["F_end"].ravel()[0]))
 
     @property
     def branches(self) -> RodBranches | None:
-        """Branches of cycles; None if they are missing."""
+        """Branches of cycles of the rod; None if they are missing."""
         return RodBranches(self.views["branch"]) if "branch" in self.views else None
 
 
 def _quantity(value: Any) -> str:
-    """A quantity of an arm as the user wrote it; segments from base to tip."""
+    """A quantity of an arm as the user wrote it; for an arm of segments, the values from base to tip."""
     if isinstance(value, str) or not isinstance(value, Sequence):
         return str(value)
     return " | ".join(map(str, value))

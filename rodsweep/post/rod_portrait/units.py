@@ -1,4 +1,4 @@
-"""Units of a portrait: without dimension for a rod, SI units with prefixes for an arm."""
+"""Units of a portrait: dimensionless for a rod, SI units with prefixes for an arm."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,27 +16,27 @@ from ..figures import style
 from ..summary.arm.arm import own_unit
 from ..summary.ranges import listed, rounded
 
-THRESHOLDS = {"onset": ("*", "onset"), "hopf": ("**", "flutter")}
-"""Index of the symbol of a threshold, and its word, by kind."""
-LABELLED = (1.0, 2.0, 5.0)
-"""Labelled numbers of each decade of a logarithmic axis in SI units."""
+THRESHOLD_MARKS = {"onset": ("*", "onset"), "hopf": ("**", "flutter")}
+"""(superscript of the symbol, word) of a threshold, by kind."""
+LABELLED_NUMBERS = (1.0, 2.0, 5.0)
+"""Numbers of each decade of a logarithmic axis that have tick labels, in SI units."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Unit:
-    """A unit. factor: value in this unit of a quantity whose dimensionless value is 1."""
+    """Unit of a portrait. factor: value, in this unit, of a quantity whose dimensionless value is 1."""
 
     name: str
     factor: float = 1.0
 
     def text(self, value: float, error: float) -> str:
-        """A value with its unit. value and absolute error: dimensionless."""
+        """`value` as text with its unit, to the digits that `error` allows. value, error: dimensionless."""
         return f"{rounded(self.factor * value, self.factor * error)} {self.name}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PortraitUnits:
-    """Units of the portrait of a rod or an arm. load: name of an arm's load, empty for F of a rod."""
+    """Units of the portrait of a rod or an arm. load: kind of the arm's load; empty for a rod."""
 
     force: Unit
     length: Unit
@@ -45,25 +45,29 @@ class PortraitUnits:
     load: str = ""
 
     def along(self, axis: str) -> str:
-        """Label of the x or the y of shapes."""
+        """Label of an axis for the x or the y of shapes."""
         return f"${axis}$ ({self.length.name})" if self.load else f"${axis}/L$"
 
     def at(self, text: str) -> str:
-        """A load, or several, whose number in the portrait's unit is given as text."""
+        """Clause with the name and unit of the load. text: one or more loads, as numbers in the unit of the
+        portrait.
+        """
         return f"a {self.load} of {text} {self.force.name}" if self.load else f"F = {text}"
 
     def force_at(self, F: float, error: float = 0.0) -> str:
-        """The load at a force, with the digits that its absolute error allows."""
+        """The load at the dimensionless force F as text, with the digits that its absolute error allows."""
         return self.at(rounded(self.force.factor * F, self.force.factor * error))
 
     def forces_at(self, ranges: Sequence[Range], errors: Mapping[float, float]) -> str:
-        """Loads of ranges of the force. errors: absolute errors of ends of ranges, by end."""
+        """Ranges of the dimensionless force as text, as loads. errors: absolute errors of the
+        ends, by end.
+        """
         factor = self.force.factor
         own = [(factor * low, factor * high) for low, high in ranges]
         return self.at(listed(own, {factor * end: factor * error for end, error in errors.items()}))
 
     def frequency_text(self, omega: float) -> str:
-        """An angular frequency in 1/tau2 as text; of an arm the frequency in Hz."""
+        """Angular frequency `omega`, in 1/tau2, as text; for an arm the frequency in Hz."""
         return f"{self.frequency.factor * omega:.6g} {self.frequency.name}"
 
     @property
@@ -75,14 +79,14 @@ class PortraitUnits:
         return f"{self.load} ({self.force.name})", y, f"period ({self.time.name})"
 
     def mode_title(self, kind: str, F: float) -> str:
-        """Title of the panel of the mode at the threshold of a kind."""
-        symbol, word = THRESHOLDS[kind]
+        """Title of the panel of a mode at the threshold F of the given kind."""
+        symbol, word = THRESHOLD_MARKS[kind]
         if self.load:
             return f"mode at {word},\n{self.force_title(F)}"
         return rf"mode at ${style.SYMBOLS['F']}_{{{symbol}}} = {F:.6g}$"
 
     def force_title(self, F: float) -> str:
-        """The load at a force as the title of a panel."""
+        """The load at the dimensionless force F as the title of a panel."""
         text = f"{self.force.factor * F:.6g}"
         return f"{text} {self.force.name}" if self.load else rf"${style.SYMBOLS['F']} = {text}$"
 
@@ -90,11 +94,13 @@ class PortraitUnits:
 ROD_UNITS = PortraitUnits(
     force=Unit(name=""), length=Unit(name="L"), time=Unit(name="tau2"), frequency=Unit(name="rad/tau2")
 )
-"""Units of a rod: forces in k3/L^2."""
+"""Units of the portrait of a rod; forces are in k3/L^2."""
 
 
 def units_of(view: View, load: str, largest: float) -> PortraitUnits:
-    """Units for the thresholds of an arm or a rod. load: of an arm. largest: largest force F."""
+    """Units of the portrait of a rod or an arm. load: kind of the arm's load. largest: largest F, which
+    decides the prefix.
+    """
     if not view.quantities:
         return ROD_UNITS
     force, length, tau2 = (float(view.quantities[n].ravel()[0]) for n in (SCALE_OF[load], "length", "tau2"))
@@ -111,7 +117,9 @@ def units_of(view: View, load: str, largest: float) -> PortraitUnits:
 
 
 def rescale_panel(axes: Axes, x: float, y: float) -> None:
-    """Multiplies all that a panel has drawn, curves, marks and upright areas, by factors of x and y."""
+    """Multiplies the coordinates of all curves, marks and vertical areas in a panel by the
+    factors x and y.
+    """
     for line in axes.lines:
         line.set_data(x * np.asarray(line.get_xdata()), y * np.asarray(line.get_ydata()))
     for area in axes.patches:
@@ -120,6 +128,6 @@ def rescale_panel(axes: Axes, x: float, y: float) -> None:
     axes.relim()
     axes.autoscale_view()
     if y != 1 and axes.get_yscale() == "log":
-        axes.yaxis.set_major_locator(LogLocator(subs=LABELLED))
+        axes.yaxis.set_major_locator(LogLocator(subs=LABELLED_NUMBERS))
         axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axes.yaxis.set_minor_formatter(NullFormatter())

@@ -1,4 +1,4 @@
-"""The portrait of a rod as a file: an image with its paragraph, or a page with tables."""
+"""Portrait of a rod as a file: an image with the paragraph, or an HTML page with tables."""
 
 from pathlib import Path
 
@@ -12,22 +12,29 @@ from .paragraph import paragraph
 from .picture import portrait_figure
 from .results import RodResults
 
-IMAGES = (".png", ".pdf", ".svg")
-PAGE = ".html"
+IMAGE_SUFFIXES = (".png", ".pdf", ".svg")
+"""Suffixes of image files for a portrait."""
+PAGE_SUFFIX = ".html"
+"""Suffix of an HTML page."""
 CAPTION = "thresholds, branches of cycles, modes at the thresholds and three cycles"
-HIDDEN = ("mode_shapes", "shapes", "harmonics", "multipliers", "samples")
-"""Tables that the picture shows better."""
+"""Description of the picture on an HTML page."""
+HIDDEN_TABLES = ("mode_shapes", "shapes", "harmonics", "multipliers", "samples")
+"""Tables left out of an HTML page, because the picture shows their content better."""
 
 
 def require_portrait(output: Path) -> None:
-    """Raises InputError unless a portrait can be written under this name."""
-    require_name(output, (*IMAGES, PAGE), "page" if output.suffix == PAGE else "picture")
+    """Raises InputError unless a portrait can be written to the file `output`."""
+    require_name(
+        output, (*IMAGE_SUFFIXES, PAGE_SUFFIX), "page" if output.suffix == PAGE_SUFFIX else "picture"
+    )
 
 
 def write_portrait(results: RodResults, output: Path) -> str:
-    """Writes the portrait and returns a sentence; InputError for a name that does not fit a portrait."""
+    """Writes the portrait to the file `output` and returns a sentence. Raises InputError for an unsuitable
+    file name.
+    """
     require_portrait(output)
-    if output.suffix == PAGE:
+    if output.suffix == PAGE_SUFFIX:
         with written_whole(output) as stream:
             stream.write(portrait_page(results))
     else:
@@ -36,7 +43,7 @@ def write_portrait(results: RodResults, output: Path) -> str:
 
 
 def portrait_page(results: RodResults) -> str:
-    """The portrait as a page of HTML that needs no network."""
+    """Portrait as the text of an HTML page, readable without a network."""
     picture = vector_picture(portrait_figure(results, with_words=False), 1, CAPTION)
     views = [*results.views.items()]
     at = results.units.force_at
@@ -49,6 +56,8 @@ def portrait_page(results: RodResults) -> str:
         title=f"{results.rod.kind.capitalize()} with {results.rod.words}",
         paragraph=paragraph(results),
         pictures=Pictures((CaptionedPicture(CAPTION, picture),)),
-        tables=[(name, [t for t in page_tables(view) if t.name not in HIDDEN]) for name, view in views],
+        tables=[
+            (name, [t for t in page_tables(view) if t.name not in HIDDEN_TABLES]) for name, view in views
+        ],
         origin=origin_lines(results.views["thresholds"].attributes),
     )

@@ -1,4 +1,6 @@
-"""Summary of a result, for `rodsweep show` and `rodsweep report`: answer, reliability, details, origin."""
+"""Summary of a result file, for `rodsweep show` and `rodsweep report`: answer, reliability, details,
+provenance.
+"""
 
 import os
 from collections.abc import Callable, Iterable, Sequence
@@ -39,19 +41,20 @@ SUMMARIES: dict[str, Callable[[View, np.ndarray], SummaryLines]] = {
     "criticality": criticality_summary,
     "branch": branch_summary,
 }
-"""Function of each task from (view, mask of its computed points) to the lines of the summary."""
-WIDEST = 1000
-"""Largest width of a table of numbers without a window, as in a pipe."""
-NOUNS = {"thresholds": "rod", "criticality": "rod", "branch": "rod", "phase_diagram": "row"}
-"""Name of a point of each task, where it is not "point"."""
+"""Function of each task that returns the lines of the summary. Arguments: view of the file, mask of its
+computed points."""
+MAX_TABLE_WIDTH = 1000
+"""Largest width, in characters, of a table of numbers that is printed into a pipe or a file."""
+POINT_NOUNS = {"thresholds": "rod", "criticality": "rod", "branch": "rod", "phase_diagram": "row"}
+"""Noun for a point of the result of a task, if it is not "point"."""
 
 
 def summary_of(view: View, every_status: bool = False) -> Summary:
-    """The summary of a result file; every_status: whether statuses of no point are listed as well."""
+    """Summary of a result file; every_status: whether to list statuses that no point has as well."""
     view = view.listed
     status = view.variables["status"]
     done = status != MISSING
-    noun = NOUNS.get(view.task, "point")
+    noun = POINT_NOUNS.get(view.task, "point")
     rods = done & (status < NOT_SLENDER)
     nothing = SummaryLines([] if done.any() else [f"no {noun} is computed yet"])
     lines = SUMMARIES[view.task](view, rods) if rods.any() else nothing
@@ -68,11 +71,11 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
 
 
 def show_summary(view: View, every_status: bool = False) -> None:
-    """Prints a summary of a result file; every_status: whether statuses of no point are listed as well.
+    """Prints the summary of a result file; every_status: whether to list statuses that no point has as well.
 
-    The answer comes first, for an arm also in the arm's units. Then follow the reliability of the answer,
-    further results, the parameters, and last the provenance, each below its heading. In a terminal no line is
-    wider than the window; a pipe gets whole lines.
+    The answer comes first, for an arm also in SI units. Reliability, further results, parameters and
+    provenance follow, each below a heading. A terminal folds lines at the width of its window; a pipe gets
+    whole lines.
     """
     console = Console(highlight=False, markup=False)
     summary = summary_of(view, every_status)
@@ -98,28 +101,34 @@ def show_summary(view: View, every_status: bool = False) -> None:
 
 
 def print_lines(console: Console, lines: Sequence[str]) -> None:
-    """Prints lines, folded at the width of the window; without a window a line stays whole."""
+    """Prints lines, folded at the width of the terminal's window; output to a pipe or a file is
+    not folded.
+    """
     for line in lines:
         console.print(refolded(line, console.width) if has_window(console) else line, soft_wrap=True)
 
 
 def has_window(console: Console) -> bool:
-    """Whether lines are folded: in a terminal, or at a width given by COLUMNS."""
+    """Whether lines are folded: in a terminal, or if the environment variable COLUMNS gives a width."""
     return console.is_terminal or "COLUMNS" in os.environ
 
 
 def _print_numbers(console: Console, table: TextTable) -> None:
-    """Prints a table of numbers below an empty line, in blocks as wide as the window."""
+    """Prints an empty line and a table of numbers, divided into blocks of columns that fit into
+    the window.
+    """
     heads = [(*heading.split("\n"), "")[:2] for heading in table.headings]
     cells = zip(heads, zip(*table.rows, strict=True), strict=True)
     columns = [column_cells(head, column) for head, column in cells]
-    for block in blocks(columns, console.width if has_window(console) else WIDEST):
+    for block in blocks(columns, console.width if has_window(console) else MAX_TABLE_WIDTH):
         for line in ("", *block):
             console.print(line, soft_wrap=True)
 
 
 def _answer(view: View, done: np.ndarray, summary: SummaryLines) -> list[str]:
-    """Lines of the answer; for an arm first in its own units, then dimensionless."""
+    """Lines of the answer; for an arm first in SI units, then dimensionless. done: mask of the computed
+    points, of the points' shape.
+    """
     if not view.quantities or not done.any():
         return [*summary.answer]
     lines = [*arm_answer(view, done), *summary.of_arm, *arm_lines(view, done)]
@@ -127,7 +136,9 @@ def _answer(view: View, done: np.ndarray, summary: SummaryLines) -> list[str]:
 
 
 def _unfinished(view: View, missing: int, noun: str) -> list[str]:
-    """Lines about points and curves that are not in the file yet."""
+    """Lines about points and curves that are not computed yet. missing: number of points. noun: name of a
+    point.
+    """
     lines = []
     if missing and (shard := view.attributes.get("shard")):
         lines.append(
@@ -153,7 +164,9 @@ def _unfinished(view: View, missing: int, noun: str) -> list[str]:
 
 
 def _failures(view: View) -> Iterable[str]:
-    """Yields an example point of each distinct reason for which points failed, and the reason."""
+    """Yields a sentence for each distinct reason why points failed, with one of these points as
+    an example.
+    """
     columns = view.point_columns
     for line in str(view.attributes.get(FAILURE_REASONS, "")).splitlines():
         where, _, outcome = line.partition(": ")
@@ -166,7 +179,7 @@ def _failures(view: View) -> Iterable[str]:
 
 
 def _printed(table: TextTable) -> Table:
-    """Table for the terminal, without borders, numbers with their decimal points below each other."""
+    """Table for the terminal: without borders, numbers aligned at their decimal points."""
     printed = Table(*table.headings, box=None, pad_edge=False)
     if table.rows:
         for row in zip(*map(point_aligned, zip(*table.rows, strict=True)), strict=True):
@@ -175,7 +188,7 @@ def _printed(table: TextTable) -> Table:
 
 
 def _axes(view: View) -> TextTable:
-    """Table of an arm's quantities and of every parameter: ranges, or values where each has one."""
+    """Table of an arm's quantities and of the parameters: their values, or their ranges over the points."""
     rows = []
     for name, values in view.quantities.items():
         si = ALL_QUANTITIES[name].unit
@@ -190,8 +203,8 @@ def _axes(view: View) -> TextTable:
 
 
 def _extent(values: np.ndarray) -> tuple[str, str, str]:
-    """(number of distinct values without NaN, smallest, largest unless equal to the smallest) of values of
-    any shape, as text.
+    """(number of distinct values, smallest, largest) of `values`, of any shape, as text. NaN is ignored; the
+    largest is empty if all are equal.
     """
     # Twelve digits, because values computed from an arm may differ by rounding.
     different = {f"{value:.12g}" for value in values[~np.isnan(values)]}
@@ -201,7 +214,7 @@ def _extent(values: np.ndarray) -> tuple[str, str, str]:
 
 
 def _statuses(view: View, status: np.ndarray, every: bool) -> Iterable[tuple[str, ...]]:
-    """Yields (status, number of points, meaning); every: whether statuses of no point are included."""
+    """Yields (status, number of points, meaning); every: whether statuses that no point has are included."""
     sentences = view.sentences | {"missing": "not computed yet"}
     found = dict(zip(*(a.tolist() for a in np.unique(status, return_counts=True)), strict=True))
     for value in sorted(view.flags.keys() | found.keys()) if every else found:

@@ -1,4 +1,4 @@
-"""Branches of cycles in `rodsweep show`: their ends and special points, and ranges with two stable states."""
+"""Branches of cycles in `rodsweep show`: ends, special points, and ranges with two stable states."""
 
 from collections.abc import Iterator, Sequence
 
@@ -10,21 +10,24 @@ from ...wording import counted, is_or_are, some_of
 from ..branch_curves import Range, RodBranches, StoredBranch, ends_of, followed_parameter
 from .errors import span_of
 from .ranges import listed, rounded, span, to_error
-from .summary_lines import SummaryLines, at_point, completeness, first_lines
-from .thresholds import not_known
+from .summary_lines import SummaryLines, at_point, first_lines, proof_clause
+from .thresholds import unknown_clause
 
 LIST_TOO_SHORT = "they have more special points than the list holds; raise branch.special"
-"""Cause and remedy of branches not shown."""
-BESIDE_STRAIGHT = "stable cycles beside a stable straight rod"
-TWO_CYCLES = "stable cycles of two branches"
+"""Reason why branches are not shown, and remedy."""
+COEXISTENCE_WORDS = "stable cycles beside a stable straight rod"
+"""Words for a range in which a stable cycle and the stable straight rod coexist."""
+TWO_CYCLES_WORDS = "stable cycles of two branches"
+"""Words for a range in which stable cycles of two branches coexist."""
 SPECIAL_WORDS = {
     "fold": "fold",
     "torus": "torus point",
     "symmetry_breaking": "symmetry breaking",
     "period_doubling": "period doubling",
 }
-"""Words for special points at which a branch changes; Hopf points and ends have separate sentences."""
-ENDS = {
+"""Words for special points between the ends of a branch, by kind. Hopf points and ends have sentences of
+their own."""
+BRANCH_END_WORDS = {
     "left_the_model": "a cycle with h1 = 0",
     "range_end": "the end of the range",
     "crushed": "a force that almost crushes the rod",
@@ -36,7 +39,7 @@ ENDS = {
 
 
 def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the points in `done`, a mask of the points' shape."""
+    """Lines of the summary of branches. done: mask of the computed points, of the points' shape."""
     if done.size == 1:
         return SummaryLines(list(_one_rod(RodBranches(view))), [_searched(view, done)])
     v = view.variables
@@ -51,7 +54,7 @@ def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def _one_rod(rod: RodBranches) -> Iterator[str]:
-    """Yields lines about every branch of the single rod of a file, with the errors of its special points."""
+    """Yields lines about every branch of the only rod in a file, with the errors of its special points."""
     along = followed_parameter(rod.view)
     v = rod.view.variables
     if rod.hidden:
@@ -73,13 +76,15 @@ def _one_rod(rod: RodBranches) -> Iterator[str]:
         nowhere = "nowhere in the range" if rod.coexistence_is_decided else "not known"
         common = rod.coexistence
         words = f"{along} = {listed(common, rod.errors)}" if common else nowhere
-        yield f"{BESIDE_STRAIGHT}: {words}"
+        yield f"{COEXISTENCE_WORDS}: {words}"
         if pairs := rod.two_cycles:
-            yield f"{TWO_CYCLES}: {along} = {listed(pairs, rod.errors)}"
+            yield f"{TWO_CYCLES_WORDS}: {along} = {listed(pairs, rod.errors)}"
 
 
 def _extent(curve: StoredBranch, errors: Array, along: str) -> str:
-    """Number of cycles of a branch with their ranges; errors: relative, of the largest tip y, (cycles,)."""
+    """Number of cycles on a branch, and ranges of their parameter and largest y. errors: relative errors of
+    y, (cycles,).
+    """
     cycles = curve.cycles
     if not cycles.any():
         return "no cycle is stored"
@@ -104,7 +109,7 @@ def _special_of_branch(curve: StoredBranch, along: str) -> Iterator[str]:
 
 
 def _ends(curve: StoredBranch, along: str) -> str:
-    """Start and end of a branch, as text."""
+    """Clause on the start and the end of a branch."""
     first = curve.special[0]
     last = curve.special[-1]
     start = f"from the Hopf point at {along} = {to_error(first.at, first.error)}"
@@ -118,11 +123,11 @@ def _ends(curve: StoredBranch, along: str) -> str:
         return f"{start} to branch {last.meets} at {end}"
     if last.kind == "left_the_model":
         return f"{start} to a cycle with h1 = 0, {end}"
-    return f"{start} to {ENDS[last.reason]}, {along} = {rounded(last.at, last.error)}"
+    return f"{start} to {BRANCH_END_WORDS[last.reason]}, {along} = {rounded(last.at, last.error)}"
 
 
 def _sizes(view: View, done: np.ndarray) -> str:
-    """Clause on the period and the amplitude of all cycles of the points in `done`; may be empty."""
+    """Clause on the periods and amplitudes of all cycles at the points in the mask `done`; may be empty."""
     v = view.variables
     if not np.isfinite(v["period"][done]).any():
         return ""
@@ -131,8 +136,8 @@ def _sizes(view: View, done: np.ndarray) -> str:
 
 
 def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
-    """Yields lines about the special points of each kind, and about ends of branches."""
-    found: dict[str, list[tuple[float, float]]] = {word: [] for word in (*SPECIAL_WORDS, *ENDS)}
+    """Yields lines about the special points of each kind, and about the ends of branches, over all rods."""
+    found: dict[str, list[tuple[float, float]]] = {word: [] for word in (*SPECIAL_WORDS, *BRANCH_END_WORDS)}
     curves = [(rod, number, curve) for rod in rods for number, curve in enumerate(rod.curves, 1)]
     for _, number, curve in curves:
         for special in curve.special:
@@ -148,7 +153,7 @@ def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
             yield f"{counted(len(located), SPECIAL_WORDS[kind])}: {where}"
         else:
             verb = "leads" if len(located) == 1 else "lead"
-            yield f"{counted(len(located), 'branch')} {verb} to {ENDS[kind]}: {where}"
+            yield f"{counted(len(located), 'branch')} {verb} to {BRANCH_END_WORDS[kind]}: {where}"
     stopped = [
         f"{at_point(rod.view, rod.rod)}: branch {number}, at {along} = {rounded(end.at, end.error)}"
         for rod, number, curve in curves
@@ -158,37 +163,39 @@ def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
 
 
 def _coexistence(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
-    """Yields lines about rods with two stable states, some with parameters."""
+    """Yields lines about rods with two stable states, with the ranges of some of them."""
     complete = [rod for rod in rods if not rod.hidden]
     if len(complete) < len(rods):
         yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {LIST_TOO_SHORT}"
     if complete:
-        yield from _rods_with(complete, along, BESIDE_STRAIGHT, [rod.coexistence for rod in complete])
+        yield from _rods_with(complete, along, COEXISTENCE_WORDS, [rod.coexistence for rod in complete])
     two_cycles = [rod.two_cycles for rod in complete]
     if any(two_cycles):
-        yield from _rods_with(complete, along, TWO_CYCLES, two_cycles)
+        yield from _rods_with(complete, along, TWO_CYCLES_WORDS, two_cycles)
 
 
 def _rods_with(
     rods: Sequence[RodBranches], along: str, words: str, ranges: Sequence[list[Range]]
 ) -> Iterator[str]:
-    """Yields the number of rods with a property in ranges of the parameter, and the ranges of some rods."""
+    """Yields the number of rods that have `ranges`, and the ranges of the first few. words: property of the
+    rods in the ranges.
+    """
     unknown = sum(not (own or rod.coexistence_is_decided) for rod, own in zip(rods, ranges, strict=True))
     having = [
         ": ".join(filter(None, (at_point(rod.view, rod.rod), f"{along} = {listed(own, rod.errors)}")))
         for rod, own in zip(rods, ranges, strict=True)
         if own
     ]
-    yield f"{words} at {some_of(len(having), len(rods), 'rod')}{not_known(unknown)}"
+    yield f"{words} at {some_of(len(having), len(rods), 'rod')}{unknown_clause(unknown)}"
     yield from first_lines(having, "rod")
 
 
 def _searched(view: View, done: np.ndarray) -> str:
-    """Line on the followed range and the completeness of the branches."""
+    """Line on the followed range of the parameter, and on the completeness of the branches."""
     start, stop = ends_of(view)
     along = followed_parameter(view)
     proved = some_of(view.variables["certified"][done].sum(), done.sum(), "rod")
     return (
-        f"followed in {along} from {start:g} to {stop:g}; the list of Hopf points {completeness(view)} at "
+        f"followed in {along} from {start:g} to {stop:g}; the list of Hopf points {proof_clause(view)} at "
         f"{proved}; cycles that lie on no branch from a Hopf point are not found"
     )

@@ -1,4 +1,4 @@
-"""Hopf points in `rodsweep show`: criticality, coefficients of the normal form, and their errors."""
+"""Hopf points in `rodsweep show`: criticality, coefficients of the normal form, and errors."""
 
 from collections.abc import Iterator, Mapping
 
@@ -11,14 +11,14 @@ from ...wording import counted, some_of
 from .arm.arm import crossings_of_arm
 from .errors import errors_of
 from .ranges import number_and_error, rounded, span
-from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, region
-from .thresholds import ENDED_EARLY, not_known, not_known_beyond, not_stored
+from .summary_lines import SummaryLines, TextTable, in_brackets, proof_clause, region
+from .thresholds import ENDED_EARLY, unknown_beyond_clause, unknown_clause, unstored_clause
 
-SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
-"""Words for the criticality of a Hopf point."""
-NAMED_RODS = 8
-"""Largest number of rods with subcritical Hopf points that are listed."""
-NUMBERS = {
+CRITICALITY_WORDS = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
+"""Word for the criticality of a Hopf point, by sign of Re c."""
+MAX_LISTED_RODS = 8
+"""Largest number of rods with subcritical Hopf points that are listed one by one."""
+HOPF_NUMBERS = {
     "crossing_F": "F, k3/L^2",
     "crossing_frequency": f"frequency, {ANGULAR_UNIT}",
     "landau_real": "Re c, 1/(tau2 L^2)",
@@ -32,7 +32,7 @@ NUMBERS = {
 
 
 def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the points in `done`, a mask of the points' shape."""
+    """Lines of the summary of Hopf points. done: mask of the computed points, of the points' shape."""
     v = view.variables
     if done.size == 1:
         none = "its Hopf points are not known"
@@ -40,7 +40,7 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
             none = f"no Hopf point up to F = {span(v['F_end'])}"
         of_rod = view.of_point(0)
         lines = list(_hopf_lines(of_rod)) or [none]
-        lines[0] += not_known_beyond(view, float(of_rod["F_end"]))
+        lines[0] += unknown_beyond_clause(view, float(of_rod["F_end"]))
         trust = [_searched(view, done)]
         return SummaryLines(lines, trust, of_arm=crossings_of_arm(view), numbers=_hopf_table(of_rod))
     side = v["criticality"][done]
@@ -49,7 +49,9 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
     with_hopf = v["crossing_count"] > 0
     where = in_brackets(region(view, done & with_hopf)) if (done & with_hopf).any() else ""
     unknown = int(((v["crossing_count"] < 0) | (view.with_status(ENDED_EARLY) & ~with_hopf))[done].sum())
-    lines = [f"Hopf points at {some_of(with_hopf[done].sum(), done.sum(), 'rod')}{where}{not_known(unknown)}"]
+    lines = [
+        f"Hopf points at {some_of(with_hopf[done].sum(), done.sum(), 'rod')}{where}{unknown_clause(unknown)}"
+    ]
     if not known.any():
         return SummaryLines(lines, [_searched(view, done)])
     a, b = (
@@ -72,24 +74,26 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
-    """Yields a line about every Hopf point of the single rod of a file; v: its variables."""
+    """Yields a line about every Hopf point of the only rod in a file. v: its variables."""
     for i in np.flatnonzero(v["crossing_kind"] > 0):
         F = rounded(v["crossing_F"][i], v["crossing_error"][i])
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
         form = "its normal form is not known"
         if np.isfinite(v["landau_error"][i]):
-            form = f"{SIDES[int(v['criticality'][i])]}, {_words(v, int(i))}"
+            form = f"{CRITICALITY_WORDS[int(v['criticality'][i])]}, {_words(v, int(i))}"
         after = int(v["unstable_after"][i])
         modes = counted(after, "unstable mode") if after >= 0 else "number of unstable modes not known"
         yield f"{kind} at F = {F}: {form}; {modes} above"
 
 
 def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
-    """Table of the Hopf points of a single rod, a column for each; None without any. v: its variables."""
+    """Table of the Hopf points of the only rod in a file, one column each; None without a Hopf point. v: its
+    variables.
+    """
     at = np.flatnonzero(v["crossing_kind"] > 0)
     kinds = (CROSSING_KINDS[int(v["crossing_kind"][i])] for i in at)
     rows = []
-    for name, words in NUMBERS.items():
+    for name, words in HOPF_NUMBERS.items():
         numbers = zip(v[name][at].tolist(), errors_of(v, name)[at].tolist(), strict=True)
         rows.append((words, *(cell for number in numbers for cell in number_and_error(*number))))
     headings = ("", *(head for kind in kinds for head in (kind, "+-")))
@@ -97,7 +101,9 @@ def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
 
 
 def _words(v: Mapping[str, np.ndarray], i: int) -> str:
-    """Clause on the cycles at the i-th Hopf point of the single rod: their side and their stability."""
+    """Clause on the cycles near the i-th Hopf point of the only rod: at larger or smaller F, stable or
+    unstable. v: its variables.
+    """
     side = int(v["criticality"][i])
     if side == 0:
         return "the sign of Re c is within its error"
@@ -113,12 +119,14 @@ def _words(v: Mapping[str, np.ndarray], i: int) -> str:
 
 
 def _subcritical_lines(view: View) -> Iterator[str]:
-    """Yields lines about rods with subcritical Hopf points; rods whose first is subcritical come first."""
+    """Yields lines about rods with subcritical Hopf points, first rods whose first Hopf point is
+    subcritical.
+    """
     side = view.by_point("criticality")
     rods = np.flatnonzero((side == 1).any(axis=-1))
     rods = rods[np.argsort(side[rods, 0] != 1, kind="stable")]
     columns = view.point_columns
-    for rod in rods[:NAMED_RODS]:
+    for rod in rods[:MAX_LISTED_RODS]:
         name = ", ".join(f"{key} = {column[rod]:.6g}" for key, column in columns.items())
         places = np.flatnonzero(side[rod] == 1)
         names = ("crossing_F", "amplitude_coefficient", "amplitude_coefficient_error", "crossing_error")
@@ -128,29 +136,31 @@ def _subcritical_lines(view: View) -> Iterator[str]:
             for F, dF, i, x, dx in zip(forces, absolute, places, a, relative, strict=True)
         )
         yield f"subcritical for {name}: {each}"
-    if len(rods) > NAMED_RODS:
-        yield f"and subcritical for {counted(len(rods) - NAMED_RODS, 'rod')} more"
+    if len(rods) > MAX_LISTED_RODS:
+        yield f"and subcritical for {counted(len(rods) - MAX_LISTED_RODS, 'rod')} more"
 
 
 def _counts(side: np.ndarray) -> str:
-    """Number of Hopf points of each criticality, as text."""
-    counts = {word: int((side == value).sum()) for value, word in SIDES.items()}
+    """Numbers of supercritical, subcritical and undecided Hopf points, as text. side: sign of Re c, of any
+    shape.
+    """
+    counts = {word: int((side == value).sum()) for value, word in CRITICALITY_WORDS.items()}
     return ", ".join(f"{count} {word}" for word, count in counts.items() if count) or "none known"
 
 
 def _searched(view: View, done: np.ndarray) -> str:
-    """Line on the searched range and the completeness of the Hopf points."""
+    """Line on the searched range of F, and on the completeness of the Hopf points."""
     v = view.variables
     certified = int(v["certified"][done].sum())
     rods = int(done.sum())
     hidden = int(v["crossing_count"][done].clip(min=0).sum() - (v["crossing_kind"][done] > 0).sum())
     return (
-        f"searched up to F = {span(v['F_end'][done])}; the list of Hopf points {completeness(view)} at "
-        f"{some_of(certified, rods, 'rod')}{not_stored(hidden)}"
+        f"searched up to F = {span(v['F_end'][done])}; the list of Hopf points {proof_clause(view)} at "
+        f"{some_of(certified, rods, 'rod')}{unstored_clause(hidden)}"
     )
 
 
 def _worst(values: np.ndarray) -> str:
-    """Largest known value, as text."""
+    """Largest finite value, as text."""
     known = values[~np.isnan(values)]
     return f"{known.max():.1e}" if known.size else "not known"

@@ -1,4 +1,4 @@
-"""Curves of a diagram in `rodsweep show`: folds, ends and generalised Hopf points."""
+"""Curves of a phase diagram in `rodsweep show`: folds, ends, and generalised Hopf points."""
 
 import numpy as np
 
@@ -19,13 +19,15 @@ CURVE_END_WORDS = {
     "closed": "closed curve",
     "not_followed": "no further point found",
 }
-"""Words for the end of a curve of special points of cycles."""
-SIDES = ("start", "end")
-"""Suffixes of the variables with the reasons for the ends of a curve, at its first and its last point."""
+"""Words for the reason why a curve of folds or torus points of cycles ends."""
+END_SUFFIXES = ("start", "end")
+"""Suffixes of the variables that store why a curve ends, at its first and at its last point."""
 
 
 def curve_lines(view: View, line: str, row: str) -> list[str]:
-    """Lines about the curves; line: the parameter along the rows, row: the parameter across them."""
+    """Lines about all curves. line: parameter that varies along a row of the diagram. row: parameter that is
+    constant on a row.
+    """
     v = view.variables
     lines = fold_lines(view, line, row)
     if "curve_criticality" in v:
@@ -38,7 +40,7 @@ def curve_lines(view: View, line: str, row: str) -> list[str]:
 
 
 def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
-    """Lines about curves of folds and torus points of cycles, with their ends."""
+    """Lines about the curves of folds and torus points of cycles, and the reasons why they end."""
     v = view.variables
     lines = []
     for number in np.unique(v["cycle_curve_number"]):
@@ -48,7 +50,7 @@ def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
             f"{row} = {v[f'cycle_curve_{row}'][i]:.9g}, {line} = "
             f"{to_error(v[f'cycle_curve_{line}'][i], v['cycle_curve_error'][i])} "
             f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(v[f'cycle_curve_{side}'][i])]]})"
-            for side, i in zip(SIDES, on[[0, -1]], strict=True)
+            for side, i in zip(END_SUFFIXES, on[[0, -1]], strict=True)
         )
         what = "folds" if kind == "fold" else "torus points"
         error = error_text(float(v["cycle_curve_error"][on].max()))
@@ -58,7 +60,7 @@ def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
 
 
 def agreement_lines(view: View, line: str) -> list[str]:
-    """Lines about the agreement of curves with the crossings on rows."""
+    """Lines about how closely the curves agree with the crossings located on rows."""
     v = view.variables
     hopf = len(np.unique(v["curve_number"][v["curve_kind"] == 1]))
     double = len(np.unique(v["curve_number"])) - hopf
@@ -79,7 +81,7 @@ def agreement_lines(view: View, line: str) -> list[str]:
 
 
 def cut_lines(view: View, line: str, row: str) -> list[str]:
-    """Lines about boundary curves that end inside the diagram, although their rods are not crushed there."""
+    """Lines about boundary curves that end inside the diagram at rods that are not crushed."""
     v = view.variables
     lines = []
     for why in ("not_followed", "list_full"):
@@ -93,12 +95,12 @@ def cut_lines(view: View, line: str, row: str) -> list[str]:
 
 
 def _on_none(count: int) -> str:
-    """Clause on the number of points of rows that lie on no curve."""
+    """Clause on the number of crossings on rows that lie on no curve."""
     return f"{count} lies on none" if count == 1 else f"{count} lie on none"
 
 
 def fold_lines(view: View, line: str, row: str) -> list[str]:
-    """Lines about folds of curves, and about the fold in the limit of the partial beam."""
+    """Lines about folds of curves, and about the fold for the partial beam of the paper's Sec. VIII."""
     v = view.variables
     lines = []
     for i, (kind, of) in enumerate(zip(v["fold_kind"], v["fold_of"], strict=True)):
@@ -114,7 +116,9 @@ def fold_lines(view: View, line: str, row: str) -> list[str]:
 
 
 def _place(view: View, what: str, i: int, names: tuple[str, str]) -> str:
-    """Position of the i-th fold or generalised Hopf point, with its errors."""
+    """Position of the i-th fold or generalised Hopf point as text, with its errors. what: prefix of the
+    variables.
+    """
     v = view.variables
     return ", ".join(
         f"{name} = {to_error(v[f'{what}_{name}'][i], v[f'{what}_{name}_error'][i])}" for name in names
@@ -122,7 +126,7 @@ def _place(view: View, what: str, i: int, names: tuple[str, str]) -> str:
 
 
 def criticality_lines(view: View) -> list[str]:
-    """Line about the criticality of the points of Hopf curves."""
+    """Line about the numbers of supercritical and subcritical points on the Hopf curves."""
     v = view.variables
     side = v["curve_criticality"][v["curve_kind"] == 1]
     kinds = {
@@ -153,14 +157,14 @@ def bautin_lines(view: View, line: str, row: str) -> list[str]:
 
 
 def bautin_curve_lines(view: View) -> list[str]:
-    """Lines about curves of generalised Hopf points over a third parameter, with reasons for their ends."""
+    """Lines about curves of generalised Hopf points over a third parameter, and the reasons why they end."""
     v = view.variables
     lines = []
     names = [name for name in LINEAR_PARAMETERS if f"bautin_along_{name}" in v]
     for number in np.unique(v["bautin_along_curve"]):
         on = v["bautin_along_curve"] == number
         where = ", ".join(f"{name} = {span(v[f'bautin_along_{name}'][on])}" for name in names)
-        ends = [BAUTIN_ENDS[int(v[f"bautin_along_{side}"][on].max())] for side in SIDES]
+        ends = [BAUTIN_ENDS[int(v[f"bautin_along_{side}"][on].max())] for side in END_SUFFIXES]
         lines.append(
             f"curve {int(number)} of generalised Hopf points: {counted(int(on.sum()), 'point')}, {where}; "
             f"ends: {ends[0]} and {ends[1]}"

@@ -1,4 +1,4 @@
-"""Absolute errors of variables, which limit the number of digits in a summary."""
+"""Absolute errors of the variables in a result file, which limit the digits in a summary."""
 
 from collections.abc import Mapping
 
@@ -7,7 +7,8 @@ import numpy as np
 from .ranges import span
 
 EIGENVALUE_ERROR = 1e-9
-"""Relative error of the eigenvalue of the straight rod in results of limit cycles: its solver's tolerance."""
+"""Relative error of the straight rod's eigenvalue in results of limit cycles: the tolerance of the eigenvalue
+solver."""
 RELATIVE_ERRORS = {
     "period": "period_error",
     "frequency": "period_error",
@@ -22,7 +23,7 @@ RELATIVE_ERRORS = {
     "transient_growth": "growth_error",
     "longitudinal_rate": "longitudinal_error",
 }
-"""Variables with a stored relative error, and the name of the error."""
+"""Name of the variable with the relative error, by name of the variable."""
 ABSOLUTE_ERRORS = {
     "growth_rate": "error_estimate",
     "frequency": "error_estimate",
@@ -33,39 +34,45 @@ ABSOLUTE_ERRORS = {
     "crossing_at": "crossing_error",
     "crossing_frequency": "crossing_frequency_error",
 }
-"""Variables with a stored absolute error, and its name; for `frequency` only in files without a period."""
-COMPLEX = ("landau", "growth_slope")
-"""Complex variables, stored as two parts, with a stored error relative to the modulus."""
-EXTREMA = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretch")
-"""Variables of a cycle whose error is stored in units of tip_y_max."""
-BETWEEN_NODES = 1e-3
-"""Largest dip of h1 between nodes below the value at nodes, in units of the distance from 1."""
-POWERS = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
-"""Powers; the error of a power follows from the errors of amplitude, period and energy balance."""
-MIN_KNOWN = 0.5
-"""Relative error of a time from which on no digit is known."""
+"""Name of the variable with the absolute error, by name of the variable. `frequency` has this error only in
+files without a period."""
+COMPLEX_VARIABLES = ("landau", "growth_slope")
+"""Complex variables, stored as real and imaginary part, with an error relative to the modulus."""
+EXTREMA_VARIABLES = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretch")
+"""Variables of a cycle whose stored error is in units of tip_y_max."""
+MAX_DIP_BETWEEN_NODES = 1e-3
+"""Bound on how far h1 between nodes lies below its least nodal value, as a fraction of |1 - h1|."""
+CYCLE_POWER_VARIABLES = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
+"""Mean powers and rms fluctuations, whose errors follow from the errors of amplitude, period and energy
+balance."""
+UNKNOWN_FROM_ERROR = 0.5
+"""Relative error from which on the time of the largest transient growth counts as unknown."""
 STRAIGHT_EIGENVALUE = ("linear_growth_rate", "linear_frequency")
-"""Variables with the eigenvalue of the straight rod."""
+"""Variables with the eigenvalue of the straight rod in results of limit cycles."""
 
 
 def errors_of(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """Absolute errors of a variable of a file, of its shape; 0 if all digits are known."""
+    """Absolute errors of the variable `name`, of its shape; 0 if all digits are correct. v: variables of the
+    file.
+    """
     whole, _, part = name.rpartition("_")
     with np.errstate(invalid="ignore"):  # an infinite value times the error 0
-        if whole in COMPLEX and part != "error" and f"{whole}_error" in v:
+        if whole in COMPLEX_VARIABLES and part != "error" and f"{whole}_error" in v:
             return np.hypot(v[f"{whole}_real"], v[f"{whole}_imag"]) * v[f"{whole}_error"]
         return _errors(v, name)
 
 
 def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """Absolute errors of a variable, in its shape; numpy warns if a value is infinite."""
+    """Absolute errors of the variable `name`, of its shape, unless it is a part of a complex variable. NumPy
+    warns of infinite values.
+    """
     values = np.abs(v[name])
     if name in STRAIGHT_EIGENVALUE:
         return EIGENVALUE_ERROR * np.hypot(*(v[part] for part in STRAIGHT_EIGENVALUE))
-    if name in POWERS and "amplitude_error" in v:
+    if name in CYCLE_POWER_VARIABLES and "amplitude_error" in v:
         return values * power_error(v, fluctuation=name.endswith("rms"))
-    if name in EXTREMA and "extrema_error" in v:
-        beside = BETWEEN_NODES * np.abs(1 - v[name]) if name == "least_stretch" else 0.0
+    if name in EXTREMA_VARIABLES and "extrema_error" in v:
+        beside = MAX_DIP_BETWEEN_NODES * np.abs(1 - v[name]) if name == "least_stretch" else 0.0
         return v["extrema_error"] * v["tip_y_max"] + beside
     if name == "transient_time" and "growth_error" in v:
         # The growth is quadratic near its maximum, and is 1 at t = 0.
@@ -77,27 +84,30 @@ def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 
 
 def power_error(v: Mapping[str, np.ndarray], fluctuation: bool = False) -> np.ndarray:
-    """Relative error of the mean power of cycles, or of the rms of its fluctuation, in the arrays' shape.
+    """Relative error of the mean power of cycles, or of the rms of its fluctuation. v: variables of the file,
+    of equal shapes.
 
-    The mean power grows with the squared amplitude.
+    The mean power is proportional to the squared amplitude.
     """
     mean = 2 * v["amplitude_error"] + v["period_error"] + np.abs(v["energy_imbalance"])
     return mean + 2 * v["extrema_error"] if fluctuation else mean
 
 
 def is_known(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """Mask of the known values of a variable, in its shape.
+    """Mask of the known values of the variable `name`, of its shape. v: variables of the file.
 
-    Only the time of the largest transient growth may be unknown: its error is large where the growth barely
+    Only the time of the largest transient growth can be unknown: its error is large if the growth hardly
     exceeds 1.
     """
     values = np.asarray(v[name])
     if name != "transient_time" or "growth_error" not in v:
         return np.ones(values.shape, bool)
-    return (values == 0) | ~(errors_of(v, name) >= MIN_KNOWN * values)
+    return (values == 0) | ~(errors_of(v, name) >= UNKNOWN_FROM_ERROR * values)
 
 
 def span_of(v: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -> str:
-    """Range of the known values of a variable over points, a mask of their shape."""
+    """Range of the known values of the variable `name` over the points in `mask`, as text with the digits
+    that the errors allow.
+    """
     chosen = mask & is_known(v, name) if name == "transient_time" else mask
     return span(v[name][chosen], errors_of(v, name)[chosen])

@@ -1,4 +1,4 @@
-"""Limit cycles in `rodsweep show`: where the rod beats, the cycles, and their reliability."""
+"""Limit cycles in `rodsweep show`: which rods beat, numbers of their cycles, and reliability."""
 
 from collections.abc import Callable, Mapping
 
@@ -14,21 +14,21 @@ from .arm.arm import region_of_arms
 from .errors import errors_of, span_of
 from .ranges import error_text, number_and_error, span
 from .stability import stability_lines
-from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, region, varied
+from .summary_lines import SummaryLines, TextTable, in_brackets, proof_clause, region, varied
 
-OUTCOMES = {"cycle": "beats", "straight": "stays straight"}
-"""Words for outcomes; unlisted statuses are words already."""
+OUTCOME_WORDS = {"cycle": "beats", "straight": "stays straight"}
+"""Words for the outcome at a point, by status; an unlisted status is a word itself."""
 CYCLE_NUMBERS = (
     ("period", "period", "tau2"),
     ("frequency", "frequency", ANGULAR_UNIT),
     ("largest y of the tip", "tip_y_max", "L"),
     ("largest Floquet multiplier", "multiplier", ""),
 )
-"""(words, variable, unit) of the numbers of a single cycle."""
+"""(words, variable, unit) of the numbers printed for a single cycle."""
 
 
 def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the points in `done`, a mask of the points' shape."""
+    """Lines of the summary of limit cycles. done: mask of the computed points, of the points' shape."""
     v = view.variables
     beats = done & view.with_status("cycle")
     orbit = done & view.with_status(*CYCLE_WORDS)
@@ -55,25 +55,30 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarray], str]) -> str:
-    """Line on the number of points with each outcome, and on their regions.
+    """Line on the number of points with each outcome, and on the region in which they lie.
 
-    done: a mask of the points' shape. region: function that describes the points of a mask.
+    done: mask of the computed points, of the points' shape. region: function that describes the points of a
+    mask.
     """
     status = view.variables["status"]
     whole = counted(int(done.sum()), "point")
     masks = {word: done & (status == value) for value, word in view.flags.items() if value >= 0}
-    found = {OUTCOMES.get(word, word.replace("_", " ")): mask for word, mask in masks.items() if mask.any()}
+    found = {
+        OUTCOME_WORDS.get(word, word.replace("_", " ")): mask for word, mask in masks.items() if mask.any()
+    }
     if len(found) == 1:
         word = next(iter(found))
         if done.size > 1:
             return f"{word} at all {whole}" if done.sum() > 1 else f"{word} at the one point that is solved"
-        return f"the rod {word}" if word in OUTCOMES.values() else word
+        return f"the rod {word}" if word in OUTCOME_WORDS.values() else word
     counts = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in found.items())
     return f"of {whole}: {', '.join(counts)}"
 
 
 def _stability(view: View) -> tuple[list[str], list[str]]:
-    """(changes of the straight rod along F, the same in an arm's units), or along another axis without F."""
+    """(lines about changes of stability of the straight rod along F, the same in an arm's units); along
+    another parameter if F is no axis.
+    """
     names = [name for name in LINEAR_PARAMETERS if name in varied(view)]
     lines = list[str]()
     of_arm = list[str]()
@@ -85,17 +90,19 @@ def _stability(view: View) -> tuple[list[str], list[str]]:
 
 
 def _proof_lines(view: View) -> list[str]:
-    """Line on the completeness of the Hopf points; empty if no line was searched."""
+    """Line on whether the list of Hopf points is proved complete; an empty list if no line of points was
+    searched.
+    """
     v = view.variables
     lines = int(v["hopf_lines"]) if "hopf_lines" in v else 0
     if not lines:
         return []
     proved = some_of(int(v["hopf_lines_proved"]), lines, "line")
-    return [f"the list of Hopf points between the points {completeness(view)} on {proved}"]
+    return [f"the list of Hopf points between the points {proof_clause(view)} on {proved}"]
 
 
 def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:
-    """Line on the stability of the single cycle of a file; v: the variables of the file, of any shape."""
+    """Line on the stability of the only cycle in a file. v: variables of the file."""
     if np.isnan(v["multiplier"]).all():
         return "the motion in time settles on the cycle; no Floquet multiplier is computed"
     if stable:
@@ -104,7 +111,7 @@ def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:
 
 
 def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
-    """Table of the single cycle of a file, with errors; v: the variables of the file, of any shape."""
+    """Table of the numbers of the only cycle in a file, with errors. v: variables of the file."""
     rows = []
     for words, name, unit in CYCLE_NUMBERS:
         value = float(np.nanmax(v[name], initial=-np.inf))
@@ -114,7 +121,9 @@ def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
 
 
 def _second_state_lines(v: Mapping[str, np.ndarray], done: np.ndarray) -> list[str]:
-    """Lines about the points in `done` with a second stable state, certain or possible."""
+    """Lines about computed points with a second stable state, certain or possible. v: variables of the file.
+    done: mask.
+    """
     numbers = {word: number for number, word in SECOND_STATES}
     lines = []
     straight, cycle = (done & (v["second_state"] == numbers[word]) for word in ("straight", "cycle_possible"))
@@ -130,12 +139,16 @@ def _second_state_lines(v: Mapping[str, np.ndarray], done: np.ndarray) -> list[s
 
 
 def _at(some: np.ndarray, done: np.ndarray) -> str:
-    """Clause on the number of chosen points among the points in `done`, masks of equal shape, or empty."""
+    """Clause on how many of the points in the mask `done` are in the mask `some`; empty if there is a single
+    point.
+    """
     return "" if done.sum() == 1 else f" at {some_of(some.sum(), done.sum(), 'point')}"
 
 
 def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
-    """Lines about further properties of the cycles."""
+    """Lines about further properties of the cycles. v: variables of the file. beats: mask of the points with
+    a cycle.
+    """
     ratio = v["frequency"][beats] / v["linear_frequency"][beats]
     times = span(ratio, ratio * v["period_error"][beats])
     tips = (
@@ -158,7 +171,9 @@ def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
 
 
 def _error_line(v: Mapping[str, np.ndarray], beats: np.ndarray) -> str:
-    """Line on the largest errors of the cycles."""
+    """Line on the largest errors of the cycles. v: variables of the file. beats: mask of the points with a
+    cycle.
+    """
     names = {
         "period": "period_error",
         "amplitude": "amplitude_error",

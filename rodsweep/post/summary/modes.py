@@ -1,4 +1,4 @@
-"""Modes in `rodsweep show`: stability, non-normality and accuracy."""
+"""Modes of the straight rod in `rodsweep show`: stability, non-normality, and accuracy."""
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from .summary_lines import SummaryLines
 
 
 def modes_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the points in `done`, a mask of the points' shape."""
+    """Lines of the summary of modes. done: mask of the computed points, of the points' shape."""
     unknowns = unknowns_lines(view, done)
     if done.size == 1:
         answer = [count_line(view)]
@@ -42,7 +42,9 @@ def modes_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def growth_lines(view: View, done: np.ndarray) -> list[str]:
-    """Lines about non-normality of the modes and transient growth of small motions; done: (points,)."""
+    """Lines about the non-normality of the modes, and the transient growth of small disturbances. done: mask
+    of the computed points, of the points' shape.
+    """
     v = view.variables
     condition = v["condition"][done][:, 0]
     error = errors_of(v, "condition")[done][:, 0]

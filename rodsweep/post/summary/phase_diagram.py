@@ -1,4 +1,4 @@
-"""Phase diagrams in `rodsweep show`: shares of the classes in the plane, and changes on the rows."""
+"""Phase diagrams in `rodsweep show`: fraction of the plane in each class, and changes along the rows."""
 
 import numpy as np
 
@@ -16,21 +16,21 @@ from .ranges import span
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
 
-STATES_NAMED = {"straight rod and cycle both stable": "both", "stable states undecided": "undecided"}
-"""Stable states for which `show` lists places, by the words of `show`."""
-CHANGES_OF_CYCLES = {
+LISTED_STATES = {"straight rod and cycle both stable": "both", "stable states undecided": "undecided"}
+"""Values of `stable_states` whose regions are listed, by the words in the summary."""
+CYCLE_CHANGE_WORDS = {
     "fold": "folds of cycles",
     "torus": "torus points of cycles",
     "symmetry_breaking": "cycles lose their symmetry",
     "left_the_model": "cycles leave the model (h1 = 0)",
 }
-"""Words for special points of rows, by kind."""
+"""Words for the special points of cycles on rows, by kind."""
 GRID_RESOLUTION = 1e-8
-"""Resolution of a boundary, in units of the parameter, of the uniform grid that is compared."""
+"""Spacing, in units of the parameter, of the uniform grid with which the cost of the rows is compared."""
 
 
 def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the rows in `done`, a mask of the rows' shape."""
+    """Lines of the summary of a phase diagram. done: mask of the computed rows, of the rows' shape."""
     v = view.variables
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next(name for name in view.parameters if len(view.axes[name]) > 1)
@@ -48,15 +48,15 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def count_lines(found: np.ndarray) -> list[str]:
-    """Line on the number of grid points of each class; found: classes of the points, of any shape."""
+    """Line on the number of grid points in each class. found: class of each point, of any shape."""
     counts = [f"{int((found == value).sum())} {word}" for value, word in CLASSES if (found == value).any()]
     return [f"of {counted(found.size, 'place')} on the rows: {', '.join(counts)}"]
 
 
 def saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
-    """Line on the cost of the rows compared with a uniform grid; empty if the cost was not recorded.
+    """Line on the cost of the rows compared with a uniform grid; an empty list if the cost is not stored.
 
-    done: a mask of the rows' shape.
+    done: mask of the computed rows, of the rows' shape. line: parameter that varies along a row.
     """
     if not has_covering(view.config):
         return []
@@ -73,7 +73,9 @@ def saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
 
 
 def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
-    """Lines about the share of each stable state, and changes of cycles; done: a mask of the rows' shape."""
+    """Lines about the fraction of the plane with each stable state, and changes of cycles. done: mask of the
+    computed rows, of the rows' shape.
+    """
     v = view.variables
     of_row = view.point_columns[row].reshape(done.shape)
     states = v["stable_states"]
@@ -83,10 +85,10 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     parts = ", ".join(f"{share:.1f} % {word.replace('_', ' ')}" for share, word in shares if share)
     lines = [f"stable states, of the grid: {parts}"]
     found_on = {}
-    for words, state in STATES_NAMED.items():
+    for words, state in LISTED_STATES.items():
         there = (states == number_of(state, STABLE_STATES)) & done[..., np.newaxis]
         found_on[words] = there.any(axis=-1), np.broadcast_to(v[line], there.shape)[there]
-    for kind, words in CHANGES_OF_CYCLES.items():
+    for kind, words in CYCLE_CHANGE_WORDS.items():
         of_kind = (kinds == SPECIAL_KINDS.index(kind)) & done[..., np.newaxis]
         found_on[words] = of_kind.any(axis=-1), at[of_kind]
     for words, (rows, where) in found_on.items():
@@ -99,13 +101,15 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
 
 
 def share_lines(found: np.ndarray) -> list[str]:
-    """Line on the share of the grid of each class; found: classes of the points, of any shape."""
+    """Line on the fraction of the grid points in each class. found: class of each point, of any shape."""
     shares = ((100 * float((found == value).mean()), word) for value, word in CLASSES)
     return [f"of the grid: {', '.join(f'{share:.1f} % {word}' for share, word in shares if share)}"]
 
 
 def start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
-    """Line on the classes at the start of the rows, unless all are monotone; done: a mask, (rows,)."""
+    """Line on the classes at the starts of the rows; an empty list if all are monotone. done: mask of the
+    computed rows, of the rows' shape.
+    """
     start = view.variables["class"][done][:, 0]
     words = [f"{word} on {int((start == n).sum())}" for n, word in CLASSES if (start == n).any()]
     if words == [f"monotone on {len(start)}"]:
@@ -115,7 +119,7 @@ def start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
 
 
 def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
-    """Lines about the changes on the rows in `done`, a mask of the rows' shape."""
+    """Lines about the changes of the straight rod along the rows in the mask `done`."""
     v = view.variables
     of_row = view.point_columns[row].reshape(done.shape)
     lines = start_lines(view, done, line)
@@ -151,7 +155,9 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
 
 
 def crossings_of_arms(view: View, done: np.ndarray) -> list[str]:
-    """Lines about the changes along F on rows, in the units of an arm; done: a mask of the rows' shape."""
+    """Lines about the changes of the straight arm along F, in the arm's units. done: mask of the computed
+    rows, of the rows' shape.
+    """
     if not view.quantities or "F" in view.parameters:
         return []
     v = view.variables

@@ -1,7 +1,7 @@
-"""Numbers with errors, and ranges of numbers, as written by `rodsweep show`.
+"""Text of numbers with errors, and of ranges of numbers, in summaries.
 
-The error beside a number includes the rounding of the number: the true value lies within the error. In a
-range, without errors, the error is at most half a unit of the last digit.
+A printed error includes the rounding of its number: the true value lies within the error. The ends of a
+range, which have no printed errors, are exact to half a unit of the last digit.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,25 +10,28 @@ from math import ceil, floor, inf, isfinite, isnan, log10
 import numpy as np
 
 MAX_DIGITS = 15
-"""Largest number of digits of a number, however small the error."""
+"""Largest number of significant digits of a number, however small its error."""
 RANGE_DIGITS = 6
-"""Largest number of digits of the ends of a range; larger errors leave fewer."""
+"""Largest number of significant digits of an end of a range; larger errors leave fewer."""
 END_DIGITS = 9
-"""Largest number of digits of the end of a range that is a single number, such as a fold."""
+"""Largest number of significant digits of an end of a range that is a single located value, such
+as a fold."""
 PLAIN_EXPONENTS = range(-4, MAX_DIGITS)
-"""Decimal exponents of numbers written without an exponent."""
+"""Decimal exponents of numbers that are written without an exponent."""
 ROUNDING_EXCESS = 1e-9
-"""Relative excess of an error over a digit that is rounding, and does not raise the digit."""
+"""Relative amount by which rounding may lift an error above a digit without raising the digit."""
 MIN_ERROR = 1e-300
-"""Smallest error rounded up to a digit; for smaller errors the unit of the digit would underflow."""
+"""Smallest error that is rounded up to one digit. For a smaller error the unit of the digit would
+underflow."""
 NONE = "none"
-"""Text for a missing number or range."""
+"""Text for a missing number or an empty range."""
 
 
 def span(values: np.ndarray, errors: np.ndarray | None = None, most: int = RANGE_DIGITS) -> str:
-    """Range of the finite values, of any shape, as text; NONE without a finite value.
+    """Range of the finite `values`, of any shape, as text; NONE if no value is finite.
 
-    errors: absolute errors, of the shape of the values, which limit the number of digits, at most `most`.
+    errors: absolute errors, of the shape of the values. They limit the number of digits, which is at most
+    `most`.
     """
     values = np.asarray(values, dtype=float)
     is_finite = np.isfinite(values)
@@ -43,15 +46,18 @@ def span(values: np.ndarray, errors: np.ndarray | None = None, most: int = RANGE
 
 
 def listed(ranges: Sequence[tuple[float, float]], errors: Mapping[float, float]) -> str:
-    """Ranges of a parameter as text, or NONE. errors: absolute errors of ends that are not exact."""
+    """Ranges of a parameter as text; NONE for an empty list. errors: absolute error of each end that is not
+    exact, by end.
+    """
     ends = [[_rounded(end, 2 * errors.get(end, 0.0), END_DIGITS) for end in ends] for ends in ranges]
     return ", ".join(" to ".join(pair) for pair in ends) or NONE
 
 
 def to_error(value: float, error: float) -> str:
-    """A number to the first digit reached by the absolute error, with the error.
+    """A number with its absolute error as text. The last digit of the number is the first digit that the
+    error reaches.
 
-    The number has six digits if the error is unknown. NaN becomes NONE, and 0 is written without error.
+    If the error is unknown, the number has six digits. NaN gives NONE, and 0 has no error.
     """
     value = float(value)
     error = float(error)
@@ -66,9 +72,10 @@ def to_error(value: float, error: float) -> str:
 
 
 def number_and_error(value: float, error: float) -> tuple[str, str]:
-    """(number to the first digit reached by the error, error with one digit), for the cells of a table.
+    """(number, error with one digit) as text. The last digit of the number is the first digit that the error
+    reaches.
 
-    The error is empty if it is not known, and then the number has six digits. 0 and inf have no error.
+    If the error is unknown, its text is empty and the number has six digits. 0 and inf have no error.
     """
     if value == 0 or not isfinite(value):
         return f"{value + 0.0:g}", ""
@@ -85,13 +92,15 @@ def number_and_error(value: float, error: float) -> tuple[str, str]:
 
 
 def stated_error(value: float, error: float) -> tuple[str, float]:
-    """(number to the first digit reached by the error, error including the rounding of the number)."""
+    """(number as text, error). The error includes the rounding of the number to the first digit that `error`
+    reaches.
+    """
     text = _rounded(value, error / 10, MAX_DIGITS)
     return text, error + abs(float(text) - value)
 
 
 def error_text(error: float) -> str:
-    """An error with one digit, rounded up; inf and nan as they are."""
+    """An error as text with one significant digit, rounded up; inf and nan stay as they are."""
     if not MIN_ERROR < error < inf:
         return f"{error:.0e}"
     unit = 10.0 ** floor(log10(error))
@@ -99,12 +108,16 @@ def error_text(error: float) -> str:
 
 
 def rounded(value: float, error: float, most: int = RANGE_DIGITS) -> str:
-    """A number with at most `most` digits, and an error of at most half a unit of the last digit."""
+    """A number as text with at most `most` significant digits, so that its error is at most half a unit of
+    the last digit.
+    """
     return _rounded(float(value), 2 * float(error), most) if isfinite(value) else NONE
 
 
 def _rounded(value: float, error: float, most: int) -> str:
-    """A finite number with digits larger than the error: at least one digit, at most `most`."""
+    """A finite number as text, with as many significant digits as its error allows: at least one, at most
+    `most`.
+    """
     if value == 0:
         return "0"
     size = floor(log10(abs(value)))

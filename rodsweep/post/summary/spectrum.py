@@ -1,4 +1,4 @@
-"""Spectra in `rodsweep show`: stability, accuracy and cost."""
+"""Spectra of the straight rod in `rodsweep show`: stability, accuracy, and cost."""
 
 import numpy as np
 
@@ -11,20 +11,21 @@ from .ranges import number_and_error, span
 from .stability import stability_lines
 from .summary_lines import SummaryLines, TextTable, in_brackets, region
 
-HOW_FOUND = (
+LOCATION_EXPLANATION = (
     "located where the leading eigenvalue changes between two forces of the file: F** by a zero of the "
     "characteristic determinant D(i eta; F), F* by a double zero of D; `task: thresholds` proves that none "
     "is missing"
 )
-"""Explanation of the forces in `threshold_lines`."""
+"""Explanation of how the forces in `threshold_lines` are located."""
 NOT_LOCATED = "not located between the forces of the file; `task: thresholds` finds them"
-"""Explanation of the intervals of force for arms that are not uniform or not of linear material."""
-PROOFS = {True: "proved by a winding number", False: "not proved"}
-"""Words for the proof of the number of unstable modes at a single point."""
+"""Explanation of intervals of force in place of located forces, for arms that are not uniform or not of
+linear material."""
+PROOF_WORDS = {True: "proved by a winding number", False: "not proved"}
+"""Words on whether the number of unstable modes is proved, for a file with one point."""
 
 
 def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the points in `done`, a mask of the points' shape."""
+    """Lines of the summary of spectra. done: mask of the computed points, of the points' shape."""
     if done.size == 1:
         return SummaryLines([count_line(view)], [], unknowns_lines(view, done), [], eigenvalue_table(view))
     lines, how, of_arm = threshold_lines(view)
@@ -34,7 +35,7 @@ def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def stable_line(view: View, done: np.ndarray) -> str:
-    """Line on the stability of the straight rod at the points in `done`, a mask of the points' shape."""
+    """Line on how many straight rods are stable. done: mask of the computed points, of the points' shape."""
     unstable = view.variables["unstable_count"]
     masks = {"stable": unstable == 0, "unstable": unstable > 0, "not known": unstable < 0}
     found = {word: done & mask for word, mask in masks.items() if (done & mask).any()}
@@ -46,7 +47,7 @@ def stable_line(view: View, done: np.ndarray) -> str:
 
 
 def leading_line(view: View, done: np.ndarray) -> str:
-    """Line on the leading eigenvalue at the points in `done`, a mask of the points' shape."""
+    """Line on the leading eigenvalues. done: mask of the computed points, of the points' shape."""
     v = view.variables
     rate, frequency = (
         span(v[name][done][:, 0], v["error_estimate"][done][:, 0]) for name in ("growth_rate", "frequency")
@@ -55,14 +56,16 @@ def leading_line(view: View, done: np.ndarray) -> str:
 
 
 def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
-    """(lines about changes along F, line on their computation, lines on an arm); empty if F is no axis."""
+    """(lines about changes of stability along F, line on how they are located, lines in an arm's units);
+    empty lists if F is no axis.
+    """
     lines, of_arm = stability_lines(view, "F", StoredChanges(view, "F").on)
-    how = HOW_FOUND if has_covering(view.config) else NOT_LOCATED
+    how = LOCATION_EXPLANATION if has_covering(view.config) else NOT_LOCATED
     return lines, [f"thresholds: {how}"] if lines else [], of_arm
 
 
 def eigenvalue_table(view: View) -> TextTable | None:
-    """Table of the eigenvalues of the single point of a file, with errors; None without an eigenvalue."""
+    """Table of the eigenvalues at the only point of a file, with errors; None without an eigenvalue."""
     columns = (view.variables[name].ravel() for name in ("growth_rate", "frequency", "error_estimate"))
     rows = [
         (str(number), *number_and_error(growth, error), *number_and_error(frequency, error))
@@ -74,17 +77,17 @@ def eigenvalue_table(view: View) -> TextTable | None:
 
 
 def count_line(view: View) -> str:
-    """Line on the number of unstable modes of the single point of a file."""
+    """Line on the number of unstable modes at the only point of a file."""
     v = view.variables
     unstable = int(v["unstable_count"].max())
-    proof = PROOFS[bool(v["certified"].all())]
+    proof = PROOF_WORDS[bool(v["certified"].all())]
     if v["certified"].all() and estimates_counts(view.config):
         proof = "proved by D or counted by its winding number, estimated in part"
     return f"unstable modes: {unstable}, {proof}" if unstable >= 0 else "unstable modes: not known"
 
 
 def error_lines(view: View, done: np.ndarray) -> list[str]:
-    """Line on the errors of the eigenvalues; done: a mask of the points' shape."""
+    """Line on the errors of the eigenvalues. done: mask of the computed points, of the points' shape."""
     v = view.variables
     size = np.hypot(v["growth_rate"][done], v["frequency"][done])
     relative = v["error_estimate"][done] / size
@@ -94,7 +97,7 @@ def error_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
-    """Line on the unknowns of the mesh at the points in `done`, a mask of the points' shape."""
+    """Line on the number of unknowns of the mesh. done: mask of the computed points, of the points' shape."""
     v = view.variables
     unknowns = 3 * v["elements"][done].astype(int) * v["order"][done]
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
@@ -104,7 +107,7 @@ def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def stability_line(view: View, done: np.ndarray) -> str:
-    """Line on the number of unstable modes and its proof; done: a mask of the points' shape."""
+    """Line on how often the number of unstable modes is proved. done: mask of the points' shape."""
     unstable = view.variables["unstable_count"][done]
     points = int(done.sum())
     certified = int(view.variables["certified"][done].sum())

@@ -1,4 +1,4 @@
-"""Stability of the straight rod along a parameter in `rodsweep show`: its thresholds."""
+"""Thresholds of stability of the straight rod along a parameter, in `rodsweep show`."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -11,30 +11,32 @@ from ..hopf_points import BracketedChange, LocatedChange
 from .arm.arm import thresholds_of_arm
 from .ranges import error_text, stated_error
 
-FEW_LINES = 3
-"""Largest number of lines with individually listed thresholds."""
-OVER_FORCE = {
+MAX_LISTED_LINES = 3
+"""Largest number of lines of points whose thresholds are listed one by one; of more lines the
+range is given."""
+FORCE_THRESHOLD_WORDS = {
     "onset": "F* (straight rod starts to oscillate)",
     "hopf": "F** (straight rod starts to beat)",
     "restabilization": "restabilization (straight rod is stable again)",
 }
 """Words for a threshold along F, by kind."""
-OVER_OTHERS = {
+OTHER_THRESHOLD_WORDS = {
     "hopf": "the straight rod starts to beat, as {name} grows, at {name}",
     "restabilization": "the straight rod is stable again, as {name} grows, at {name}",
 }
-"""Words for a change of stability along another parameter, by kind."""
+"""Words for a threshold along any other parameter, by kind."""
 Threshold = LocatedChange | BracketedChange
-"""A threshold: located, or bracketed by two points."""
+"""Change of stability of the straight rod: located, or bracketed by two points of the file."""
 
 
 def stability_lines(
     view: View, name: str, found_on: Callable[[ParameterLine], Sequence[Threshold]]
 ) -> tuple[list[str], list[str]]:
-    """(line for each kind of threshold along a parameter, the same along F in an arm's own units).
+    """(line for each kind of threshold along the parameter `name`, the same in an arm's units if the
+    parameter is F).
 
-    Empty if the parameter is no axis. found_on: function that finds the thresholds on a line over the
-    parameter.
+    Both are empty if the parameter is no axis. found_on: function that returns the thresholds on a line of
+    points.
     """
     column = view.point_columns[name]
     if len(np.unique(column[np.isfinite(column)])) < 2:
@@ -45,7 +47,7 @@ def stability_lines(
     along = [found_on(line) for line in lines]
     texts = list[str]()
     of_arm = list[str]()
-    for kind, words in (OVER_FORCE if name == "F" else OVER_OTHERS).items():
+    for kind, words in (FORCE_THRESHOLD_WORDS if name == "F" else OTHER_THRESHOLD_WORDS).items():
         of_kind = [[point for point in points if point.kind == kind] for points in along]
         if found := {i: points for i, points in enumerate(of_kind) if points}:
             texts.append(f"{words.format(name=name)}: {_positions(found, names, name)}")
@@ -56,7 +58,9 @@ def stability_lines(
 
 
 def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: str) -> str:
-    """Thresholds on named lines: individually for a few lines, else as a range."""
+    """Positions of the thresholds as text: one by one for a few lines of points, else as a range. found:
+    thresholds by number of the line.
+    """
     points = [point for line in found.values() for point in line]
     located = [point for point in points if isinstance(point, LocatedChange)]
     stated = [stated_error(point.position, point.error)[1] for point in located]
@@ -66,7 +70,7 @@ def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: st
         frequency = located[0].frequency
         beats = f", frequency {frequency:.6g} rad/tau2" if np.isfinite(frequency) else ""
         return _text(located[0]) + error + some + beats
-    if len(found) <= FEW_LINES:
+    if len(found) <= MAX_LISTED_LINES:
         each = ((" and ".join(map(_text, found[i])), names[i]) for i in found)
         return f"{', '.join(' for '.join(filter(None, pair)) for pair in each)}{error}"
     if not located:
@@ -82,7 +86,7 @@ def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: st
 
 
 def _text(threshold: Threshold) -> str:
-    """Position of a threshold to the first digit reached by the error, or the two bracketing points."""
+    """Position of a threshold as text, to the digits that its error allows; both ends of a bracket."""
     if isinstance(threshold, BracketedChange):
         return f"between {threshold.low:.6g} and {threshold.high:.6g}"
     return stated_error(threshold.position, threshold.error)[0]

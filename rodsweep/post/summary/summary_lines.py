@@ -1,4 +1,4 @@
-"""Lines and tables of the summary of a result, in the order of printing."""
+"""Lines and tables of the summary of a result file, in the order of printing."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -10,13 +10,13 @@ from ...results.layouts.rods import has_covering
 from ...wording import counted
 from .ranges import span
 
-NAMED_THINGS = 8
-"""Largest number of things listed individually."""
+MAX_LISTED_ITEMS = 8
+"""Largest number of rods, branches or points that are listed one by one."""
 
 
 @dataclass(frozen=True, slots=True)
 class TextTable:
-    """Table of texts: its headings, of one or two lines, and rows of as many cells."""
+    """Table of texts. headings: one or two lines each. rows: as many cells as headings."""
 
     headings: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
@@ -24,18 +24,18 @@ class TextTable:
 
 @dataclass(frozen=True, slots=True)
 class SummaryLines:
-    """Sentences about a result."""
+    """Sentences about the result of a task."""
 
     answer: Sequence[str]
-    """The results asked for."""
+    """Lines with the results that the task is for."""
     trust: Sequence[str] = ()
-    """Accuracy and proved completeness."""
+    """Lines about accuracy and proved completeness."""
     details: Sequence[str] = ()
-    """Further results."""
+    """Lines about further results."""
     of_arm: Sequence[str] = ()
-    """Parts of the answer in the units of an arm."""
+    """Lines of the answer in an arm's own units."""
     numbers: TextTable | None = None
-    """Table below the answer."""
+    """Table of numbers below the answer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,28 +43,28 @@ class Summary:
     """Everything that `rodsweep show` prints about a file, in the order of printing."""
 
     answer: Sequence[str]
-    """The results asked for."""
+    """Lines with the results that the task is for."""
     trust: Sequence[str]
-    """Unfinished work, accuracy and proved completeness."""
+    """Lines about unfinished points, accuracy and proved completeness."""
     statuses: TextTable
-    """Number of points and meaning of every status."""
+    """Number of points with each status, and the meaning of the status."""
     details: Sequence[str]
-    """Further results."""
+    """Lines about further results."""
     axes: TextTable
-    """Ranges of the parameters."""
+    """Values or ranges of the parameters."""
     origin: Sequence[str]
-    """Computing time, ranks, dates and versions."""
+    """Lines about computing time, MPI ranks, dates and versions."""
     numbers: TextTable | None = None
-    """Table below the answer."""
+    """Table of numbers below the answer."""
 
 
 def varied(view: View) -> dict[str, np.ndarray]:
-    """Parameters that differ among the points of a file, at every point, each (points,)."""
+    """Parameters that differ between points of a file, by name: values at all points, (points,)."""
     return {name: column for name, column in view.point_columns.items() if len(np.unique(column)) > 1}
 
 
 def region(view: View, mask: np.ndarray) -> str:
-    """Ranges of the varied parameters over points, a mask of their shape; empty for a single rod."""
+    """Ranges of the varied parameters over the points in `mask`, as text; empty if the file has one rod."""
     ranges = []
     for name, column in varied(view).items():
         values = column[mask.ravel()]
@@ -75,22 +75,26 @@ def region(view: View, mask: np.ndarray) -> str:
 
 
 def at_point(view: View, index: int) -> str:
-    """Varied parameters at a point of the file, by its index."""
+    """Varied parameters at the point with the given index, as text."""
     return ", ".join(f"{name} = {column[index]:.6g}" for name, column in varied(view).items())
 
 
 def first_lines(lines: Sequence[str], noun: str) -> Iterator[str]:
-    """Yields the first of the lines about a thing each, indented, and the number of further things."""
-    yield from (f"  {line}" for line in lines[:NAMED_THINGS])
-    if len(lines) > NAMED_THINGS:
-        yield f"  and {counted(len(lines) - NAMED_THINGS, noun)} more"
+    """Yields the first MAX_LISTED_ITEMS lines, indented, and then a line with the number of the others. noun:
+    what a line is about.
+    """
+    yield from (f"  {line}" for line in lines[:MAX_LISTED_ITEMS])
+    if len(lines) > MAX_LISTED_ITEMS:
+        yield f"  and {counted(len(lines) - MAX_LISTED_ITEMS, noun)} more"
 
 
 def in_brackets(text: str) -> str:
-    """A text in brackets, to follow another text; an empty text stays empty."""
+    """`text` in brackets, with a blank before; an empty text stays empty."""
     return f" ({text})" if text else ""
 
 
-def completeness(view: View) -> str:
-    """How far the list of crossings in a file is known to be complete."""
+def proof_clause(view: View) -> str:
+    """Predicate on the list of crossings in a file: proved complete for uniform linear rods, else confirmed
+    by counts of modes.
+    """
     return "is proved complete" if has_covering(view.config) else "is confirmed by counts of unstable modes"

@@ -1,4 +1,4 @@
-"""Thresholds in `rodsweep show`: positions, completeness, and the cost of the search."""
+"""Thresholds of the straight rod in `rodsweep show`: positions, completeness, and cost of the search."""
 
 from itertools import product
 
@@ -12,45 +12,47 @@ from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted, plural, some_of
 from .arm.arm import crossings_of_arm
 from .ranges import error_text, number_and_error, rounded, span
-from .summary_lines import SummaryLines, TextTable, at_point, completeness, in_brackets
+from .summary_lines import SummaryLines, TextTable, at_point, in_brackets, proof_clause
 
-EVENTS = {
+FIRST_THRESHOLD_WORDS = {
     "hopf": ("F** (straight rod starts to beat)", "hopf_frequency", "frequency", ANGULAR_UNIT),
     "restabilization": ("stable again", "restabilization_frequency", "frequency", ANGULAR_UNIT),
     "onset": ("F* (straight rod starts to oscillate)", "onset_growth_rate", "growth rate", "1/tau2"),
 }
-"""(words for the first crossing of a kind, second variable, words and unit of the second variable)."""
+"""(words for the first threshold, second variable, words for it, unit of it), by kind of threshold."""
 ENDED_EARLY = "ended_early"
-"""Status of a search that ended before the requested force."""
+"""Status of a search that stopped before the requested force."""
 FIRST_CROSSING_WORDS = {
     "onset": "oscillates from",
     "hopf": "beats from",
     "restabilization": "stable again from",
 }
-"""Words before the force of the first crossing of a kind, for a single rod."""
+"""Words before the force of the first crossing, by kind, in the summary of a single rod."""
 
 
 def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the points in `done`, a mask of the points' shape."""
+    """Lines of the summary of thresholds. done: mask of the computed points, of the points' shape."""
     if done.size == 1:
         details = cost_lines(view, done)
         of_arm = crossings_of_arm(view)
         return SummaryLines(crossing_lines(view), trust_of_one(view), details, of_arm, crossing_table(view))
-    answer = [event_line(view, done, event) for event in EVENTS]
+    answer = [event_line(view, done, event) for event in FIRST_THRESHOLD_WORDS]
     trust = [*search_lines(view, done, "rod"), f"searched up to F = {span(view.variables['F_end'][done])}"]
     return SummaryLines(answer, trust, [*monotony_lines(view), *cost_lines(view, done)])
 
 
 def event_line(view: View, done: np.ndarray, event: str) -> str:
-    """Line on the forces at the first crossing of a kind; done: a mask of the grid's shape."""
-    words, rate, noun, unit = EVENTS[event]
+    """Line on the forces at the first threshold of the kind `event`. done: mask of the computed points, of
+    their shape.
+    """
+    words, rate, noun, unit = FIRST_THRESHOLD_WORDS[event]
     v = view.variables
     F = np.where(done, v[f"F_{event}"], np.nan).ravel()
     found = np.isfinite(F)
     rods = int(done.sum())
     searched = v["crossing_count"].ravel() >= 0
     decided = searched & ~np.isfinite(v["open_from"].ravel()) & ~view.with_status(ENDED_EARLY).ravel()
-    unknown = not_known(int((done.ravel() & ~found & ~decided).sum()))
+    unknown = unknown_clause(int((done.ravel() & ~found & ~decided).sum()))
     if not found.any():
         return f"{words}: at none of {counted(rods, 'rod')}{unknown}"
     low = int(np.nanargmin(F))
@@ -62,22 +64,26 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
     return f"{words}: F = {forces}, at {where}{unknown}; {noun} {span(v[rate][done])} {unit}"
 
 
-def not_known_beyond(view: View, F: float) -> str:
-    """Clause on the forces beyond the end of the search of a single rod, if this search ended early."""
+def unknown_beyond_clause(view: View, F: float) -> str:
+    """Clause on the forces beyond F, for a single rod whose search stopped early at F; empty for a complete
+    search.
+    """
     clause = f"; not known beyond F = {F:.6g}, where the search ended early"
     return clause if view.with_status(ENDED_EARLY).all() else ""
 
 
 def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
-    """Absolute errors of crossings, one at each point, (points,), from the list of crossings."""
+    """Absolute error of the crossing at the force F of each point, (points,), looked up in the list of
+    crossings. at: variable with their forces.
+    """
     table, errors = map(view.by_point, (at, "crossing_error"))
     return np.where(table == F[:, None], errors, 0.0).max(axis=1)
 
 
 def crossing_lines(view: View) -> list[str]:
-    """Lines about the number of crossings of the single rod of a file, and the meaning of every kind."""
+    """Lines about the number of crossings of the only rod in a file, and the meaning of their kinds."""
     v = view.of_point(0)
-    end = f"F = {v['F_end']:.15g}{not_known_beyond(view, float(v['F_end']))}"
+    end = f"F = {v['F_end']:.15g}{unknown_beyond_clause(view, float(v['F_end']))}"
     if kinds := [CROSSING_KINDS[int(kind)] for kind in v["crossing_kind"][v["crossing_kind"] > 0]]:
         firsts = {word: v[f"F_{event}"] for event, word in FIRST_CROSSING_WORDS.items()}
         words = ", ".join(f"{word} F = {F:.6g}" for word, F in firsts.items() if np.isfinite(F))
@@ -91,7 +97,7 @@ def crossing_lines(view: View) -> list[str]:
 
 
 def crossing_table(view: View) -> TextTable | None:
-    """Table of the crossings of the single rod of a file; None without a crossing."""
+    """Table of the crossings of the only rod in a file; None without a crossing."""
     v = view.of_point(0)
     rows = []
     for i in np.flatnonzero(v["crossing_kind"] > 0):
@@ -113,30 +119,32 @@ def crossing_table(view: View) -> TextTable | None:
 
 
 def trust_of_one(view: View) -> list[str]:
-    """Lines about the searched range and the completeness for the single rod of a file."""
+    """Lines about the searched range and the completeness, for the only rod in a file."""
     v = view.of_point(0)
     hidden = int(v["crossing_count"]) - int((v["crossing_kind"] > 0).sum())
     proof = "proved complete" if has_covering(view.config) else "confirmed by counts of unstable modes"
     proof = proof if v["certified"] else f"not {proof}"
-    lines = [f"searched up to F = {v['F_end']:.15g}; the list of crossings is {proof}{not_stored(hidden)}"]
+    lines = [
+        f"searched up to F = {v['F_end']:.15g}; the list of crossings is {proof}{unstored_clause(hidden)}"
+    ]
     if np.isfinite(v["open_from"]):
         lines.append(f"undecided: F = {v['open_from']:.9g} to {v['open_to']:.9g}")
     return lines
 
 
-def not_known(count: int) -> str:
-    """Clause on rods whose search failed or left a range open; empty for none."""
+def unknown_clause(count: int) -> str:
+    """Clause on the number of rods whose search failed or left a range of F unsearched; empty for 0."""
     return f", not known at {counted(count, 'rod')}" if count else ""
 
 
-def not_stored(hidden: int) -> str:
-    """Clause on crossings that do not fit into the list; empty if all fit."""
+def unstored_clause(hidden: int) -> str:
+    """Clause on the number of crossings for which the list had no room; empty for 0."""
     verb = "is" if hidden == 1 else "are"
     return f"; {hidden} more {verb} not stored, raise the option crossings" if hidden > 0 else ""
 
 
 def monotony_lines(view: View) -> list[str]:
-    """Lines on whether the first thresholds rise with a parameter, as the paper has it for k2, 1/gamma3."""
+    """Lines on whether the first thresholds increase with k2 and with 1/gamma3, as in the paper."""
     lines = []
     long = [name for name, values in view.axes.items() if len(values) > 2] if view.is_grid else []
     for name, force in product(long, ("F_onset", "F_hopf")):
@@ -168,7 +176,10 @@ def monotony_lines(view: View) -> list[str]:
 
 
 def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
-    """Lines about completeness and errors; done: a mask of the points' shape. noun: name of a point."""
+    """Lines about completeness and errors of the searches. noun: name of a point.
+
+    done: mask of the computed points, of the points' shape.
+    """
     v = view.variables
     searches = int(done.sum())
     is_crossing = v["crossing_kind"][done] > 0
@@ -181,27 +192,28 @@ def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
     window = f"; a range stays undecided on {counted(undecided, noun)}" if undecided else ""
     hidden = int((v["crossing_count"][done] - stored).clip(min=0).sum())
     return [
-        f"the list of crossings {completeness(view)} on {proved}{window}",
+        f"the list of crossings {proof_clause(view)} on {proved}{window}",
         f"crossings stored: {int(stored.sum())}, at most {int(stored.max())} on a {noun}{worst}"
-        f"{not_stored(hidden)}",
+        f"{unstored_clause(hidden)}",
     ]
 
 
 def cost_lines(view: View, done: np.ndarray) -> list[str]:
-    """Line on the cost of the searches; done: a mask of the points' shape.
+    """Line on the cost of the searches. done: mask of the computed points, of the points' shape.
 
-    Empty for searches by counts of unstable modes, which record no cost.
+    An empty list for searches that count unstable modes, which store no cost.
     """
     if not has_covering(view.config):
         return []
     v = view.variables
     boxes, solves = (v[name][done] for name in ("boxes", "solves"))
     return [
-        f"cost of a search: {spans(boxes, 'evaluation')} of D over a box, {spans(solves, 'eigenproblem')}"
+        f"cost of a search: {count_range(boxes, 'evaluation')} of D over a box, "
+        f"{count_range(solves, 'eigenproblem')}"
     ]
 
 
-def spans(values: np.ndarray, noun: str) -> str:
-    """Range of whole numbers, (n,), with the counted noun."""
+def count_range(values: np.ndarray, noun: str) -> str:
+    """Range of the integer counts `values`, (n,), as text. noun: what is counted."""
     text = span(values)
     return f"{text} {noun if text == '1' else plural(noun)}"

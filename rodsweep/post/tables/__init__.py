@@ -1,4 +1,4 @@
-"""Results as tables with one row for each item, for `rodsweep export` and for DataFrames in Python."""
+"""Results as tables with one row per item, for `rodsweep export` and for pandas DataFrames."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -12,19 +12,21 @@ from ...model.parameters import PARAMETERS
 from ...results.file.view import View
 from ..branch_curves import followed_parameter
 from .columns import Column
-from .contents import BRANCHES, GRID, POINTS, Contents, chosen, contents_of, refuse_unknown
+from .contents import BRANCHES, GRID, POINTS, Contents, chosen_table, contents_of, refuse_unknown
 from .rows import Rows, item_rows, line_columns, list_columns, point_columns, si_columns
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table: its name, columns of equal length, and the number of points without a row."""
+    """Table of results: name, columns of equal length, and `empty_points`, the number of points without a
+    row.
+    """
 
     name: str
     columns: tuple[Column, ...]
     empty_points: int
     others: tuple[str, ...]
-    """Names of the other tables of the result."""
+    """Names of the other tables of the same result."""
 
     @property
     def rows(self) -> int:
@@ -34,26 +36,26 @@ class Table:
 
 @dataclass(frozen=True)
 class Tables:
-    """All tables of a result, each made on request."""
+    """All tables of a result; each is made when it is requested."""
 
     view: View
 
     def __post_init__(self) -> None:
-        """Turns a grid over an arm's quantities into the list of its points."""
+        """Replaces a grid over an arm's quantities by the list of its points."""
         object.__setattr__(self, "view", self.view.listed)
 
     @cached_property
     def contents(self) -> Contents:
-        """Names and variables of the tables of the result."""
+        """Names of the tables of the result, and the variables in each."""
         return contents_of(self.view)
 
     def table(self, name: str | None = None, columns: Sequence[str] = ()) -> Table:
-        """A table, by name or by its columns; by default the first table of the task.
+        """The table with the given name or columns; by default the first table of the task.
 
-        columns: names of the columns, in order; by default all, but of the points of a list only parameters,
-        quantities and status. Raises InputError for an unknown name.
+        columns: names in the order of the output; by default all columns, except that a list has only the
+        parameters, quantities and status of its points. Raises InputError for an unknown name.
         """
-        name = chosen(self.view, self.contents, name, tuple(columns))
+        name = chosen_table(self.view, self.contents, name, tuple(columns))
         points, found = self._rows(name)
         beside = [] if points is None else list(point_columns(self.view, self.contents.of_points, points))
         if name == GRID:  # its first column is a parameter, which takes its place among the other parameters
@@ -69,11 +71,13 @@ class Tables:
         return Table(name, tuple(by_name[each] for each in columns), empty, others)
 
     def items(self, name: str) -> tuple[Column, ...]:
-        """Columns of a list, without the columns of points."""
+        """Columns of a list, without the columns of its points."""
         return tuple(self._rows(name)[1])
 
     def _rows(self, name: str) -> tuple[NDArray[np.int64] | None, list[Column]]:
-        """(point of every row of a table, or None for rows without points; columns of the items)."""
+        """(index of the point of every row of a table, None for rows without a point; columns of
+        the items).
+        """
         if name == POINTS:
             return np.arange(self.view.variables["status"].size), []
         if name == BRANCHES:
@@ -82,7 +86,7 @@ class Tables:
         return None if name in self.contents.joint else rows[0], columns
 
     def _list(self, name: str) -> tuple[Rows, list[Column]]:
-        """(rows of a list, its columns, in SI units as well)."""
+        """(indices of the items of a list, its columns with SI columns)."""
         joint = name in self.contents.joint
         variables = self.contents.lists[name]
         rows = item_rows(self.view, variables, joint)
@@ -92,7 +96,9 @@ class Tables:
         return rows, [*columns, *si_columns(self.view, variables, columns, points)]
 
     def _branches(self) -> tuple[NDArray[np.int64], list[Column]]:
-        """(point of every row, columns) of the cycles of branches with special points between them."""
+        """(index of the point of every row, columns) of the cycles of branches, with special points between
+        the cycles.
+        """
         cycles, of_cycles = self._list("cycles")
         special, of_special = self._list("special_points")
         points, of_cycle, at_special = merged_rows(self.view, cycles, special)
@@ -101,9 +107,11 @@ class Tables:
 
 
 def merged_rows(view: View, cycles: Rows, special: Rows) -> tuple[NDArray, NDArray, NDArray]:
-    """Rows of the table: (point, row of the cycles or -1, row of the special points or -1), each (rows,).
+    """Order of the rows of the table `branches`: (point, row of `cycles` or -1, row of `special` or -1),
+    (rows,) each.
 
-    A special point follows the cycle before it on the branch, or precedes the first cycle of the branch.
+    A special point follows the cycle before it on the branch; special points before the first cycle come
+    first.
     """
     shape = view.variables["status"].size
     branch = np.concatenate([_of(view, "branch", shape, cycles), _of(view, "special_branch", shape, special)])
@@ -120,9 +128,11 @@ def merged_rows(view: View, cycles: Rows, special: Rows) -> tuple[NDArray, NDArr
 def merged_columns(
     cycles: list[Column], special: list[Column], of_cycle: NDArray, of_special: NDArray, along: str
 ) -> list[Column]:
-    """Columns of the cycles, with values of the special points between them, and the kind of special point.
+    """Columns of the table `branches`: columns of cycles, filled with the values at special points, and the
+    kind of special point.
 
-    of_cycle, of_special: rows of the columns, (rows,), -1 in a row without a cycle or a special point.
+    of_cycle, of_special: row of a cycle or special point in its own table, (rows,); -1 for none. along:
+    followed parameter.
     """
     named = {column.name: column for column in special}
     merged = []
@@ -138,7 +148,9 @@ def merged_columns(
 
 
 def _special_of(name: str, along: str) -> str:
-    """Name of a variable of cycles at special points."""
+    """Name of the variable at special points that corresponds to the variable `name` of cycles. along:
+    followed parameter.
+    """
     if name == f"branch_{along}":
         return "special_at"
     if along == "F" and name in {f"branch_{load}" for load in LOADS}:
@@ -147,5 +159,5 @@ def _special_of(name: str, along: str) -> str:
 
 
 def _of(view: View, name: str, count: int, rows: Rows) -> NDArray:
-    """Values of a variable at the items of a list, (rows,)."""
+    """Values of the variable `name` at the items of a list, (rows,). count: number of points."""
     return view.variables[name].reshape(count, -1)[rows]

@@ -1,31 +1,36 @@
-"""Cells as text in aligned columns, no line longer than a given width."""
+"""Text of tables with aligned columns, and folding of lines at a given width."""
 
 import re
 import textwrap
 from collections.abc import Iterator, Sequence
 
 WIDTH = 80
-"""Largest length of a printed line, in characters: the width of a terminal's window."""
-GAP = "  "
+"""Largest length of a printed line, in characters: the usual width of a terminal."""
+COLUMN_GAP = "  "
 """Space between two columns."""
-MIN_PROSE = 24
-"""Smallest width of a last column of prose; narrower prose has a line of its own below the row."""
+MIN_PROSE_WIDTH = 24
+"""Least width, in characters, of a last column of prose; if less is left, the prose gets lines of its own
+below the row."""
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*(?:e[-+]?\d+)?|inf)")
+"""A number in decimal notation, or inf."""
 NO_BREAK = "\xa0"
+"""No-break space, at which no line is folded."""
 UNBREAKABLE = re.compile(r" = \S+| \(\+- [^)]*\)")
-"""Parts of a sentence that stay on one line: a value beside its name, an error beside its number."""
+"""Parts of a sentence that stay on one line: "= value" after a name, and an error in brackets after its
+number."""
 Line = tuple[str, ...]
+"""Cells of a row, or of a line of a heading."""
 
 
 def folded(text: str, indent: str = "  ", width: int = WIDTH) -> str:
-    """A text in lines of at most `width` characters, with an indent before every line but the first."""
+    """`text` in lines of at most `width` characters; all lines but the first start with `indent`."""
     return textwrap.fill(text, width, subsequent_indent=indent, break_on_hyphens=False)
 
 
 def refolded(line: str, width: int = WIDTH) -> str:
-    """A line in lines of at most `width` characters, indented further than the line itself.
+    """`line` folded to at most `width` characters, with further lines indented more than the line itself.
 
-    A name and its value, and a number and its error, stay on one line. Names of files are not broken.
+    A name and its value stay on one line, and so do a number and its error. File names are not broken.
     """
     indent = " " * (len(line) - len(line.lstrip()) + 2)
     whole = UNBREAKABLE.sub(lambda match: match[0].replace(" ", NO_BREAK), line)
@@ -36,7 +41,9 @@ def refolded(line: str, width: int = WIDTH) -> str:
 
 
 def point_aligned(cells: Sequence[str]) -> list[str]:
-    """Cells of a column of equal length, numbers with aligned decimal points, words at the left."""
+    """Cells of a column padded to equal length: numbers aligned at their decimal points, words at
+    the left.
+    """
     if not all(NUMBER.fullmatch(cell) for cell in cells if cell):
         width = max(map(len, cells), default=0)
         return [f"{cell:{width}}" for cell in cells]
@@ -51,21 +58,23 @@ def point_aligned(cells: Sequence[str]) -> list[str]:
 
 
 def column_cells(heads: Sequence[str], cells: Sequence[str]) -> list[str]:
-    """A column: heading lines above aligned cells, all of one width."""
+    """Heading lines and cells of a column, padded to equal length; the cells are aligned as in
+    `point_aligned`.
+    """
     aligned = point_aligned(cells)
     width = max(map(len, (*heads, *aligned)))
     return [f"{cell:{width}}" for cell in (*heads, *aligned)]
 
 
 def blocks(columns: Sequence[Sequence[str]], width: int = WIDTH) -> Iterator[list[str]]:
-    """Yields blocks of lines at most `width` wide. Each block has the first column and some of the others.
+    """Yields blocks of lines at most `width` wide: the first column, and as many of the other columns as fit.
 
     columns: cells of every column, as made by `column_cells`.
     """
     first, *others = columns
     block = [first]
     for column in others:
-        taken = sum(len(each[0]) + len(GAP) for each in block)
+        taken = sum(len(each[0]) + len(COLUMN_GAP) for each in block)
         if len(block) > 1 and taken + len(column[0]) > width:
             yield _lines(block)
             block = [first]
@@ -74,24 +83,26 @@ def blocks(columns: Sequence[Sequence[str]], width: int = WIDTH) -> Iterator[lis
 
 
 def _lines(columns: Sequence[Sequence[str]]) -> list[str]:
-    """Columns side by side, without empty lines."""
-    lines = (GAP.join(cells).rstrip() for cells in zip(*columns, strict=True))
+    """Lines of columns side by side, without empty lines."""
+    lines = (COLUMN_GAP.join(cells).rstrip() for cells in zip(*columns, strict=True))
     return [line for line in lines if line]
 
 
 def rows_with_prose(rows: Sequence[Line], width: int = WIDTH) -> list[str]:
-    """Lines of a table whose last cells are prose, folded beside the other columns, or below them."""
+    """Lines of a table whose last column is prose. The prose is folded to the right of the other columns, or
+    below the row if little width is left.
+    """
     if not rows:
         return []
     *columns, prose = zip(*rows, strict=True)
     aligned = zip(*(point_aligned(column) if any(column) else column for column in columns), strict=True)
-    before = [GAP.join(cells) for cells in aligned]
-    room = width - max(map(len, before)) - len(GAP)
+    before = [COLUMN_GAP.join(cells) for cells in aligned]
+    room = width - max(map(len, before)) - len(COLUMN_GAP)
     lines = []
     for begin, text in zip(before, prose, strict=True):
-        if room >= MIN_PROSE:
+        if room >= MIN_PROSE_WIDTH:
             first, *further = textwrap.wrap(text, room) or [""]
-            lines.append(f"{begin}{GAP}{first}".rstrip())
+            lines.append(f"{begin}{COLUMN_GAP}{first}".rstrip())
             lines += [" " * (width - room) + line for line in further]
         else:
             lines += (

@@ -1,6 +1,7 @@
-"""Columns of a table: numbers or words with their unit, and a mask of missing values.
+"""Columns of a table: numbers or words with unit and meaning, and a mask of missing values.
 
-A file has room for a fixed number of items and fills unused places; a column has no fill values.
+A result file has room for a fixed number of items in a list, and fill values for unused items. A column has
+no fill values.
 """
 
 from collections.abc import Mapping
@@ -11,19 +12,22 @@ from numpy.typing import NDArray
 
 from ...results.layouts.variables import NOT_KNOWN, SECONDS, Variable
 
-NO_WORD = ("none", "missing")
-"""Words that mark an unused place of a list."""
+UNUSED_WORDS = ("none", "missing")
+"""Words of a flag variable that mark an unused item of a list."""
 BOOLEAN_TEXTS = {0: "false", 1: "true"}
-"""Text of boolean values in CSV."""
+"""Text in CSV of the boolean values 0 and 1."""
 ERROR_DIGITS = 3
-"""Number of digits of an error or a time, which are estimates."""
-ROUNDING = 4 * np.finfo(float).eps
-"""Largest relative rounding error of a coordinate after a conversion of units or in a range."""
+"""Number of significant digits of errors and computing times, which are estimates."""
+COORDINATE_ROUNDING = 4 * np.finfo(float).eps
+"""Largest relative rounding error of a coordinate that was converted between units, or computed as part of a
+range."""
 
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column: name, unit, meaning, values (rows,), and a mask of missing values, (rows,)."""
+    """Column of a table: name, unit, meaning, values, (rows,), and `absent`, a mask of missing values,
+    (rows,).
+    """
 
     name: str
     unit: str
@@ -31,11 +35,11 @@ class Column:
     values: NDArray
     absent: NDArray[np.bool_]
     words: Mapping[int, str] = field(default_factory=dict)
-    """Words by value; empty for a column of numbers."""
+    """Word for each integer value; empty for a column of numbers."""
     given: bool = False
-    """Whether the values are input coordinates, not results."""
+    """Whether the values are input, such as parameters, and not results."""
     is_boolean: bool = False
-    """Whether the values are 1 for yes and 0 for no."""
+    """Whether the values are 1 for true and 0 for false."""
 
     @property
     def is_estimate(self) -> bool:
@@ -43,7 +47,7 @@ class Column:
         return "error" in self.name or self.name == SECONDS.name
 
     def rows(self, which: NDArray[np.int64] | slice) -> "Column":
-        """Some rows of the column, in the order of the indices; index -1 gives a missing value."""
+        """Column with the rows of the given indices, in this order; an index -1 gives a missing value."""
         if isinstance(which, slice):
             return replace(self, values=self.values[which], absent=self.absent[which])
         # An appended row makes index -1 a missing value.
@@ -51,7 +55,7 @@ class Column:
         return replace(self, values=values, absent=np.append(self.absent, True)[which])
 
     def text(self) -> list[str]:
-        """Values as text for CSV: words, or the shortest decimal number that reads back equal."""
+        """Values as text for CSV: words, or the shortest decimal number that reads back as an equal value."""
         if self.is_boolean:
             texts = [BOOLEAN_TEXTS[int(value)] for value in self.values]
         elif self.words:
@@ -63,7 +67,9 @@ class Column:
         return ["" if none else text for text, none in zip(texts, self.absent, strict=True)]
 
     def _numbers(self) -> list[str]:
-        """Real numbers as text: errors and times rounded, coordinates without rounding errors."""
+        """Real numbers as text: errors and computing times to ERROR_DIGITS, coordinates without rounding
+        error.
+        """
         if self.is_estimate:
             return [f"{value:.{ERROR_DIGITS}g}" for value in self.values]
         values = self.values + self.values.dtype.type(0)  # -0.0 + 0 is 0.0, which needs no sign
@@ -74,7 +80,9 @@ class Column:
 
 
 def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | None = None) -> Column:
-    """Column of a variable with values of shape (rows,); words: by value, if not those of the variable."""
+    """Column of a variable with values of shape (rows,). words: words by value, if other than those of the
+    variable.
+    """
     known = dict(variable.flags) if words is None else words
     meaning = variable.long_name.removesuffix(NOT_KNOWN)
     absent = absent_in(variable, values)
@@ -83,28 +91,32 @@ def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | No
 
 
 def coordinate(name: str, unit: str, meaning: str, values: NDArray) -> Column:
-    """Column of a coordinate, (rows,), missing (NaN) for arms without a rod."""
+    """Column of a coordinate with values of shape (rows,). NaN is missing: an arm to which no rod
+    corresponds.
+    """
     return Column(name, unit, meaning, values, np.isnan(values.astype(float)), given=True)
 
 
 def _typed(value: float, text: str) -> str:
-    """Text of a coordinate without rounding error, if this is much shorter: 2500 for 2500.0000000000005."""
+    """Text of a coordinate without its rounding error, if much shorter: 2500 for 2500.0000000000005."""
     if not np.isfinite(value):
         return text
     short = f"{value:.15g}"
-    is_close = abs(float(short) - value) <= ROUNDING * abs(value)
+    is_close = abs(float(short) - value) <= COORDINATE_ROUNDING * abs(value)
     return short if is_close and len(short) + 2 < len(text) else text
 
 
 def absent_in(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
-    """Mask of missing values, of the shape of `values`: NaN, the fill value -1, or a word of `NO_WORD`."""
+    """Mask of missing values, of the shape of `values`: NaN, the fill value -1, or a word of UNUSED_WORDS."""
     if values.dtype.kind == "f":
         return np.isnan(values)
     if variable.flags:
-        return np.isin(values, [value for value, word in variable.flags if word in NO_WORD])
+        return np.isin(values, [value for value, word in variable.flags if word in UNUSED_WORDS])
     return values == variable.fill if variable.fill == -1 else np.zeros(values.shape, bool)
 
 
-def tells_of_items(variable: Variable) -> bool:
-    """Whether a value of the variable reveals a missing item: no valid value equals the fill value."""
+def marks_missing_items(variable: Variable) -> bool:
+    """Whether a fill value of the variable shows that its item is missing: no valid value equals the fill
+    value.
+    """
     return variable.dtype.startswith("<f") or bool(variable.flags) or variable.fill == -1

@@ -1,7 +1,7 @@
-"""Tables of a result: points, and a table for each list, found from the dimensions.
+"""Names and variables of the tables of a result: a table of points, and a table for each list.
 
-A table has a row for each item, with the parameters and the status of a point. `grid` is the grid of a phase
-diagram, in which each point of the file is a row of the diagram.
+Each row of a list has the parameters and the status of its point. The table `grid` holds the grid points of a
+phase diagram, in which each point of the file is a row.
 """
 
 from dataclasses import dataclass
@@ -14,13 +14,16 @@ from ...results.layouts import beside_points, layout_of
 from ...results.layouts.variables import Variable
 
 THERE_ARE = "there are"
-"""Words of a refusal before the known names."""
+"""Words in an error message before the list of known names."""
 POINTS = "points"
+"""Name of the table with a row for each point of the file."""
 GRID = "grid"
+"""Name of the table of grid points of a phase diagram."""
 BRANCHES = "branches"
+"""Name of the table of cycles and special points in their order on the branches."""
 PARTS_OF_BRANCHES = {"cycles", "special_points"}
-"""Tables that the table `branches` merges."""
-NAMES = {
+"""Names of the two tables that the table `branches` merges."""
+TABLE_NAMES = {
     ("mode",): "modes",
     ("mode", "u"): "mode_shapes",
     ("crossing",): "crossings",
@@ -40,7 +43,7 @@ NAMES = {
     ("shape", "u"): "shapes",
     ("transient",): "motion",
 }
-"""Names of tables, by dimensions without the dimensions of the points."""
+"""Name of a table, by its dimensions other than the dimensions of the points."""
 DEFAULT_TABLE = {
     "spectrum": "modes",
     "modes": "modes",
@@ -50,15 +53,16 @@ DEFAULT_TABLE = {
     "limit_cycle": POINTS,
     "branch": BRANCHES,
 }
-"""Default table of each task."""
+"""Name of the first table, by task."""
 
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """Variables of a result, by table.
+    """Variables of a result, divided into tables.
 
-    of_points: variables of a point, for `points` and as further columns of all tables. joint: names of tables
-    given by all points together, with rows that have no point.
+    of_points: variables with one value at each point; columns of `points` and of all other tables. lists:
+    variables of each list, by name of the table. joint: names of lists that belong to all points together,
+    whose rows have no point.
     """
 
     of_points: tuple[Variable, ...]
@@ -67,17 +71,17 @@ class Contents:
 
     @property
     def tables(self) -> tuple[str, ...]:
-        """Names of all tables."""
+        """Names of all tables of the result."""
         branches = (BRANCHES,) if self.lists.keys() >= PARTS_OF_BRANCHES else ()
         return (POINTS, *branches, *self.lists)
 
     def dimensions(self, table: str) -> tuple[str, ...]:
-        """Dimensions of a table besides those of the points."""
+        """Dimensions of a table, without the dimensions of the points."""
         return self.lists[table][0].extra if table in self.lists else ()
 
 
 def contents_of(view: View) -> Contents:
-    """Tables of a result and their variables."""
+    """Names and variables of the tables of a result."""
     config = view.config
     own: list[Variable] = []
     lists: dict[str, list[Variable]] = {}
@@ -101,12 +105,14 @@ def contents_of(view: View) -> Contents:
 
 
 def name_of(dimensions: tuple[str, ...]) -> str:
-    """Name of a table, by dimensions without the dimensions of the points."""
-    return GRID if dimensions[0] in PARAMETERS else NAMES[dimensions]
+    """Name of the table with the given dimensions, without the dimensions of the points."""
+    return GRID if dimensions[0] in PARAMETERS else TABLE_NAMES[dimensions]
 
 
-def chosen(view: View, contents: Contents, table: str | None, columns: tuple[str, ...]) -> str:
-    """Name of the table asked for by name or columns, or the first of the task; InputError without one."""
+def chosen_table(view: View, contents: Contents, table: str | None, columns: tuple[str, ...]) -> str:
+    """Name of the table that the user requests by name or by columns; else the first table of the task.
+    Raises InputError if there is none.
+    """
     if table is not None:
         if table not in contents.tables:
             raise InputError(
@@ -131,7 +137,9 @@ def chosen(view: View, contents: Contents, table: str | None, columns: tuple[str
 
 
 def refuse_unknown(path: object, columns: tuple[str, ...], known: tuple[str, ...], table: str) -> None:
-    """Raises InputError for the first column that is unknown or named twice; table: may be empty."""
+    """Raises InputError for the first of `columns` that is not in `known`, or is named twice. table: name of
+    the table; empty for all tables.
+    """
     for place, name in enumerate(columns):
         if name not in known:
             what = f"the table {table} has" if table else "its tables have"

@@ -1,4 +1,6 @@
-"""Rows of the tables of a result: a row for each item, with the coordinates of a point."""
+"""Rows and columns of the tables of a result: a row for each item of a list, with the parameters of its
+point.
+"""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -12,18 +14,21 @@ from ...model.arm.quantities import ALL_QUANTITIES
 from ...results.file.view import View
 from ...results.layouts.arm import si_name_of, si_unit_of, si_variable
 from ...results.layouts.variables import DIMENSIONS, MISSING, STATUS, Variable
-from .columns import Column, absent_in, column_of, coordinate, tells_of_items
+from .columns import Column, absent_in, column_of, coordinate, marks_missing_items
 
 Rows = tuple[NDArray[np.int64], ...]
-"""Point of every row, then its place along each dimension of the list, each (rows,)."""
+"""Index of the point of every row, then the index of its item along each dimension of the list,
+(rows,) each."""
 
 
 def item_rows(view: View, variables: Sequence[Variable], joint: bool) -> Rows:
-    """Rows of a list: items with any value, at every point, or of all points together if `joint`."""
+    """Rows of a list: all items with a value at any point. joint: whether the list belongs to all points
+    together.
+    """
     points = 1 if joint else view.variables["status"].size
     exists: NDArray[np.bool_] = np.zeros((), bool)
     for variable in variables:
-        if tells_of_items(variable) and (_is_of_points(view, variable) or joint):
+        if marks_missing_items(variable) and (_is_of_points(view, variable) or joint):
             values = view.variables[variable.name]
             inner = len(variable.extra)
             values = values.reshape(points, *values.shape[values.ndim - inner :])
@@ -32,7 +37,9 @@ def item_rows(view: View, variables: Sequence[Variable], joint: bool) -> Rows:
 
 
 def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]) -> Iterator[Column]:
-    """Yields columns of the points of rows, (rows,): parameters, an arm's quantities, own variables."""
+    """Yields the columns of points: parameters, an arm's quantities, then the variables `own`. points: index
+    of the point of every row, (rows,).
+    """
     for name, values in view.point_columns.items():
         yield coordinate(name, *DIMENSIONS[name], values[points])
     for name, values in quantities_at_points(view).items():
@@ -48,7 +55,9 @@ def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]
 
 
 def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: bool) -> Iterator[Column]:
-    """Yields columns of the items of a list: places, then variables."""
+    """Yields the columns of a list: coordinates of the items, then the variables. joint: whether the list
+    belongs to all points together.
+    """
     names = variables[0].extra
     for name, items in zip(names, rows[1:], strict=True):
         yield coordinate(name, *DIMENSIONS[name], view.variables[name][items])
@@ -68,9 +77,10 @@ def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: b
 def si_columns(
     view: View, variables: Sequence[Variable], columns: Sequence[Column], points: NDArray[np.int64] | None
 ) -> Iterator[Column]:
-    """Yields SI columns for the variables of a list that an arm's file stores without dimension only.
+    """Yields columns in SI units for variables of a list that the file of an arm stores only dimensionless.
 
-    points: point of each row, (rows,); None for rows without points, which need the same arm at all points.
+    points: index of the point of each row, (rows,). None for rows without a point, which get SI units only if
+    all points have the same arm.
     """
     if not view.quantities:
         return
@@ -93,30 +103,36 @@ def si_columns(
 
 
 def line_columns(view: View, rows: Rows) -> Iterator[Column]:
-    """Yields quantities of an arm along the rows of a diagram, such as the pressure for F."""
+    """Yields columns of an arm's quantities that vary along a row of a diagram, such as the
+    pressure for F.
+    """
     for name, values in view.quantities.items():
         if values.size > 1 and view.is_grid and STORED_ALONG.get(name, "") not in view.parameters:
             yield quantity_column(name, values[rows[1]])
 
 
 def quantity_column(name: str, values: NDArray) -> Column:
-    """Column of a quantity of an arm with values of shape (rows,)."""
+    """Column of an arm's quantity `name`, with values of shape (rows,)."""
     column = coordinate(name, *ALL_QUANTITIES[name][:2], values)
     return replace(column, words=dict(enumerate(DRAGS))) if name == "drag" else column
 
 
 def _is_of_points(view: View, variable: Variable) -> bool:
-    """Whether a variable of a list has the dimensions of the points, which the declaration omits."""
+    """Whether a variable of a list has a value at every point; its declaration omits the dimensions of the
+    points.
+    """
     return variable.extra[0] not in ("point", *view.parameters)
 
 
 def _places(view: View, parameter: str) -> NDArray[np.int64]:
-    """Place of every point along the axis of a parameter, (points,)."""
+    """Index of every point along the axis of `parameter`, (points,)."""
     return np.searchsorted(view.axes[parameter], view.point_columns[parameter])
 
 
 def quantities_at_points(view: View) -> dict[str, NDArray]:
-    """Quantities of an arm at every point, each (points,), without quantities along a row of a diagram."""
+    """An arm's quantities at all points, (points,) each, except quantities that vary along a row of a
+    diagram.
+    """
     count = view.variables["status"].size
     found = {}
     for name, values in view.quantities.items():

@@ -206,7 +206,8 @@ class Search:
             return _result(self.best, self.problem, self.request)
         if self.disagreement is not None:
             lost = self.disagreement
-            counted = f"the winding number counts {lost.count.number} eigenvalues where {lost.found_count} are found"
+            number, found = lost.count.number, lost.found_count
+            counted = f"the winding number counts {number} eigenvalues where {found} are found"
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, counted)
         if self.unresolved:
             why = "no mesh resolves all eigenvalues that may be the leading ones"

@@ -61,11 +61,11 @@ def _arms(section: ArmSection) -> Iterable[SlenderArm]:
 
 def flutter_of_rod(rod: Rod) -> FlutterForce:
     """Flutter of one rod; a failure is an outcome, not an exception."""
-    from ...verdict.relative import FlutterUnknown, first_hopf_force
+    from ...verdict.relative import FlutterSearchFailed, first_hopf_force
 
     try:
         return FlutterForce(first_hopf_force(rod))
-    except FlutterUnknown as error:
+    except FlutterSearchFailed as error:
         return FlutterForce(nan, str(error))
 
 

@@ -1,7 +1,7 @@
-"""A second scale in SI units beside the axis of a follower force, in figures of an arm.
+"""A second scale in SI units along an axis of the follower force F, in figures of an arm.
 
-For a file with a single arm, F corresponds to a pressure or a force at the tip. A linear or logarithmic axis
-of F then gets a second scale on the opposite side.
+If all points belong to one arm, F corresponds to a pressure or a force at its tip. A linear or logarithmic
+axis of F then gets the SI scale on the opposite side of the panel.
 """
 
 from collections.abc import Sequence
@@ -14,18 +14,18 @@ from matplotlib.ticker import EngFormatter, MaxNLocator
 
 from ....model.arm.quantities import SCALE_OF, UNITS
 from ....results.file.view import View
-from ..style import CRITICAL_FORCE, LABELS
+from ..style import CRITICAL_FORCE_LABEL, LABELS
 
-SCALABLE = ("linear", "log")
-"""Scales for which matplotlib places the ticks of the opposite axis correctly."""
+SCALES_WITH_SECOND_AXIS = ("linear", "log")
+"""Scales of an axis for which matplotlib places the ticks of a second scale correctly."""
 MAX_TICKS = 5
-"""Largest number of intervals between ticks of the second scale."""
+"""Largest number of intervals between the ticks of the second scale."""
 LOAD_WORDS = {"pressure": "pressure on the tip", "force": "force at the tip"}
-"""Words for a follower force in the label of the second scale."""
+"""Label of the second scale, by kind of load."""
 
 
 def add_si_scales(figure: Figure, views: Sequence[View]) -> None:
-    """Adds an SI scale to every axis of a follower force, if the files have one and the same arm."""
+    """Adds a scale in SI units to every axis of the follower force, if all files belong to one arm."""
     load = "force" if all("force" in view.quantities for view in views) else "pressure"
     given = [view.quantities.get(SCALE_OF[load]) for view in views]
     units = {float(unit) for values in given if values is not None for unit in np.ravel(values)}
@@ -35,12 +35,14 @@ def add_si_scales(figure: Figure, views: Sequence[View]) -> None:
     for axes in list(figure.axes):
         for which in ("x", "y"):
             label, scale = (getattr(axes, f"get_{which}{what}")() for what in ("label", "scale"))
-            if label in (LABELS["F"], CRITICAL_FORCE) and scale in SCALABLE:
+            if label in (LABELS["F"], CRITICAL_FORCE_LABEL) and scale in SCALES_WITH_SECOND_AXIS:
                 _add(_outermost(axes, which), which, unit, load)
 
 
 def _outermost(axes: Axes, which: str) -> Axes:
-    """The panel farthest from the label of an axis, among panels in a line that share the axis."""
+    """Among the panels that share an axis with `axes`, the panel farthest from the axis label. which: "x" or
+    "y".
+    """
     shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
     place = axes.get_subplotspec()
     panels = [other for other in shared.get_siblings(axes) if other.get_subplotspec() is not None]
@@ -54,7 +56,9 @@ def _outermost(axes: Axes, which: str) -> Axes:
 
 
 def _add(axes: Axes, which: str, unit: float, load: str) -> None:
-    """Adds a scale opposite to an axis, with the numbers of the axis times `unit`."""
+    """Adds a scale to the opposite side of a panel, whose numbers are `unit` times those of the
+    axis `which`.
+    """
     symbol = UNITS[load][0]
     word = LOAD_WORDS[load]
     largest = unit * max(map(abs, getattr(axes, f"get_{which}lim")()))

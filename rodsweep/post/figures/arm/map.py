@@ -1,7 +1,8 @@
-"""Results over an arm's own quantities, in the units typed by the user: lines over one, maps over two.
+"""Figures over the quantities of an arm, in the units typed by the user: lines over one quantity, maps over
+two.
 
-The points of the file are the centres of cells. A cell is hatched if the model does not apply there, and grey
-if no rod covers the arm.
+Each point of the file is the centre of a cell of a map. Cells are hatched where the model does not apply, and
+grey where no rod corresponds to the arm.
 """
 
 from dataclasses import replace
@@ -21,16 +22,16 @@ from ....model.arm.drag import DRAGS
 from ....model.arm.neglected import Validity
 from ....model.arm.quantities import ARM_UNITS
 from ....results.file.view import View
-from ...summary.arm.arm import word
+from ...summary.arm.arm import quantity_words
 from .. import style
 from ..cycle.point_map import cell_edges
 from ..request import FigureRequest
 from .panels import PANELS, Panel
 from .quantities import in_typed_unit, quantity_text
 
-MAPS = ("map", "maps")
-"""Names of this figure for tasks with several figures."""
-HATCHES: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
+MAP_KINDS = ("map", "maps")
+"""Values of `--what` that request this figure."""
+COVERED_CELL_LOOKS: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
     ("model_applies", Validity.doubtful, "model doubtful", {"fc": "none", "hatch": "..."}),
     ("model_applies", Validity.does_not_apply, "model does not apply", {"fc": "none", "hatch": "////"}),
     ("status", NOT_SLENDER, "shorter than 10 radii", {"fc": "0.85", "hatch": ""}),
@@ -39,18 +40,22 @@ HATCHES: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
     ("status", FLUTTER_UNKNOWN, "flutter unknown", {"fc": "0.95", "hatch": "xx"}),
     ("status", NO_WALL, "no wall", {"fc": "0.45", "hatch": ""}),
 )
-"""Covered cells: (variable, value, legend entry, look); later entries lie above earlier ones."""
+"""(variable, value, legend entry, look) of covered cells of a map. Later entries are drawn over earlier
+entries."""
 DRAG = "drag"
+"""Name of the axis of drags. In a figure with a further axis, the range over drags is drawn as a band."""
 BAND_OPACITY = 0.25
-"""Opacity of the band between the smallest and the largest number over the drags."""
-EMPTY_LOOK: dict[str, Any] = {"fc": "#E8EDF2"}
-"""Look of cells with a rod but no number, such as a rod without flutter."""
+"""Opacity of the band between the smallest and the largest value over all drags."""
+EMPTY_CELL_LOOK: dict[str, Any] = {"fc": "#E8EDF2"}
+"""Look of cells whose arm corresponds to a rod but has no result, such as a rod without flutter."""
 MAP_HATCH_COLOUR = "0.35"
-"""Grey of hatches and edges of covered cells."""
+"""Grey of hatches, and of the edges of covered cells."""
 
 
 def draw_arm_map(request: FigureRequest) -> str:
-    """Draws the main numbers of a task over the axes of an arm: two panels, of lines or of maps."""
+    """Draws the main results of a task over the quantities of an arm, in two panels of lines or maps; returns
+    a sentence.
+    """
     view = replace(request, what=None).only_view()
     long = [name for name in view.over if len(view.variables[name]) > 1]
     if DRAG in long and long[1:]:  # drawn as a band, or for the likeliest drag
@@ -77,28 +82,30 @@ def draw_arm_map(request: FigureRequest) -> str:
     banded = [DRAG] if not y and DRAG in first else []
     figure.suptitle(style.heading(view, _fixed(view, axes + banded)))
     labels = " and ".join(panel.label for panel in panels)
-    return request.write(figure, f"{labels} over {' and '.join(map(word, axes))}")
+    return request.write(figure, f"{labels} over {' and '.join(map(quantity_words, axes))}")
 
 
 def can_draw(request: FigureRequest) -> bool:
-    """Whether the figure is a map over an arm's quantities: some vary, and no other figure is asked for."""
+    """Whether `draw_arm_map` draws the request: quantities of the arm vary, and the user asks for no other
+    figure.
+    """
     view = request.views[0]
-    chosen = request.what not in (None, *MAPS) or request.points or request.roots
+    chosen = request.what not in (None, *MAP_KINDS) or request.points or request.roots
     several = any(len(view.variables[name]) > 1 for name in view.over)
     return several and view.task in PANELS and not chosen
 
 
 def _axis(view: View, name: str) -> tuple[Array, str]:
-    """(values along an axis, its label)."""
+    """(values along the axis `name`, label of the axis), in the unit typed by the user."""
     values = view.variables[name]
     if name in style.LABELS:
         return values, style.LABELS[name]
     values, unit = in_typed_unit(view, name, values)
-    return values, word(name) + (f" ({unit})" if unit else "")
+    return values, quantity_words(name) + (f" ({unit})" if unit else "")
 
 
 def _panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
-    """Figure with panels side by side for maps, or stacked."""
+    """Figure with `count` panels: side by side for maps on a wide page, else stacked."""
     across = maps and not narrow
     size = (4.8 * count, 4.4) if across else (4.6, 2.9 * count)
     apart = ConstrainedLayoutEngine(wspace=0.06 if across else 0.0)  # room for the label of a colour bar
@@ -108,7 +115,9 @@ def _panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
 
 
 def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], place: Any) -> list[Artist]:
-    """Draws a panel as colours over two axes; returns legend entries."""
+    """Draws a panel as a map over two quantities; returns legend entries. place: index of the drawn points in
+    the grid.
+    """
     (x, x_label), (y, y_label) = (_axis(view, name) for name in names)
     values = np.ma.masked_invalid(panel.values[place].T)
     style.colour_cells(axes, (cell_edges(x), cell_edges(y)), panel.values[place].T, panel.label)
@@ -123,9 +132,11 @@ def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], place: An
 
 
 def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[Artist]:
-    """Draws a panel as lines over an axis; returns legend entries."""
+    """Draws a panel as lines over the quantity `name`; returns legend entries. place: index of the drawn
+    points in the grid.
+    """
     x, label = _axis(view, name)
-    colours = (style.SECOND, style.FIRST, style.THIRD)
+    colours = (style.VERMILION, style.BLUE, style.GREEN)
     handles: list[Artist] = []
     for colour, (line, values) in zip(colours, (panel.lines or {"": panel.values}).items(), strict=False):
         style_of_line = "o" if name == DRAG else "-o"
@@ -142,7 +153,9 @@ def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[
 
 
 def _band(axes: Axes, view: View, x: str, values: Array, place: Any, colour: str) -> list[Artist]:
-    """Draws the range of a number on a grid over the drags of a file as a band; returns the legend entry."""
+    """Draws the range of a result over the drags as a band; returns its legend entry. x: name of the quantity
+    on the horizontal axis.
+    """
     if DRAG not in view.over or x == DRAG or len(view.variables[DRAG]) < 2:
         return []
     drag = view.over.index(DRAG)
@@ -154,15 +167,17 @@ def _band(axes: Axes, view: View, x: str, values: Array, place: Any, colour: str
 
 
 def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], place: Any) -> list[Artist]:
-    """Hatches cells in which the model does not apply, or no rod covers the arm; returns legend entries."""
+    """Hatches the cells where the model does not apply, and fills those without a rod; returns legend
+    entries.
+    """
     x, y = names
     rods = view.variables["status"][place] < NOT_SLENDER
-    empty = [(rods & np.isnan(panel.values[place]), panel.empty_label, EMPTY_LOOK)] if y else []
+    empty = [(rods & np.isnan(panel.values[place]), panel.empty_label, EMPTY_CELL_LOOK)] if y else []
     across = cell_edges(_axis(view, x)[0])
     limits = axes.get_ylim()
     up = cell_edges(_axis(view, y)[0]) if y else np.array(limits)
     handles: list[Artist] = []
-    for variable, value, label, look in HATCHES:
+    for variable, value, label, look in COVERED_CELL_LOOKS:
         chosen = view.variables[variable][place] == value
         empty.append((chosen if variable == "status" else chosen & rods, label, look))
     for chosen, label, look in empty:
@@ -177,7 +192,7 @@ def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], place: 
 
 
 def _fixed(view: View, drawn: list[str]) -> str:
-    """Quantities away from the axes of the figure, with values."""
+    """Constant quantities of the arm with their values, as text. drawn: names of the quantities on axes."""
     texts = []
     for name, values in view.quantities.items():
         if name in drawn or name in ARM_UNITS:

@@ -1,4 +1,4 @@
-"""Numbers of each task drawn over an arm's quantities, in the units typed by the user."""
+"""Which results of each task are drawn over the quantities of an arm, in the units typed by the user."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -9,16 +9,16 @@ from ....arrays import Array
 from ....results.file.view import View
 from .quantities import in_typed_unit
 
-EVENTS = {"hopf": "flutter", "onset": "onset of oscillations", "restabilization": "return"}
-"""Words for the kinds of thresholds."""
+THRESHOLD_KIND_WORDS = {"hopf": "flutter", "onset": "onset of oscillations", "restabilization": "return"}
+"""Word for each kind of threshold."""
 
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """A number at every point, with label and unit.
+    """A result at every point of the file, with label and unit, for one panel.
 
-    lines: lines drawn over a single axis, by legend entry, if there are more than the values. zero_label:
-    legend entry of the zero contour of a map; empty for no contour.
+    lines: several results to draw together over one axis, by legend entry; empty if only `values` are drawn.
+    zero_label: legend entry of the contour at zero in a map; empty for no contour.
     """
 
     label: str
@@ -26,19 +26,23 @@ class Panel:
     lines: Mapping[str, Array] = field(default_factory=dict)
     zero_label: str = ""
     lines_label: str = ""
-    """Label of the axis if several lines are drawn."""
+    """Label of the vertical axis if `lines` are drawn."""
     empty_label: str = "nothing computed"
-    """Legend entry for arms without a number."""
+    """Legend entry for arms without a value."""
 
 
 def _of_thresholds(view: View) -> list[Panel]:
-    """Load and frequency at flutter, with the loads at the onset of oscillations and at restabilization."""
+    """Panels of the task `thresholds`: loads at flutter, onset of oscillation and restabilization; frequency
+    at flutter.
+    """
     # A threshold pressure is shown in the unit in which the user typed Young's modulus.
     load, si, typed = ("force", "N", "force") if "force" in view.quantities else ("pressure", "Pa", "young")
     lines = {}
     for event in ("hopf", "onset", "restabilization"):
-        lines[EVENTS[event]], unit = in_typed_unit(view, typed, view.variables[f"{load}_{event}"], si)
-    flutter = lines[EVENTS["hopf"]]
+        lines[THRESHOLD_KIND_WORDS[event]], unit = in_typed_unit(
+            view, typed, view.variables[f"{load}_{event}"], si
+        )
+    flutter = lines[THRESHOLD_KIND_WORDS["hopf"]]
     return [
         Panel(f"{load} at flutter ({unit})", flutter, lines, "", f"{load} ({unit})", "no flutter"),
         Panel("frequency at flutter (Hz)", view.variables["frequency_hopf_hz"], empty_label="no flutter"),
@@ -46,7 +50,7 @@ def _of_thresholds(view: View) -> list[Panel]:
 
 
 def _of_modes(view: View) -> list[Panel]:
-    """Growth rate and frequency of the leading mode."""
+    """Panels of the tasks `spectrum` and `modes`: growth rate and frequency of the leading mode."""
     return [
         Panel("growth rate (1/s)", view.variables["growth_rate_si"][..., 0], zero_label="growth rate 0"),
         Panel("frequency (Hz)", np.abs(view.variables["frequency_hz"][..., 0])),
@@ -54,7 +58,7 @@ def _of_modes(view: View) -> list[Panel]:
 
 
 def _of_cycles(view: View) -> list[Panel]:
-    """Frequency and amplitude of the limit cycle."""
+    """Panels of the task `limit_cycle`: frequency and amplitude of the cycle."""
     amplitude, unit = in_typed_unit(view, "length", view.variables["tip_y_max_si"])
     return [
         Panel("frequency (Hz)", view.variables["frequency_hz"], empty_label="no cycle"),
@@ -68,4 +72,4 @@ PANELS: dict[str, Callable[[View], list[Panel]]] = {
     "modes": _of_modes,
     "limit_cycle": _of_cycles,
 }
-"""Panels of each task; other tasks are drawn as lists of points."""
+"""Function of each task that returns its panels. An unlisted task has no figure over an arm's quantities."""

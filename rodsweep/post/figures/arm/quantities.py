@@ -1,4 +1,4 @@
-"""An arm's quantities in figures: their names as words, and values in the units typed by the user."""
+"""Quantities of an arm in figures: their names in words, and their values in the units typed by the user."""
 
 from math import isclose
 from typing import Any
@@ -13,37 +13,39 @@ from ....model.arm.drag import DRAGS
 from ....model.arm.quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE
 from ....model.units import written_in
 from ....results.file.view import View
-from ...summary.arm.arm import word
+from ...summary.arm.arm import quantity_words
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
-"""Space between a number and a unit, at which no line of a figure breaks."""
-SAME_NUMBER = 1e-9
-"""Largest relative difference between a stored parameter and the parameter computed from the arm again."""
+"""No-break space between a number and its unit, at which no line of text is broken."""
+SAME_NUMBER_TOLERANCE = 1e-9
+"""Largest relative difference up to which a stored parameter equals the parameter computed from the arm."""
 
 
 def in_typed_unit(view: View, name: str, values: Array, si: str = "") -> tuple[Array, str]:
-    """(values of a quantity, of any shape, in the unit typed by the user; this unit)."""
+    """(values of the quantity `name` in the unit typed by the user, this unit). values: in SI units, of any
+    shape.
+    """
     si = si or ALL_QUANTITIES[name].unit
     unit = view.typed.get(name, si)
     return (values, "") if si == "1" else (values * written_in(1.0, unit, si), unit)
 
 
 def quantity_text(view: View, name: str, value: float) -> str:
-    """A quantity with its value in the unit typed by the user: `length 12 cm`."""
+    """Name and value of a quantity, in the unit typed by the user: `length 12 cm`."""
     if name == "drag":
         return f"{name}{NO_BREAK}{DRAGS[int(value)].replace('_', NO_BREAK)}"
     shown, unit = in_typed_unit(view, name, np.array([value]))
     unit = unit.replace("^3", "$^3$").replace("*", " ").replace(" ", NO_BREAK)
-    return f"{word(name)}{NO_BREAK}{shown[0]:.4g}{NO_BREAK}{unit}".rstrip(NO_BREAK)
+    return f"{quantity_words(name)}{NO_BREAK}{shown[0]:.4g}{NO_BREAK}{unit}".rstrip(NO_BREAK)
 
 
 def given_quantities(view: View) -> list[str]:
-    """Names of the quantities that define the arm of a file, without derived units."""
+    """Names of the quantities that the user gave for the arm of a file."""
     return [name for name in view.quantities if name not in (*ARM_UNITS, *RELATIVE)]
 
 
 def at_point(view: View, name: str, number: int) -> float:
-    """A quantity at a point of a grid of parameters or of a list, numbered from 1."""
+    """Value of the quantity `name` at a point of the file; number: from 1."""
     values = np.asarray(view.variables[name])
     if values.size == 1:
         return float(values.ravel()[0])
@@ -53,8 +55,8 @@ def at_point(view: View, name: str, number: int) -> float:
     return float(values.ravel()[number - 1])
 
 
-def replaced(view: View, number: int) -> dict[str, float]:
-    """Parameters at a point, numbered from 1, that the config gives instead of the arm's own."""
+def replaced_parameters(view: View, number: int) -> dict[str, float]:
+    """Parameters at a point that the config gives instead of the arm's own, by name; number: from 1."""
     given: dict[str, Any] = {name: at_point(view, name, number) for name in given_quantities(view)}
     if "drag" in given:
         given["drag"] = DRAGS[int(given["drag"])]
@@ -66,5 +68,5 @@ def replaced(view: View, number: int) -> dict[str, float]:
     return {
         name: value
         for name, value in at.items()
-        if name == "F" or not isclose(value, getattr(own, name), rel_tol=SAME_NUMBER)
+        if name == "F" or not isclose(value, getattr(own, name), rel_tol=SAME_NUMBER_TOLERANCE)
     }

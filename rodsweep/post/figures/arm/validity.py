@@ -1,4 +1,6 @@
-"""Validity of the model in figures of a rod: hatched cells where it does not apply, and a note."""
+"""Hatches in figures of an arm over dimensionless parameters, where the model does not apply, and a note
+about them.
+"""
 
 from collections.abc import Sequence
 from typing import Any
@@ -13,12 +15,14 @@ from ....results.file.view import View
 from ..cycle.point_map import cell_edges
 from ..style import LABELS
 
-HATCHED: dict[str, Any] = {"fc": "none", "ec": "0.6", "hatch": "////", "lw": 0}
-"""Look of cells in which the model does not apply."""
+VALIDITY_HATCH: dict[str, Any] = {"fc": "none", "ec": "0.6", "hatch": "////", "lw": 0}
+"""Look of the hatches where the model does not apply."""
 
 
 def add_validity(figure: Figure, views: Sequence[View]) -> None:
-    """Hatches a figure of arms if its axes allow, and adds a note where the model does not apply."""
+    """Hatches a figure where the model does not apply to the arm, if its axes allow it; otherwise adds a
+    note.
+    """
     judged = [view.variables["model_applies"] for view in views if "model_applies" in view.variables]
     outside = [np.asarray(values == Validity.does_not_apply) for values in judged]
     number, count = (sum(map(each, outside)) for each in (np.count_nonzero, np.size))
@@ -33,7 +37,9 @@ def add_validity(figure: Figure, views: Sequence[View]) -> None:
 
 
 def _hatch(figure: Figure, view: View, along: list[str], outside: np.ndarray) -> bool:
-    """Hatches cells over one or two parameters; returns whether any panel has such axes."""
+    """Hatches cells over the one or two parameters `along`; returns whether any panel has these axes.
+    outside: mask of the points.
+    """
     cells = np.squeeze(outside)
     edges = [cell_edges(view.axes[name]) for name in along]
     done = False
@@ -50,27 +56,31 @@ def _hatch(figure: Figure, view: View, along: list[str], outside: np.ndarray) ->
 
 
 def _label(axes: Axes, which: str) -> str:
-    """Label of an axis, or of an axis shared with it."""
+    """Label of an axis, from this panel or from a panel that shares the axis. which: "x" or "y"."""
     shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
     labels = [getattr(each, f"get_{which}label")() for each in (axes, *shared.get_siblings(axes))]
     return next(filter(None, labels), "")
 
 
 def _spans(axes: Axes, which: str, edges: Array, there: np.ndarray) -> None:
-    """Hatches cells of an axis, across the panel."""
+    """Hatches intervals of one axis over the whole panel. edges: of the intervals; there: mask of the hatched
+    intervals.
+    """
     limits = axes.get_xlim() if which == "x" else axes.get_ylim()
     hatch = axes.axvspan if which == "x" else axes.axhspan
     low, high = sorted(limits)
     for i in np.flatnonzero(there):
         left, right = np.clip(edges[[i, i + 1]], low, high)
-        hatch(left, right, zorder=0 if which == "x" else 3, **HATCHED)
+        hatch(left, right, zorder=0 if which == "x" else 3, **VALIDITY_HATCH)
     axes.set(**{f"{which}lim": limits})
 
 
 def _cells(axes: Axes, edges: list[Array], there: np.ndarray) -> None:
-    """Hatches cells of a map, (nx, ny)."""
+    """Hatches cells of a map. edges: of the cells along x and y; there: mask of the hatched
+    cells, (nx, ny).
+    """
     limits = axes.get_xlim(), axes.get_ylim()
     for i, j in np.argwhere(there):
-        axes.fill_between(edges[0][[i, i + 1]], *edges[1][[j, j + 1]], zorder=3, **HATCHED)
+        axes.fill_between(edges[0][[i, i + 1]], *edges[1][[j, j + 1]], zorder=3, **VALIDITY_HATCH)
     axes.set_xlim(limits[0])
     axes.set_ylim(limits[1])

@@ -1,1 +1,1 @@
-"""Figures of limit cycles: portraits, amplitudes over a parameter, energy over a period, animation."""
+"""Figures of limit cycles: portraits, amplitudes over a parameter, maps, energy over a period, animations."""

@@ -1,4 +1,4 @@
-"""Animation of the beating arm: a GIF, or an MP4 if ffmpeg is installed."""
+"""Animation of the beating arm as a GIF, or as an MP4 if ffmpeg is installed."""
 
 from collections.abc import Sequence
 from math import floor, log10
@@ -13,29 +13,31 @@ from matplotlib.figure import Figure
 from ....errors import EnvironmentIncomplete, InputError
 from ....results.file.view import View
 from ..layout.fitting import fit
-from ..style import FIRST, SECOND
+from ..style import BLUE, VERMILION
 from .portrait import draw_clamp, draw_tip_path, force_arrow, set_frame
-from .selection import SHAPES, CycleSelection, StoredCycle, chosen_cycles
+from .selection import SHAPE_VARIABLES, CycleSelection, StoredCycle, chosen_cycles
 
-FILMS = (".gif", ".mp4")
-"""Suffixes of animations."""
+FILM_SUFFIXES = (".gif", ".mp4")
+"""Suffixes of animation files."""
 PERIOD_SECONDS = 2.4
-"""Duration of one period on the screen, in s."""
+"""Duration of one period of the cycle on the screen, in s."""
 MIN_SHAPES = 8
-"""Least number of frames in a period; with fewer the motion is not recognisable."""
-GHOSTS = 6
-"""Number of earlier shapes that fade behind the arm."""
+"""Least number of stored shapes per period; with fewer, the motion is not recognisable."""
+GHOST_COUNT = 6
+"""Number of earlier shapes drawn in fading colours behind the arm."""
 TIME_DIGITS = 3
-"""Number of digits of the period; the running time has the same decimals."""
+"""Number of significant digits of the period; the running time has equally many decimals."""
 TIME_HEIGHT = 0.08
-"""Height reserved for the running time, as a fraction of the panel, below the arm and its force."""
-OLDEST_GHOST = 0.2
-"""Age of the oldest ghost, in periods."""
+"""Height of the line with the running time, as a fraction of the panel's height."""
+MAX_GHOST_AGE = 0.2
+"""Age of the oldest earlier shape that is drawn, in periods."""
 
 
 def write_animation(view: View, points: Sequence[int], output: Path) -> str:
-    """Writes one period of up to three cycles side by side, each in its own time; returns a description."""
-    selection = chosen_cycles(view, points, SHAPES)
+    """Writes one period of up to three cycles side by side, each scaled to the same duration; returns a
+    description. Raises InputError for too few shapes.
+    """
+    selection = chosen_cycles(view, points, SHAPE_VARIABLES)
     frames = len(selection.cycles[0].values["shape_x"])
     if frames < MIN_SHAPES:
         raise InputError(
@@ -53,7 +55,7 @@ def write_animation(view: View, points: Sequence[int], output: Path) -> str:
 
 
 def first_frame(selection: CycleSelection) -> tuple[Figure, list["MovingArm"]]:
-    """Figure of an animation in its final layout, with the arms at the start of their periods."""
+    """(figure in its final layout, arms at the starts of their periods)."""
     cycles = selection.cycles
     figure = Figure(figsize=(2.7 * len(cycles) + 0.9, 4.4), layout="constrained")
     panels = figure.subplots(1, len(cycles), squeeze=False, sharey=True)[0]
@@ -71,7 +73,9 @@ def first_frame(selection: CycleSelection) -> tuple[Figure, list["MovingArm"]]:
 
 
 def _writer(output: Path, rate: int) -> AbstractMovieWriter:
-    """Writer for the suffix of the file; raises EnvironmentIncomplete if ffmpeg is needed and missing."""
+    """Matplotlib writer for the suffix of `output`, with `rate` frames per second. Raises
+    EnvironmentIncomplete for an MP4 without ffmpeg.
+    """
     if output.suffix == ".gif":
         return PillowWriter(fps=rate)
     if not matplotlib.animation.writers.is_available("ffmpeg"):
@@ -82,7 +86,7 @@ def _writer(output: Path, rate: int) -> AbstractMovieWriter:
 
 
 class MovingArm:
-    """An arm in its panel."""
+    """Animated arm in one panel, with its follower force, earlier shapes in grey, and the running time."""
 
     def __init__(self, axes: Axes, cycle: StoredCycle) -> None:
         self.axes = axes
@@ -90,24 +94,24 @@ class MovingArm:
         self.frames = len(cycle.values["shape_x"])
         draw_tip_path(axes, cycle)
         draw_clamp(axes, cycle.units.length)
-        fading = np.linspace(0.85, 0.45, GHOSTS)
+        fading = np.linspace(0.85, 0.45, GHOST_COUNT)
         self.ghosts = [axes.plot([], [], color=str(grey), lw=1.2, zorder=1.5)[0] for grey in fading]
-        (self.rod,) = axes.plot([], [], color=FIRST, lw=3.0, solid_capstyle="round", zorder=3)
-        self.arrow = force_arrow(axes, np.zeros(1), np.zeros(1), np.zeros(1), SECOND, cycle.units.length)
+        (self.rod,) = axes.plot([], [], color=BLUE, lw=3.0, solid_capstyle="round", zorder=3)
+        self.arrow = force_arrow(axes, np.zeros(1), np.zeros(1), np.zeros(1), VERMILION, cycle.units.length)
         self.text = axes.text(0.02, 0.02, "", transform=axes.transAxes, size=9)
         axes.set_xlabel(cycle.units.along("x"))
         axes.set_title(cycle.heading(cycle.period_text))
 
     def show(self, k: int) -> None:
-        """Moves the arm to its k-th shape."""
-        shapes = [self.cycle.values[name] for name in SHAPES]
-        back = np.linspace(OLDEST_GHOST * self.frames, 0, GHOSTS, endpoint=False).round().astype(int)
+        """Moves the arm to its shape number `k`, from 0."""
+        shapes = [self.cycle.values[name] for name in SHAPE_VARIABLES]
+        back = np.linspace(MAX_GHOST_AGE * self.frames, 0, GHOST_COUNT, endpoint=False).round().astype(int)
         for ghost, steps in zip(self.ghosts, back, strict=True):
             ghost.set_data(shapes[0][k - steps], shapes[1][k - steps])
         x, y, theta = (values[k] for values in shapes)
         self.rod.set_data(x, y)
         self.arrow.remove()
-        self.arrow = force_arrow(self.axes, x, y, theta, SECOND, self.cycle.units.length)
+        self.arrow = force_arrow(self.axes, x, y, theta, VERMILION, self.cycle.units.length)
         time = self.cycle.period * k / self.frames
         decimals = max(0, TIME_DIGITS - 1 - floor(log10(self.cycle.period)))
         unit = self.cycle.units.names[1]

@@ -1,4 +1,4 @@
-"""Energy of the beating arm over a cycle: power of the force, dissipation and stored elastic energy."""
+"""Energy of the beating arm over a period: injected power, dissipated power, and elastic energy."""
 
 from collections.abc import Sequence
 
@@ -11,20 +11,21 @@ from ....results.file.view import View
 from ...summary.errors import power_error
 from ...summary.ranges import rounded
 from ..arm.quantities import NO_BREAK
-from ..style import FIRST, SECOND, THIRD, legend_below
-from .selection import ENERGIES, StoredCycle, chosen_cycles, in_tex
+from ..style import BLUE, GREEN, VERMILION, legend_below
+from .selection import ENERGY_BUDGET_VARIABLES, StoredCycle, chosen_cycles, in_tex
 
 RATE_MARK_COUNT = 24
-"""Number of times at which dU/dt is marked on the curve of injection minus dissipation."""
+"""Number of times at which marks of dU/dt are drawn over the curve of injection minus dissipation."""
 
 
 def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
-    """Draws a column for each cycle: the energy U, injection and dissipation, their difference and dU/dt.
+    """(figure with a column for each cycle: energy U, injection and dissipation, their difference with dU/dt,
+    description).
 
-    The marks are derivatives of the stored U. They are independent of the curve and must lie on it. narrow:
-    whether the columns have little room.
+    The marks of dU/dt are derivatives of the stored energy U, computed independently of the curve on which
+    they must lie. narrow: whether the page is narrow.
     """
-    selection = chosen_cycles(view, points, ENERGIES)
+    selection = chosen_cycles(view, points, ENERGY_BUDGET_VARIABLES)
     cycles = selection.cycles
     figure = Figure(figsize=(3.6 * len(cycles) + 1.0, 6.4), layout="constrained")
     rows = figure.subplots(
@@ -44,7 +45,7 @@ def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tupl
 
 
 def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
-    """(mean power of the force with the digits of its error, energy imbalance), in units of the panels."""
+    """(mean power of the force with its error, energy imbalance) as text, in the units of the panels."""
     v = {name: float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance")}
     error = power_error(cycle.values)
     mean = in_tex(rounded(v["injection_mean"], abs(v["injection_mean"]) * float(error)))
@@ -60,14 +61,16 @@ def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     top, middle, bottom = column
     phase = np.linspace(0, 1, 401, dtype=np.float64)
     time = phase * cycle.period
-    energy, injection, dissipation = (interpolate_samples(cycle.values[name], phase) for name in ENERGIES)
+    energy, injection, dissipation = (
+        interpolate_samples(cycle.values[name], phase) for name in ENERGY_BUDGET_VARIABLES
+    )
     top.plot(time, energy, color="k", lw=1.5)
     mean = float(cycle.values["injection_mean"])
     middle.axhline(mean, color="0.6", lw=0.9, ls=":", label="mean injection", zorder=1)
-    middle.plot(time, injection, color=SECOND, lw=1.5, label="injection")
-    middle.plot(time, dissipation, color=FIRST, lw=1.5, ls="--", label="dissipation")
+    middle.plot(time, injection, color=VERMILION, lw=1.5, label="injection")
+    middle.plot(time, dissipation, color=BLUE, lw=1.5, ls="--", label="dissipation")
     bottom.axhline(0, color="0.8", lw=0.6, zorder=0)
-    bottom.plot(time, injection - dissipation, color=THIRD, lw=1.5, label=r"injection $-$ dissipation")
+    bottom.plot(time, injection - dissipation, color=GREEN, lw=1.5, label=r"injection $-$ dissipation")
     at = np.arange(RATE_MARK_COUNT) / RATE_MARK_COUNT
     rate = (
         interpolate_samples(time_derivative(cycle.values["energy"]), at)

@@ -1,6 +1,6 @@
-"""Maps of limit cycles over two parameters: period, largest y of the tip, other outcomes, and Hopf points.
+"""Maps of limit cycles over two parameters: period, largest y of the tip, other statuses, and Hopf points.
 
-The points of the file are the centres of the cells. Only the line of Hopf points is interpolated.
+Each point of the file is the centre of a cell. Only the lines of Hopf points are interpolated.
 """
 
 from collections.abc import Iterator, Sequence
@@ -47,23 +47,28 @@ STATUS_LOOKS = {
     "failed": ("#6E6E6E", "xxxx"),
     "torus": ("#D9CBBF", "++++"),
 }
-"""Colour and hatching of cells without a cycle: greys, which the colour maps do not contain."""
+"""(colour, hatch) of cells without a cycle, by status. They are greys, which the colour maps do
+not contain."""
 OTHER_LOOKS = (("#BFA893", "----"), ("#8F7A68", "oooo"))
-"""Looks of unlisted statuses, in order of appearance."""
+"""(colour, hatch) of statuses that STATUS_LOOKS does not list, in order of appearance."""
 PANEL_POINTS = 250
-"""Width of a panel, in points of print."""
+"""Width of a panel, in points (1/72 inch)."""
 MARKER_SIZES = 1.0, 4.0
-"""Smallest and largest size, in points, of the open marker of an unstable cycle, otherwise half a cell."""
+"""Smallest and largest size, in points, of the open marker of an unstable cycle; in between the size is half
+a cell."""
 CYCLE_HATCH_COLOUR = "0.25"
 """Grey of the hatches of cells without a cycle, and of the markers of unstable cycles."""
-ROW_ENTRIES = 6
-"""Largest number of legend entries in a single row."""
-QUANTITIES = (("period", "viridis", True), ("tip_y_max", "plasma", False))
-"""(variable, colour map, whether colours are logarithmic for values over more than a decade) by panel."""
+MAX_ROW_ENTRIES = 6
+"""Largest number of entries in one row of the legend."""
+MAP_QUANTITIES = (("period", "viridis", True), ("tip_y_max", "plasma", False))
+"""(variable, colour map, whether colours are logarithmic if the values span more than a decade) of each
+panel."""
 
 
 def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
-    """Draws the period and the largest y of the tip, with Hopf points; narrow: whether panels are stacked."""
+    """(figure of the period and the largest y of the tip, with Hopf points, description); narrow: whether the
+    panels are stacked.
+    """
     points = point_map(view)
     words = view.outcomes[points.at]
     cycles = np.isin(words, CYCLE_WORDS)
@@ -72,7 +77,7 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     lines = hopf_lines(points, view)
     (units,) = units_over([view], [points.at.ravel()])
     _, largest_y, period, _ = units.labels_over
-    for axes, label, (name, colours, ratios) in zip(panels, (period, largest_y), QUANTITIES, strict=True):
+    for axes, label, (name, colours, ratios) in zip(panels, (period, largest_y), MAP_QUANTITIES, strict=True):
         drawn = units.drawn({name: view.variables[name].ravel()[points.at.ravel()]})[name]
         values = np.where(cycles, drawn.reshape(points.at.shape), np.nan)
         edges = cell_edges(points.x), cell_edges(points.y)
@@ -82,14 +87,16 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
         handles += _mark_unstable(axes, points, words == "unstable")
     label_maps(panels, points)
     if handles:
-        rows = -(-len(handles) // ROW_ENTRIES)
+        rows = -(-len(handles) // MAX_ROW_ENTRIES)
         legend_below(figure, handles, columns=-(-len(handles) // rows))
     figure.suptitle(heading(view, _shared(view, points, units.in_si)))
     return figure, f"period and amplitude over {' and '.join(points.names)}{points.left_out}"
 
 
 def _shared(view: View, points: PointMap, in_si: bool) -> str:
-    """Parameters that all points share, or quantities if the rod is an arm (in_si)."""
+    """Text of the parameters that are equal at all points; of the quantities if in_si, which means that the
+    rod is an arm.
+    """
     if not in_si:
         return parameter_text(points.shared)
     along = {quantity for quantity, moved in CHANGED_PARAMETER.items() if moved in points.names}
@@ -98,7 +105,7 @@ def _shared(view: View, points: PointMap, in_si: bool) -> str:
 
 
 def map_panels(count: int, narrow: bool) -> tuple[Figure, list[Axes]]:
-    """Figure with panels that share axes: side by side, or if narrow stacked."""
+    """Figure with `count` panels that share axes; narrow: whether they are stacked, not side by side."""
     apart = ConstrainedLayoutEngine(wspace=0.0 if narrow else 0.06)  # room for the first colour bar's label
     figure = Figure(figsize=(4.2, 3.2 * count) if narrow else (4.8 * count, 4.5), layout=apart)
     shape = (count, 1) if narrow else (1, count)
@@ -106,7 +113,9 @@ def map_panels(count: int, narrow: bool) -> tuple[Figure, list[Axes]]:
 
 
 def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
-    """Sets scales and labels of panels that share axes; inner panels get no labels."""
+    """Sets scales and labels of panels that share axes. Only panels at the left and at the bottom
+    get labels.
+    """
     for axes in panels:
         scale(axes, "x", points.x)
         scale(axes, "y", points.y)
@@ -114,7 +123,9 @@ def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
 
 
 def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> list[Artist]:
-    """Fills the cells without a cycle with the look of their status; returns legend entries."""
+    """Fills cells without a cycle by their status; returns legend entries. words: status of each cell, (ny,
+    nx).
+    """
     further = cycle(OTHER_LOOKS)
     handles: list[Artist] = []
     for word in dict.fromkeys([*STATUS_LOOKS, *np.unique(words).tolist()]):
@@ -130,7 +141,7 @@ def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> lis
 
 
 def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) -> list[Artist]:
-    """Marks the cells of unstable cycles with an open marker; returns the legend entry."""
+    """Draws an open marker in each cell of the mask `unstable`, (ny, nx); returns the legend entry."""
     if not unstable.any():
         return []
     look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": CYCLE_HATCH_COLOUR, "ls": "", "mew": 0.6}
@@ -141,7 +152,9 @@ def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) ->
 
 
 def _runs(chosen: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
-    """(left, width) of each run of neighbouring chosen cells in a row."""
+    """(left edge, width) of each run of neighbouring cells in a row. chosen: mask of the cells, (n,). edges:
+    (n + 1,).
+    """
     steps = np.diff(np.concatenate(([0], chosen.astype(int), [0])))
     starts = edges[np.flatnonzero(steps > 0)]
     ends = edges[np.flatnonzero(steps < 0)]
@@ -149,9 +162,10 @@ def _runs(chosen: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
 
 
 def _draw_hopf_lines(axes: Axes, points: PointMap, lines: Sequence[Array]) -> list[Artist]:
-    """Draws lines of zero leading growth rate, (2, n): x, y; returns the legend entry.
+    """Draws lines of Hopf points, each (2, n): x, y; returns the legend entry.
 
-    Every zero growth rate is a Hopf point: no eigenvalue passes through 0, because D(0) = 1.
+    On such a line the leading growth rate is zero. No eigenvalue can pass through 0, because D(0) = 1, so
+    every zero is a Hopf point.
     """
     look: dict[str, Any] = {"color": "k", "lw": 1.4}
     halo = [withStroke(linewidth=3.0, foreground="white")]
@@ -162,10 +176,11 @@ def _draw_hopf_lines(axes: Axes, points: PointMap, lines: Sequence[Array]) -> li
 
 
 def hopf_lines(points: PointMap, view: View) -> list[Array]:
-    """Contours of zero leading growth rate, each of shape (2, n): x, y.
+    """Lines of Hopf points, each (2, n): x, y, as contours of zero leading growth rate.
 
-    The growth rate is interpolated linearly along each row, between points and Hopf points, and between rows
-    in the scale of y. A contour therefore passes through the located Hopf points of every row.
+    Along each row the growth rate is interpolated linearly between the points of the file and the located
+    Hopf points; between rows, linearly on the scale of y. A contour therefore passes through the located Hopf
+    points of every row.
     """
     (x, x_back), (y, y_back) = (in_its_scale(values) for values in (points.x, points.y))
     to_scale = np.log if is_logarithmic(points.x) else np.asarray

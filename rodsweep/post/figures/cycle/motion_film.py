@@ -1,4 +1,4 @@
-"""Film of an arm that moves from a given shape: a GIF, with the path of its tip."""
+"""Film of an arm that moves from a given shape, with the path of its tip, as a GIF."""
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -10,22 +10,24 @@ from matplotlib.figure import Figure
 
 from ....arrays import Array
 from ....watch import SolvePosition, report
-from ..style import FIRST
-from .portrait import MARGIN, WALL_DEPTH, draw_clamp
+from ..style import BLUE
+from .portrait import SHAPE_MARGIN, WALL_DEPTH, draw_clamp
 
-SIZE = (3.6, 4.0)
+FRAME_SIZE = (3.6, 4.0)
 """Width and height of a frame, in inches."""
 DPI = 100
-RATE = 16
-"""Frames per second: a return of the tip in 32 shapes takes 2 s, as on the page of `explore`."""
+"""Resolution of a frame, in pixels per inch."""
+FRAME_RATE = 16
+"""Frames per second. One return of the tip, 32 shapes, takes 2 s, as on the page of `rodsweep explore`."""
 MAX_FRAMES = 256
-"""Largest number of frames: 16 s, which take some 10 s to draw."""
+"""Largest number of frames: 16 s of film, which take some 10 s to draw."""
 
 
 class FilmedMotion(NamedTuple):
-    """x, y: shapes, (frames, nodes). step: time between shapes. length: of the arm, in the unit of x and y.
+    """Motion of an arm in the units of the film.
 
-    units: names of the units of length and time.
+    x, y: shapes, (frames, nodes). step: time between shapes. length: length of the arm. units: names of the
+    units of length and time.
     """
 
     x: Array
@@ -36,16 +38,16 @@ class FilmedMotion(NamedTuple):
 
 
 def motion_film(motion: FilmedMotion) -> bytes:
-    """The film as a GIF; of a longer motion the first `MAX_FRAMES` shapes."""
+    """The motion as the content of a GIF file; a motion with more shapes than MAX_FRAMES is cut off."""
     frames = min(len(motion.x), MAX_FRAMES)
-    figure = Figure(figsize=SIZE, layout="constrained")
+    figure = Figure(figsize=FRAME_SIZE, layout="constrained")
     axes = figure.subplots()
     _frame(axes, motion)
     (path,) = axes.plot([], [], color="0.6", lw=0.8)
-    (rod,) = axes.plot([], [], color=FIRST, lw=3.0, solid_capstyle="round", zorder=3)
+    (rod,) = axes.plot([], [], color=BLUE, lw=3.0, solid_capstyle="round", zorder=3)
     with TemporaryDirectory() as directory:
         output = Path(directory) / "film.gif"
-        writer = PillowWriter(fps=RATE)
+        writer = PillowWriter(fps=FRAME_RATE)
         with writer.saving(figure, str(output), dpi=DPI):
             for k in range(frames):
                 report(lambda k=k: SolvePosition(f"frame {k + 1} of {frames}", k / frames))  # type: ignore[misc]
@@ -57,9 +59,9 @@ def motion_film(motion: FilmedMotion) -> bytes:
 
 
 def _frame(axes: Axes, motion: FilmedMotion) -> None:
-    """The clamp, and axes of equal scales around all shapes."""
+    """Draws the clamp, and sets the axes so that all shapes fit, with equal scales for x and y."""
     draw_clamp(axes, motion.length)
-    margin = MARGIN * motion.length
+    margin = SHAPE_MARGIN * motion.length
     left = min(float(motion.x.min()), -WALL_DEPTH * motion.length)
     reach = float(abs(motion.y).max()) + margin
     axes.set(xlim=(left - margin, float(motion.x.max()) + margin), ylim=(-reach, reach), aspect="equal")

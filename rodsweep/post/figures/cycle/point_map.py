@@ -1,4 +1,6 @@
-"""Points of a file as a map over two parameters: axes, cells, and the place of each point."""
+"""Points of a file as a map over two parameters: values on the axes, edges of cells, and the point in each
+cell.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,29 +16,31 @@ from ..style import is_logarithmic
 
 @dataclass(frozen=True, slots=True)
 class PointMap:
-    """Points that form a grid over two parameters."""
+    """Points of a file that form a grid over two parameters."""
 
     names: tuple[str, str]
-    """The parameters; the first is horizontal."""
+    """Names of the two parameters; the first is on the horizontal axis."""
     x: Array
-    """Values of the first parameter, increasing, shape (nx,)."""
+    """Values of the first parameter in increasing order, (nx,)."""
     y: Array
-    """Values of the second parameter, increasing, shape (ny,)."""
+    """Values of the second parameter in increasing order, (ny,)."""
     at: NDArray[np.intp]
-    """Index of the point in each place of the grid, shape (ny, nx)."""
+    """Index in the file of the point in each cell, (ny, nx)."""
     shared: dict[str, float]
-    """Parameters that all points share."""
+    """Parameters that are equal at all points, by name."""
     left_out: str
-    """Clause of the message on values without a place on an axis, or an empty text."""
+    """Clause on infinite values, which an axis cannot show; empty if there are none."""
 
 
 def varied_parameters(view: View) -> list[str]:
-    """Parameters that take several values."""
+    """Names of the parameters with several values in a file."""
     return [name for name, column in view.point_columns.items() if len(np.unique(column)) > 1]
 
 
 def point_map(view: View) -> PointMap:
-    """Points of a file as a map, without values inf; raises InputError without a grid over two parameters."""
+    """Points of a file as a map; infinite values are left out. Raises InputError if the points form no grid
+    over two parameters.
+    """
     varied = varied_parameters(view)
     if len(varied) != 2:
         raise InputError(f"{view.path}: a map is drawn over two parameters, and {_varying(varied)}")
@@ -60,7 +64,7 @@ def point_map(view: View) -> PointMap:
 
 
 def is_map(view: View) -> bool:
-    """Whether the points of a file form a map over two parameters."""
+    """Whether the points of a file form a grid over two parameters."""
     try:
         point_map(view)
     except InputError:
@@ -69,7 +73,7 @@ def is_map(view: View) -> bool:
 
 
 def _varying(names: list[str]) -> str:
-    """Clause on the varied parameters, which are not two, with the remedy."""
+    """Clause on the varied parameters `names`, of which there are not two, with a remedy."""
     if not names:
         return "no parameter varies"
     if names[1:]:
@@ -78,19 +82,21 @@ def _varying(names: list[str]) -> str:
 
 
 def in_its_scale(values: Array) -> tuple[Array, Callable[[Array], Array]]:
-    """(values of an axis, shape (n,), on its linear or logarithmic scale, inverse function)."""
+    """(`values`, (n,), on the linear or logarithmic scale of their axis, inverse function)."""
     return (np.log(values), np.exp) if is_logarithmic(values) else (values, np.asarray)
 
 
 def cell_edges(values: Array) -> Array:
-    """Edges, (n + 1,), of cells around increasing values, (n,), half-way on the scale of the axis."""
+    """Edges, (n + 1,), of cells around increasing `values`, (n,), half-way on the scale of their axis."""
     centres, back = in_its_scale(values)
     inner = (centres[1:] + centres[:-1]) / 2
     return back(np.concatenate(([2 * centres[0] - inner[0]], inner, [2 * centres[-1] - inner[-1]])))
 
 
 def cell_centres(edges: Array) -> Array:
-    """The values, (n,), from which `cell_edges` makes these edges, (n + 1,); both as places on the axis."""
+    """Values, (n,), whose cells have the given `edges`, (n + 1,): the inverse of `cell_edges`, on a linear
+    scale.
+    """
     centres = np.empty(len(edges) - 1)
     centres[0] = (edges[0] + edges[1]) / 2
     for place in range(1, len(centres)):

@@ -1,6 +1,7 @@
-"""Portrait of the beating arm, as in the paper's Fig. 5: shapes through the cycle, and the tip in time.
+"""Portrait of the beating arm, as in the paper's Fig. 5: shapes over a period, and motion of the tip over
+time.
 
-The motion of the tip is drawn from the start, to show how the cycle emerges, if the file has the start;
+The motion of the tip is drawn from the initial state, if the file stores it, to show how the cycle emerges;
 otherwise over two periods.
 """
 
@@ -20,56 +21,60 @@ from matplotlib.ticker import FuncFormatter
 
 from ....arrays import Array
 from ....results.file.view import View
-from ..style import FIRST, SECOND
-from .selection import SHAPES, StoredCycle, chosen_cycles
+from ..style import BLUE, VERMILION
+from .selection import SHAPE_VARIABLES, StoredCycle, chosen_cycles
 from .transient import draw_start_of_motion, label_time, label_tip
 
 MAX_SHAPES = 12
-"""Largest number of shapes that a reader can distinguish."""
+"""Largest number of drawn shapes; a reader cannot distinguish more."""
 ARROW_LENGTH = 0.14
-"""Length of the arrow of the force, in L."""
+"""Length of the arrow for the follower force, in L."""
 WALL_DEPTH = 0.05
-"""Thickness of the wall, in L."""
-WALL_HALF = 0.13
-"""Half the height of the wall, in L."""
-MARGIN = 0.04
-"""Margin around shapes and arrows, in L."""
+"""Thickness of the drawn wall, in L."""
+WALL_HALF_HEIGHT = 0.13
+"""Half the height of the drawn wall, in L."""
+SHAPE_MARGIN = 0.04
+"""Margin around the shapes and arrows, in L."""
 TIP_PERIODS = 2
 """Duration of the drawn motion of the tip, in periods of the slowest cycle."""
 FEW_SAMPLES = 48
-"""Number of samples below which the samples are marked on the curve."""
+"""Number of samples per period below which each sample of the tip's motion is marked."""
 SHAPES_WIDTH = 3.2
 """Width of a panel with shapes, in inches."""
 TIP_HEIGHT = 1.0
 """Height of a panel with the motion of the tip, in inches."""
 PADDING = 0.1
-"""Space beside panels, in inches. The layout misjudges labels of panels with equal scales by half of it."""
+"""Space around panels, in inches. Matplotlib's layout misjudges labels of panels with equal scales by up to
+half of it."""
 TEXT_HEIGHT = 1.4
-"""Height of labels and headings above and below the panels, in inches."""
+"""Height of all labels and headings above and below the panels, in inches."""
 NARROW_TEXT_HEIGHT = 2.0
-"""`TEXT_HEIGHT` on a narrow page, where the colour bar lies below the panels."""
-LIGHTEST_ARM = 0.14
-"""Fraction of the colour map left out: yellow, which is invisible on white."""
+"""The value of `TEXT_HEIGHT` on a narrow page, where the colour bar lies below the panels."""
+UNUSED_COLOUR_FRACTION = 0.14
+"""Fraction of the colour map that is not used: its yellow end is invisible on white paper."""
 
 
 def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
-    """Draws a column for each cycle: shapes, later ones darker, above x and y of the tip over time.
+    """(figure with a column for each cycle, description). Later shapes are darker; x and y of the tip over
+    time are below.
 
     narrow: whether the page has no room for panels side by side.
     """
-    selection = chosen_cycles(view, points, SHAPES)
+    selection = chosen_cycles(view, points, SHAPE_VARIABLES)
     cycles = selection.cycles
     figure, shapes, tips = _panels(cycles, narrow)
     emerging = all(cycle.has_trace for cycle in cycles)
     end = TIP_PERIODS * max(c.period for c in cycles)
     drawn, step = drawn_shapes(len(cycles[0].values["shape_x"]))
     # Light to dark, so that colour-blind readers see the order.
-    colours = ListedColormap(matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST_ARM, 1, len(drawn))))
+    colours = ListedColormap(
+        matplotlib.colormaps["viridis_r"](np.linspace(UNUSED_COLOUR_FRACTION, 1, len(drawn)))
+    )
     for axes, (upper, lower), cycle in zip(shapes, tips, cycles, strict=True):
         draw_tip_path(axes, cycle)
         draw_clamp(axes, cycle.units.length)
         for k, place in enumerate(drawn):
-            x, y, theta = (cycle.values[name][place] for name in SHAPES)
+            x, y, theta = (cycle.values[name][place] for name in SHAPE_VARIABLES)
             axes.plot(x, y, color=colours(k), lw=1.8, solid_capstyle="round", zorder=2 + k / 100)
             force_arrow(axes, x, y, theta, colours(k), cycle.units.length)
         axes.set_xlabel(cycle.units.along("x"))
@@ -90,10 +95,10 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
 def _panels(
     cycles: Sequence[StoredCycle], narrow: bool
 ) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
-    """(figure, a panel for the shapes of each cycle, two panels for the tip).
+    """(figure, one panel for the shapes of each cycle, two panels for the tip of each cycle).
 
-    The panels of the tip lie beside the shapes of a single cycle, and below otherwise. The panels with shapes
-    have the aspect ratio of the content, without blank space.
+    The panels of the tip are to the right of the shapes of a single cycle, and below those of several. A
+    panel with shapes has the aspect ratio of its content, so no space is blank.
     """
     count = len(cycles)
     (left, right), (low, high) = region(cycles)
@@ -116,13 +121,17 @@ def _panels(
 
 
 def drawn_shapes(stored: int) -> tuple[range, float]:
-    """(indices of the drawn shapes, time between two of them in periods); the steps are equal."""
+    """(indices of the drawn shapes, time between two of them in periods). stored: number of stored shapes per
+    period.
+    """
     stride = -(-stored // MAX_SHAPES)
     return range(0, stored, stride), stride / stored
 
 
 def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step: float, below: bool) -> None:
-    """Colour bar with the times of the shapes; step: time between two shapes, in periods."""
+    """Draws the colour bar with the times of the shapes. step: time between two shapes, in periods. below:
+    whether the bar is below the panels.
+    """
     n = colours.N
     norm = BoundaryNorm((np.arange(n + 1) - 0.5) * step, n)
     ticks = [k * step for k in range(0, n, max(1, n // 4))]
@@ -151,7 +160,9 @@ def draw_tip_path(axes: Axes, cycle: StoredCycle) -> None:
 
 
 def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, length: float) -> Quiver:
-    """Draws the follower force as an arrow toward the tip, along -(cos theta, sin theta); length: of L."""
+    """Draws the follower force as an arrow that ends at the tip, along -(cos theta, sin theta). length: L, in
+    the unit of the axes.
+    """
     e1 = np.array([np.cos(theta[-1]), np.sin(theta[-1])])
     along = -ARROW_LENGTH * length * e1
     return axes.quiver(
@@ -161,16 +172,16 @@ def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, lengt
 
 
 def draw_clamp(axes: Axes, length: float) -> None:
-    """Draws the wall that clamps the rod at u = 0; length: L in the units of the axes."""
+    """Draws the wall that clamps the rod at u = 0. length: L, in the unit of the axes."""
     depth = WALL_DEPTH * length
-    half = WALL_HALF * length
+    half = WALL_HALF_HEIGHT * length
     wall = Rectangle((-depth, -half), depth, 2 * half, fc="white", ec="0.3", hatch="/////", lw=0)
     axes.add_patch(wall)
     axes.plot([0, 0], [-half, half], color="k", lw=1.4, zorder=5)
 
 
 def set_frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
-    """Shows the same region in all panels, with equal scales for x and y."""
+    """Sets the same limits in all panels, with equal scales for x and y, so that all cycles fit."""
     along_x, along_y = region(cycles)
     for axes in panels:
         axes.set_aspect("equal")
@@ -178,14 +189,14 @@ def set_frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
 
 
 def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[float, float]]:
-    """((left, right), (low, high)) of all shapes and arrows, in the cycles' unit of length."""
+    """((left, right), (bottom, top)) of all shapes and arrows, in the cycles' unit of length."""
     longest = max(cycle.units.length for cycle in cycles)
     wall = -WALL_DEPTH * longest
-    margin = MARGIN * longest
+    margin = SHAPE_MARGIN * longest
     along_x = [np.array([wall])]
     along_y = []
     for cycle in cycles:
-        x, y, theta = (cycle.values[name] for name in SHAPES)
+        x, y, theta = (cycle.values[name] for name in SHAPE_VARIABLES)
         arrow = ARROW_LENGTH * cycle.units.length
         along_x += [x.ravel(), x[:, -1] + arrow * np.cos(theta[:, -1])]
         along_y += [y.ravel(), y[:, -1] + arrow * np.sin(theta[:, -1])]
@@ -203,7 +214,7 @@ def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
     )
 
     time = np.linspace(0, end, 801, dtype=np.float64)
-    for axes, values, colour in zip((upper, lower), cycle.tip, (FIRST, SECOND), strict=True):
+    for axes, values, colour in zip((upper, lower), cycle.tip, (BLUE, VERMILION), strict=True):
         axes.plot(time, interpolate_samples(values, time / cycle.period), color=colour, lw=1.4)
         if len(values) < FEW_SAMPLES:
             at = np.arange(int(end / cycle.period * len(values)) + 1)

@@ -1,7 +1,7 @@
-"""Cycles and transients in a file, a `StoredCycle` for each point, and the selection that a figure shows.
+"""Limit cycles and transients in a result file, as `StoredCycle`, and which of them a figure shows.
 
-Samples and shapes of a cycle are at the times k T/n, k = 0 ... n - 1, over one period T; the sample after the
-last is the first.
+Samples and shapes of a cycle are at the times k T/n, k = 0 ... n - 1, of a period T. The sample after the
+last equals the first.
 """
 
 from collections.abc import Collection, Sequence
@@ -14,97 +14,102 @@ from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
 from ...summary.ranges import rounded
-from ..arm.quantities import at_point, given_quantities, quantity_text, replaced
+from ..arm.quantities import at_point, given_quantities, quantity_text, replaced_parameters
 from ..style import heading, parameter_text
-from .units import PLAIN_UNITS, REQUIRED, CycleUnits, units_of
+from .units import PLAIN_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_of
 
 MAX_CYCLES = 3
-"""Largest number of cycles that fit side by side into a single figure."""
-SHAPES = ("shape_x", "shape_y", "shape_theta")
-"""Variables of the shapes over a period."""
-ENERGIES = ("energy", "injection", "dissipation")
-"""Variables of the energy budget over a period."""
-TRACE = ("transient_time", "transient_x", "transient_y")
-"""Variables of the motion from its start."""
-OPTIONS = dict.fromkeys(SHAPES, "shapes") | dict.fromkeys(TRACE, "transient")
-"""Option that stores a variable; unlisted variables over a period are stored by `samples`."""
+"""Largest number of cycles that fit side by side into one figure."""
+SHAPE_VARIABLES = ("shape_x", "shape_y", "shape_theta")
+"""Names of the variables with the shapes over a period."""
+ENERGY_BUDGET_VARIABLES = ("energy", "injection", "dissipation")
+"""Names of the variables with the energy budget over a period."""
+TRACE_VARIABLES = ("transient_time", "transient_x", "transient_y")
+"""Names of the variables with the motion from the initial state."""
+STORING_OPTIONS = dict.fromkeys(SHAPE_VARIABLES, "shapes") | dict.fromkeys(TRACE_VARIABLES, "transient")
+"""Option of the config that makes the task store a variable; all unlisted variables over a period need
+`samples`."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoredCycle:
-    """A point of a file: parameters, period (NaN without a cycle), and variables in `units`."""
+    """Limit cycle or transient at one point of a result file, with its variables in `units`. The period is
+    NaN without a cycle.
+    """
 
     number: int
     """Number of the point in the file, from 1."""
     label: str
-    """Parameters that distinguish the cycle within the figure."""
+    """Text of the parameters in which this cycle differs from others in the figure."""
     parameters: dict[str, float]
     period: float
     values: dict[str, Array]
     word: str = "cycle"
-    """Word of its status."""
+    """Status of the point, as a word."""
     units: CycleUnits = PLAIN_UNITS
 
     @property
     def tau1(self) -> float:
-        """Short time scale gamma3/k2, in tau2; 0 for a rod without it, and for an arm in SI units."""
+        """Short time scale gamma3/k2 in units of tau2; 0 for a rod without it, and for an arm in SI units."""
         if self.units.in_si:
             return 0.0
         return self.parameters["gamma3"] / self.parameters["k2"]
 
     @property
     def period_text(self) -> str:
-        """The period in TeX, to the digits of the error; a line may break after the T."""
+        """The period as TeX, with the digits that its error allows; a line can be broken after the symbol."""
         if self.units.in_si:
             return f"$T$ = {self.units.time_text(self.period)}"
         return self._period(self.period, r"\tau_2", r"T\,")
 
     @property
     def period_in_tau1(self) -> str:
-        """A further line with the period in tau1; empty for a rod without tau1."""
+        """A further line of text with the period in units of tau1; empty for a rod without tau1."""
         return self._period(self.period / self.tau1, r"\tau_1") if 0 < self.tau1 < np.inf else ""
 
     def _period(self, value: float, unit: str, symbol: str = "") -> str:
-        """A period with its unit, in TeX."""
+        """A period with its unit as TeX. symbol: suffix of the symbol T."""
         error = float(self.values["period_error"])
         return rf"${symbol}{{=}}$ ${in_tex(rounded(value, abs(value) * error))}\,{unit}$"
 
     @property
     def tip(self) -> tuple[Array, Array]:
-        """x and y of the tip over a period: from the samples if stored, else from the shapes."""
+        """(x, y) of the tip over a period: from the samples if stored, else from the shapes."""
         if "tip_x" in self.values:
             return self.values["tip_x"], self.values["tip_y"]
         return self.values["shape_x"][:, -1], self.values["shape_y"][:, -1]
 
     @property
     def has_trace(self) -> bool:
-        """Whether the motion from its start is stored."""
-        return TRACE[0] in self.values and bool(np.isfinite(self.values[TRACE[0]]).all())
+        """Whether the motion from the initial state is stored."""
+        return TRACE_VARIABLES[0] in self.values and bool(np.isfinite(self.values[TRACE_VARIABLES[0]]).all())
 
     def heading(self, *lines: str) -> str:
-        """Title of a panel: the label, if any, above further lines about the cycle."""
+        """Title of a panel: the label, if not empty, above the given lines."""
         return "\n".join(filter(None, (self.label, *lines)))
 
 
 def in_tex(number: str) -> str:
-    """A number written by `rounded`, with its power of ten in TeX."""
+    """A number written by `rounded` as TeX, with its power of ten as a superscript."""
     mantissa, _, power = number.partition("e")
     return rf"{mantissa}\times10^{{{int(power)}}}" if power else mantissa
 
 
 @dataclass(frozen=True, slots=True)
 class CycleSelection:
-    """Cycles of a figure."""
+    """Cycles that one figure shows."""
 
     cycles: list[StoredCycle]
     title: str
-    """Title of the file, and the parameters that all cycles share."""
+    """Title of the file, and text of the parameters that all cycles share."""
     left_out: str
-    """Clause of the message on cycles without room; empty if all are shown."""
+    """Clause on cycles for which the figure has no room; empty if all are shown."""
 
 
 def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> CycleSelection:
-    """Cycles at the points chosen by the user, else the first cycles; InputError where the file has none."""
+    """Cycles at the points that the user chose by number, else the first cycles. needs: variables. Raises
+    InputError if a cycle or a variable is missing.
+    """
     _refuse_missing(view, needs)
     words = view.outcomes
     _refuse_bad_points(view, points)
@@ -116,10 +121,12 @@ def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Cy
 
 
 def chosen_traces(view: View, points: Sequence[int]) -> CycleSelection:
-    """Motions of the points chosen by the user, else the first stored ones; InputError without a motion."""
-    _refuse_missing(view, TRACE)
+    """Motions from the initial state at the points that the user chose by number, else the first. Raises
+    InputError if there is none.
+    """
+    _refuse_missing(view, TRACE_VARIABLES)
     _refuse_bad_points(view, points)
-    is_stored = np.isfinite(view.variables[TRACE[0]][..., -1].ravel())
+    is_stored = np.isfinite(view.variables[TRACE_VARIABLES[0]][..., -1].ravel())
     for number in points:
         if not is_stored[number - 1]:
             raise InputError(f"--point {number}: the motion of the point from its start is not stored")
@@ -127,15 +134,19 @@ def chosen_traces(view: View, points: Sequence[int]) -> CycleSelection:
 
 
 def _refuse_missing(view: View, needs: Sequence[str]) -> None:
-    """Raises InputError if a variable is not stored."""
+    """Raises InputError, naming the option that stores it, if one of the variables `needs` is not in the
+    file.
+    """
     for name in needs:
         if name not in view.variables:
-            key = f"limit_cycle.{OPTIONS.get(name, 'samples')}"
+            key = f"limit_cycle.{STORING_OPTIONS.get(name, 'samples')}"
             raise InputError(f"{view.path} holds no {name}; run with {key} > 0, which stores it")
 
 
 def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], what: str) -> CycleSelection:
-    """Selection of points by number, else of the first drawable ones; drawable: shape (points,)."""
+    """Selection of the points with the given numbers, else of the first drawable points. drawable: mask,
+    (points,). what: noun for messages.
+    """
     available = np.flatnonzero(drawable)
     words = view.outcomes
     if not available.size:
@@ -160,7 +171,7 @@ def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], w
 
 
 def _refuse_bad_points(view: View, points: Sequence[int]) -> None:
-    """Raises InputError if there are too many points for a figure, or a point does not exist."""
+    """Raises InputError if the user chose more points than a figure shows, or a point that does not exist."""
     count = view.variables["status"].size
     if len(points) > MAX_CYCLES:
         raise InputError(
@@ -171,34 +182,40 @@ def _refuse_bad_points(view: View, points: Sequence[int]) -> None:
             raise InputError(f"--point {number}: {view.path} has the points 1 to {count}")
 
 
-def shared_and_own(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:
-    """(common parameters, parameters that distinguish each), as text."""
+def shared_and_own_texts(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:
+    """(text of the parameters with equal values in all mappings, text of the other parameters of each
+    mapping).
+    """
     shared = {n: v for n, v in parameters[0].items() if all(other[n] == v for other in parameters)}
     own = [parameter_text({n: v for n, v in each.items() if n not in shared}) for each in parameters]
     return parameter_text(shared), own
 
 
 def shared_and_own_of_points(view: View, numbers: Sequence[int]) -> tuple[str, list[str]]:
-    """(parameters, or quantities of an arm, that all points share; those in which each point differs), as
-    text."""
-    if all(name in view.quantities for name in REQUIRED):
+    """(text of the parameters that all points share, text of the other parameters of each point); for an arm,
+    of its quantities. numbers: from 1.
+    """
+    if all(name in view.quantities for name in REQUIRED_QUANTITIES):
         return shared_and_own_of_arms(view, numbers)
     columns = view.point_columns
-    return shared_and_own([{name: float(columns[name][n - 1]) for name in columns} for n in numbers])
+    return shared_and_own_texts([{name: float(columns[name][n - 1]) for name in columns} for n in numbers])
 
 
 def shared_and_own_of_arms(
     view: View, numbers: Sequence[int], without: Collection[str] = ()
 ) -> tuple[str, list[str]]:
-    """(common quantities of the arms at points, numbered from 1, quantities that distinguish each).
+    """(text of the quantities that all arms share, text of the other quantities of each arm), in the units
+    typed by the user.
 
-    Both are text with values in the units typed by the user. without: quantities and parameters to leave out,
-    such as the axes of the figure.
+    numbers: of the points of the arms, from 1. without: quantities and parameters to leave out, such as those
+    on axes.
     """
     texts = []
     for number in numbers:
         given = {n: quantity_text(view, n, at_point(view, n, number)) for n in given_quantities(view)}
-        own = {name: parameter_text({name: value}) for name, value in replaced(view, number).items()}
+        own = {
+            name: parameter_text({name: value}) for name, value in replaced_parameters(view, number).items()
+        }
         texts.append({name: text for name, text in (given | own).items() if name not in without})
     shared = {name: text for name, text in texts[0].items() if all(each[name] == text for each in texts)}
     labels = [", ".join(text for name, text in each.items() if name not in shared) for each in texts]

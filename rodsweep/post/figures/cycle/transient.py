@@ -1,4 +1,6 @@
-"""Motion of the tip from its start, as on the right of the paper's Fig. 5: emergence or decay of beating."""
+"""Motion of the tip from the initial state, as at the right of the paper's Fig. 5: beating
+emerges or decays.
+"""
 
 from collections.abc import Sequence
 from typing import Any
@@ -9,18 +11,19 @@ from matplotlib.figure import Figure
 
 from ....results.file.view import View
 from ....results.layouts.limit_cycle import CYCLE_WORDS
-from ..style import FIRST, SECOND
-from .selection import TRACE, StoredCycle, chosen_traces
+from ..style import BLUE, VERMILION
+from .selection import TRACE_VARIABLES, StoredCycle, chosen_traces
 from .units import CycleUnits
 
-LEVEL_LOOK: dict[str, Any] = {"color": "0.55", "lw": 0.8, "ls": (0, (4, 2)), "zorder": 1}
-"""Line style of the extrema of the cycle that the motion approaches."""
+EXTREMUM_LINE_LOOK: dict[str, Any] = {"color": "0.55", "lw": 0.8, "ls": (0, (4, 2)), "zorder": 1}
+"""Line style of horizontal lines at the extrema of the cycle that the motion approaches."""
 
 
 def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
-    """Draws a column for each point, with or without a cycle: x and y of the tip, and the cycle's extrema.
+    """(figure with x and y of the tip over time in a column for each point, description). Horizontal lines
+    are the extrema of the cycle, if any.
 
-    narrow: whether the titles leave out the explanation of the extrema.
+    narrow: whether the titles leave out the explanation of these lines.
     """
     selection = chosen_traces(view, points)
     count = len(selection.cycles)
@@ -40,26 +43,28 @@ def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> 
 
 
 def draw_start_of_motion(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
-    """Draws x and y of the tip from the start, with the extrema of the cycle if any."""
-    time, *tip = (cycle.values[name] for name in TRACE)
+    """Draws x and y of the tip from the initial state, with horizontal lines at the extrema of the cycle, if
+    any.
+    """
+    time, *tip = (cycle.values[name] for name in TRACE_VARIABLES)
     v = cycle.values
     levels = (("tip_x_min", 1), ("tip_x_max", 1)), (("tip_y_max", 1), ("tip_y_max", -1))
-    for axes, values, colour, pair in zip((upper, lower), tip, (FIRST, SECOND), levels, strict=True):
+    for axes, values, colour, pair in zip((upper, lower), tip, (BLUE, VERMILION), levels, strict=True):
         axes.plot(time, values, color=colour, lw=1.1)
         for name, sign in pair if cycle.word in CYCLE_WORDS else ():
-            axes.axhline(sign * float(v[name]), **LEVEL_LOOK)
+            axes.axhline(sign * float(v[name]), **EXTREMUM_LINE_LOOK)
         axes.margins(x=0)
     label_time(upper, lower, cycle)
 
 
 def label_tip(upper: Axes, lower: Axes, units: CycleUnits) -> None:
-    """Labels the two panels, in the colours of their lines."""
-    upper.set_ylabel("tip " + units.along("x"), color=FIRST)
-    lower.set_ylabel("tip " + units.along("y"), color=SECOND)
+    """Labels the vertical axes of two panels, x and y of the tip, in the colours of the curves."""
+    upper.set_ylabel("tip " + units.along("x"), color=BLUE)
+    lower.set_ylabel("tip " + units.along("y"), color=VERMILION)
 
 
 def label_time(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
-    """Labels the time in the cycle's unit below, and in tau1 above if the rod has this time scale."""
+    """Labels the time axis below in the cycle's unit, and above in tau1 if the rod has this time scale."""
     tau1 = cycle.tau1
     upper.tick_params(labelbottom=False)
     lower.axhline(0, color="0.8", lw=0.6, zorder=0)

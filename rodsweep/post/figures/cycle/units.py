@@ -1,4 +1,4 @@
-"""Units of figures of cycles: those of the paper, or SI units for an arm."""
+"""Units in figures of cycles: the dimensionless units of the paper, or SI_UNITS units for an arm."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,32 +13,32 @@ from ....results.file.view import View
 from ...tables.rows import quantities_at_points
 from ..arm.quantities import NO_BREAK
 
-LENGTHS = ("shape_x", "shape_y", "tip_x", "tip_y", "transient_x", "transient_y")
-"""Variables that are lengths along a period, a shape or a transient."""
-LENGTHS_OF_CYCLES = ("tip_x_min", "tip_x_max", "tip_y_max")
-"""Variables that are lengths of a whole cycle."""
-TIMES = ("period", "transient_time")
-"""Variables that are times."""
-ENERGIES = ("energy",)
-"""Variables that are energies."""
-POWERS = ("injection", "dissipation", "injection_mean", "dissipation_mean")
-"""Variables that are powers."""
+LENGTH_VARIABLES = ("shape_x", "shape_y", "tip_x", "tip_y", "transient_x", "transient_y")
+"""Names of variables that are lengths, with values over a period, along a shape, or over a transient."""
+CYCLE_LENGTH_VARIABLES = ("tip_x_min", "tip_x_max", "tip_y_max")
+"""Names of variables that are lengths, with one value for each cycle."""
+TIME_VARIABLES = ("period", "transient_time")
+"""Names of variables that are times."""
+ENERGY_VARIABLES = ("energy",)
+"""Names of variables that are energies."""
+POWER_VARIABLES = ("injection", "dissipation", "injection_mean", "dissipation_mean")
+"""Names of variables that are powers."""
 SHORT_PERIOD = 0.1
-"""Period, in s, below which times have a prefix such as ms; long times stay in seconds."""
+"""Period, in s, below which times have a prefix, such as ms; longer times are in seconds."""
 Factor = Any
-"""A number, or an array with a number for each point."""
-SI = ("m", "s", "J", "W")
-"""SI units of length, time, energy and power."""
-REQUIRED = ("length", "tau2", "force_scale")
-"""Quantities of an arm from which all units follow."""
+"""A number, or an array with a number for each point, (points,)."""
+SI_UNITS = ("m", "s", "J", "W")
+"""SI_UNITS units of length, time, energy and power."""
+REQUIRED_QUANTITIES = ("length", "tau2", "force_scale")
+"""Quantities of an arm from which its units are computed."""
 
 
 @dataclass(frozen=True, slots=True)
 class CycleUnits:
-    """Units and labels of a figure; by default the dimensionless units of the rod.
+    """Units of a figure of cycles; by default dimensionless.
 
-    length: L in the drawn unit of length; time: tau2; energy: k3/L; power: k3/(L tau2). For several points
-    each is an array, (points,).
+    length, time, energy, power: the scales L, tau2, k3/L and k3/(L tau2) in the drawn units. Each is an
+    array, (points,), for several points.
     """
 
     length: Factor = 1.0
@@ -47,20 +47,22 @@ class CycleUnits:
     power: Factor = 1.0
     in_si: bool = False
     names: tuple[str, str, str, str] = ("L", r"$\tau_2$", "", "")
-    """Names of the units of length, time, energy and power."""
+    """Names of the units of length, time, energy and power, as TeX."""
 
     def along(self, axis: str) -> str:
-        """Label of a length along x or y."""
+        """Label of an axis for the coordinate `axis`, "x" or "y", with the unit."""
         return f"${axis}$ ({self.names[0]})" if self.in_si else f"${axis}/L$"
 
     @property
     def time_label(self) -> str:
-        """Label of the time."""
+        """Label of a time axis, with the unit."""
         return f"time $t$ ({self.names[1]})" if self.in_si else r"time $t/\tau_2$"
 
     @property
     def labels_over(self) -> tuple[str, str, str, str]:
-        """Labels over a parameter: half the range of the tip's x, its largest y, period and power."""
+        """Labels of the panels over a parameter: half the range of the tip's x, its largest y,
+        period, power.
+        """
         if self.in_si:
             length, time, _, power = self.names
             return (
@@ -78,7 +80,7 @@ class CycleUnits:
 
     @property
     def energy_and_power_labels(self) -> tuple[str, str, str]:
-        """Labels of energy, power and rate of energy."""
+        """Labels of the panels with energy, power, and rate of change of energy."""
         if self.in_si:
             _, _, energy, power = self.names
             return f"energy $U$\n({energy})", f"power\n({power})", rf"$\dot U$ ({power})"
@@ -86,30 +88,32 @@ class CycleUnits:
 
     @property
     def power_of_rate(self) -> float:
-        """Unit of energy divided by the unit of time, in units of power."""
+        """The drawn unit of energy divided by the drawn unit of time, in drawn units of power."""
         return self.power * self.time / self.energy
 
     def time_text(self, time: float) -> str:
-        """A time in SI units as text: `53.91 s`."""
+        """A time with its unit as text, such as `53.91 s`; only for SI_UNITS units."""
         return f"{time:.4g}{NO_BREAK}{self.names[1]}"
 
     def drawn(self, values: dict[str, Array]) -> dict[str, Array]:
-        """Variables of a point, each of any shape, in these units."""
+        """Variables of a point, by name, converted to these units; each of any shape."""
         factors: dict[str, Factor] = (
-            dict.fromkeys((*LENGTHS, *LENGTHS_OF_CYCLES), self.length)
-            | dict.fromkeys(TIMES, self.time)
-            | dict.fromkeys(ENERGIES, self.energy)
-            | dict.fromkeys(POWERS, self.power)
+            dict.fromkeys((*LENGTH_VARIABLES, *CYCLE_LENGTH_VARIABLES), self.length)
+            | dict.fromkeys(TIME_VARIABLES, self.time)
+            | dict.fromkeys(ENERGY_VARIABLES, self.energy)
+            | dict.fromkeys(POWER_VARIABLES, self.power)
         )
         return {name: value * factors[name] if name in factors else value for name, value in values.items()}
 
 
 PLAIN_UNITS = CycleUnits()
-"""Dimensionless units."""
+"""Dimensionless units of the paper."""
 
 
 def units_of(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
-    """Units at points numbered from 1, with the same names at all points; dimensionless without an arm."""
+    """Units at each point, with the same names of units at all points; dimensionless without an arm. numbers:
+    of the points, from 1.
+    """
     (units,) = units_over([view], [np.array(numbers, int) - 1])
     if not units.in_si:
         return [units] * len(numbers)
@@ -118,12 +122,14 @@ def units_of(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
 
 
 def units_over(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
-    """Units of the points of each file, by index: factors (n,), equal names. Plain if a file has no arm."""
-    if not all(name in view.quantities for view in views for name in REQUIRED):
+    """Units for the points of each file, with factors (n,); dimensionless if a file has no arm. at: indices
+    of the points of each file.
+    """
+    if not all(name in view.quantities for view in views for name in REQUIRED_QUANTITIES):
         return [PLAIN_UNITS] * len(views)
     lengths, times, forces = (
         [quantities_at_points(view)[name][places] for view, places in zip(views, at, strict=True)]
-        for name in REQUIRED
+        for name in REQUIRED_QUANTITIES
     )
     powers = [force * length / time for force, length, time in zip(forces, lengths, times, strict=True)]
     energies = [force * length for force, length in zip(forces, lengths, strict=True)]
@@ -135,12 +141,14 @@ def units_over(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[C
     joule = compact(max(float(np.nanmax(energy)) for energy in energies), "J")[1]
     watt = compact(mean, "W")[1]
     names = (length, second, joule, watt)
-    scales = [written_in(1.0, unit, si) for unit, si in zip(names, SI, strict=True)]
+    scales = [written_in(1.0, unit, si) for unit, si in zip(names, SI_UNITS, strict=True)]
     columns = zip(lengths, times, energies, powers, strict=True)
     scaled = ([scale * column for scale, column in zip(scales, each, strict=True)] for each in columns)
     return [CycleUnits(a, t, e, p, in_si=True, names=names) for a, t, e, p in scaled]
 
 
 def _largest(view: View, name: str, at: NDArray[np.int64], factors: Array) -> float:
-    """Largest modulus of a variable at points, by index, times factors (n,); 0 without a finite value."""
+    """Largest absolute value of the variable `name` times `factors`, (n,), over points with indices `at`; 0
+    if no value is finite.
+    """
     return float(np.nanmax(np.abs(view.variables[name].ravel()[at]) * factors, initial=0.0))

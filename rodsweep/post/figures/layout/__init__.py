@@ -1,1 +1,1 @@
-"""Layout of a figure: texts that do not overlap, and ticks."""
+"""Layout of a figure: texts that do not overlap, and tick labels."""

@@ -1,6 +1,6 @@
-"""Fitting of a figure to its page: breaks lines of text, and adapts columns of legends and heights of panels.
+"""Fits the texts of a figure to its page: breaks lines, and adapts columns of legends and heights of panels.
 
-Sizes are measured on the figure after matplotlib's constrained layout.
+All sizes are measured in the figure after matplotlib's constrained layout.
 """
 
 import re
@@ -16,33 +16,34 @@ from matplotlib.text import Text
 from .ticks import thin_ticks
 
 MIN_ASPECT = 0.45
-"""Smallest height of a panel, in units of the width; for a flatter panel the figure grows."""
+"""Least ratio of height to width of a panel. If a panel is flatter, the figure grows in height."""
 MAP_ASPECT = 0.7
-"""Smallest aspect ratio of a map, for which slopes matter along both axes."""
+"""Least ratio of height to width of a map, whose slopes matter in both directions."""
 STRIP_ASPECT = 0.25
-"""Smallest aspect ratio of a curve in time, which is long and low and shares a figure with other panels."""
-TALLEST = 9.5
-"""Largest height of a figure, in inches: the height of a page between its margins."""
+"""Least ratio of height to width of a panel with a curve over time, in a figure with several panels."""
+MAX_FIGURE_HEIGHT = 9.5
+"""Largest height of a figure, in inches: the printable height of a page."""
 MAX_PASSES = 6
-"""Largest number of layouts. Each change of the figure moves texts measured before."""
-MIN_HEIGHT = 0.45
-"""Smallest height of a panel, in inches, at which the labels of two ticks fit above each other."""
+"""Largest number of layouts. Several are needed, because each change of the figure moves texts already
+measured."""
+MIN_PANEL_HEIGHT = 0.45
+"""Least height of a panel, in inches, at which two tick labels fit above each other."""
 SPARE_HEIGHT = 4.0
-"""Additional height, in inches, while texts are measured, to keep panels from vanishing."""
-SLACK = 1.03
-"""Additional factor on the height of a panel with equal scales. If height and width both just suffice, the
-layout alternates between them."""
-MARGIN = 0.04
-"""Margin between text and the edge of the figure, in inches."""
-WORDS = re.compile(r"(?:\\.|\$(?:\\.|[^$\\])*\$|[^\s$]|\xa0)+")
-"""Words of a text. Mathematics between dollars belongs to a word, blanks included; a no-break space joins a
-number and a unit."""
+"""Height added to the figure while texts are measured, in inches, so that no panel shrinks to nothing."""
+EQUAL_SCALE_SLACK = 1.03
+"""Factor that enlarges the height of panels with equal scales. If height and width both just suffice,
+successive layouts alternate."""
+TEXT_MARGIN = 0.04
+"""Least distance of a text from the edge of the figure, in inches."""
+WORD_PATTERN = re.compile(r"(?:\\.|\$(?:\\.|[^$\\])*\$|[^\s$]|\xa0)+")
+"""Regular expression for a word of a text. Mathematics between dollar signs is part of a word, blanks
+included. A no-break space joins a number and its unit."""
 
 
 def fit(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
-    """Lays a figure out: nothing is cut or overlaps, and no panel is flatter than `min_aspect`.
+    """Lays out a figure so that no text is cut off or overlaps, and no panel is flatter than `min_aspect`.
 
-    The width of the figure stays, and the height if the content fits.
+    The width of the figure does not change. Its height does not change if everything fits.
     """
     width, height = figure.get_size_inches()
     figure.set_size_inches(width, height + SPARE_HEIGHT)
@@ -53,7 +54,7 @@ def fit(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
             break
     # The texts fit; now remove the additional height, which does not lengthen any text.
     spare = _spare_height(figure, min_aspect)
-    figure.set_size_inches(width, max(height, min(height + SPARE_HEIGHT - spare, TALLEST)))
+    figure.set_size_inches(width, max(height, min(height + SPARE_HEIGHT - spare, MAX_FIGURE_HEIGHT)))
     for _ in range(MAX_PASSES):
         _lay_out(figure)
         if not thin_ticks(figure):
@@ -63,7 +64,9 @@ def fit(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
 
 
 def _lay_out(figure: Figure) -> None:
-    """Places panels and legends, without drawing the content of panels, which is not measured."""
+    """Positions panels and legends of a figure. The content of panels, which needs no measuring, is not
+    drawn.
+    """
     canvas = figure.canvas
     if not isinstance(canvas, FigureCanvasAgg):
         canvas = FigureCanvasAgg(figure)  # otherwise each text creates a canvas to measure itself
@@ -74,7 +77,7 @@ def _lay_out(figure: Figure) -> None:
 
 
 def break_lines(text: Text, room: float, upright: bool = False) -> bool:
-    """Breaks lines of a text at blanks to fit into `room` pixels; returns whether the text changed.
+    """Breaks a text at blanks into lines of at most `room` pixels; returns whether the text changed.
 
     upright: whether the text is rotated by 90 degrees.
     """
@@ -89,7 +92,7 @@ def break_lines(text: Text, room: float, upright: bool = False) -> bool:
     lines: list[str] = []
     for given in before.split("\n"):
         line = ""
-        for word in WORDS.findall(given):
+        for word in WORD_PATTERN.findall(given):
             longer = f"{line} {word}" if line else word
             text.set_text(longer)
             if line and length() > room:
@@ -103,8 +106,8 @@ def break_lines(text: Text, room: float, upright: bool = False) -> bool:
 
 
 def _break_texts(figure: Figure) -> bool:
-    """Breaks headings and axis labels longer than the room; returns whether any changed."""
-    margin = MARGIN * figure.dpi
+    """Breaks headings and axis labels that are too long; returns whether any text changed."""
+    margin = TEXT_MARGIN * figure.dpi
     width = figure.bbox.width
     changed = [break_lines(heading, width - 2 * margin) for heading in figure.texts]
     for axes in figure.axes:
@@ -126,7 +129,9 @@ def _break_texts(figure: Figure) -> bool:
 
 
 def _pitch(axes: Axes, figure: Figure) -> float:
-    """Pixels between the middles of a panel and its nearest neighbour; the figure's width without one."""
+    """Distance, in pixels, between the centres of a panel and its nearest horizontal neighbour; the figure's
+    width if there is none.
+    """
     place = axes.get_subplotspec()
     if place is None:
         return float(figure.bbox.width)
@@ -140,8 +145,10 @@ def _pitch(axes: Axes, figure: Figure) -> float:
 
 
 def _fit_legends(figure: Figure) -> bool:
-    """Reduces the columns of wide legends and breaks long entries; returns whether any changed."""
-    room = figure.bbox.width - 2 * MARGIN * figure.dpi
+    """Reduces the number of columns of legends that are too wide, and breaks long entries; returns whether
+    any legend changed.
+    """
+    room = figure.bbox.width - 2 * TEXT_MARGIN * figure.dpi
     changed = False
     for given in list(figure.legends):
         legend = given
@@ -161,7 +168,9 @@ def _columns(legend: Legend) -> int:
 
 
 def _with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
-    """Replaces a legend by a legend with the given number of columns."""
+    """Replaces a legend of the figure by the same legend with another number of columns; returns the new
+    legend.
+    """
     texts = [text.get_text() for text in legend.get_texts()]
     handles = [handle for handle in legend.legend_handles if handle is not None]
     legend.remove()
@@ -171,7 +180,7 @@ def _with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
 
 
 def _spare_height(figure: Figure, min_aspect: float) -> float:
-    """Height, in inches, by which the figure can shrink until a panel has the smallest height."""
+    """Height, in inches, by which the figure can shrink before a panel reaches its least height."""
     width, height = figure.get_size_inches()
     spare = [height]
     for axes in figure.axes:
@@ -184,7 +193,7 @@ def _spare_height(figure: Figure, min_aspect: float) -> float:
         label = axes.yaxis.label.get_window_extent().height / figure.dpi
         scale = axes.get_aspect()  # panels with equal scales have the aspect ratio of their data
         own = 0.0 if scale == "auto" else float(axes.get_data_ratio() * scale)
-        shape = max(min_aspect, SLACK * own)
-        least = max(shape * room.width * width, label + MARGIN, MIN_HEIGHT)
+        shape = max(min_aspect, EQUAL_SCALE_SLACK * own)
+        least = max(shape * room.width * width, label + TEXT_MARGIN, MIN_PANEL_HEIGHT)
         spare.append((room.height * height - least) / part)
     return min(spare)

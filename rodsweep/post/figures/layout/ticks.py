@@ -1,4 +1,4 @@
-"""Tick labels of a figure: fewer labels where neighbours overlap."""
+"""Removes tick labels of a figure where neighbouring labels overlap."""
 
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
@@ -6,19 +6,21 @@ from matplotlib.text import Text
 from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, SymmetricalLogLocator
 
 LABEL_GAP = 0.25
-"""Smallest space between neighbouring tick labels, in units of their height."""
+"""Least gap between neighbouring tick labels, as a fraction of their height."""
 EDGE_TOLERANCE = 1e-9
-"""Rounding tolerance for ticks at the end of an axis, as a fraction of the length."""
+"""Rounding tolerance for a tick at the end of an axis, as a fraction of the axis' length."""
 
 
 def thin_ticks(figure: Figure) -> bool:
-    """Removes tick labels from axes on which labels overlap; returns whether any were removed."""
+    """Removes tick labels from all axes of a figure on which labels overlap; returns whether any label was
+    removed.
+    """
     every = [*figure.axes, *(child for axes in figure.axes for child in axes.child_axes)]
     return any([_thin(axis, way) for axes in every for axis, way in ((axes.xaxis, 0), (axes.yaxis, 1))])
 
 
 def visible_labels(axis: Axis) -> list[Text]:
-    """Labels of the ticks within the limits of an axis."""
+    """Tick labels of an axis within its limits."""
     low, high = sorted(axis.get_view_interval())
     near = EDGE_TOLERANCE * (high - low)
     return [
@@ -29,7 +31,9 @@ def visible_labels(axis: Axis) -> list[Text]:
 
 
 def _thin(axis: Axis, way: int) -> bool:
-    """Reduces overlapping labels of an axis; way: 0 for a horizontal axis, 1 for a vertical axis."""
+    """Removes overlapping tick labels of an axis; returns whether any was removed. way: 0 for a horizontal
+    axis, 1 for a vertical axis.
+    """
     shown = visible_labels(axis)
     boxes = [label.get_window_extent() for label in shown]
     spans = sorted(tuple(box.intervaly if way else box.intervalx) for box in boxes)
@@ -53,7 +57,9 @@ def _thin(axis: Axis, way: int) -> bool:
 
 
 def _thin_powers(axis: Axis, shown: int) -> bool:
-    """Reduces the powers of ten on a symmetric logarithmic axis; shown: the present number of labels."""
+    """Removes powers of ten from a symmetric logarithmic axis; returns whether any was removed. shown:
+    present number of labels.
+    """
     start = getattr(axis.get_transform(), "linthresh", None)
     if start is None:
         return False
@@ -65,7 +71,9 @@ def _thin_powers(axis: Axis, shown: int) -> bool:
 
 
 def _thin_decades(axis: Axis, locator: LogLocator) -> bool:
-    """Reduces labels within decades to 1 and 3, then to 1 alone, as long as two labels remain."""
+    """Labels fewer numbers of each decade: 1 and 3, 1 alone, or 2 alone; returns whether labels
+    were removed.
+    """
     low, high = sorted(axis.get_view_interval())
     for subs in ((1.0, 3.0), (1.0,), (2.0,)):
         if len(subs) >= len(getattr(locator, "_subs", None) or ()):

@@ -1,1 +1,1 @@
-"""Figures of spectra over a parameter: a line of spectra, or several lines side by side."""
+"""Figures of spectra along a line of points: one line, or several lines in separate panels."""

@@ -1,4 +1,6 @@
-"""Spectra without an axis: eigenvalues of a point in the complex plane, or of a list of points."""
+"""Figures of spectra that lie on no line: eigenvalues of one point in the complex plane, or of a list of
+points.
+"""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -7,22 +9,24 @@ from matplotlib.lines import Line2D
 
 from ....results.file.view import View
 from ..lists import number_points, shared_parameters
-from ..style import FIRST, SECOND, heading, legend_below, parameter_text, require
+from ..style import BLUE, VERMILION, heading, legend_below, parameter_text, require
 
 SPREAD_RATIO = 100.0
 """Ratio of the largest to the smallest eigenvalue above which axes are symmetric logarithmic."""
-SMALLEST_SHOWN = 1e-6
-"""Size, in units of the largest eigenvalue, below which all eigenvalues lie on the linear part of an axis."""
+LINEAR_RANGE_FRACTION = 1e-6
+"""Fraction of the largest eigenvalue up to which an axis is always linear."""
 LINEAR_FRACTION = 0.1
-"""Fraction of the numbers on the linear part of a symmetric logarithmic axis."""
-LOOKS = {True: (SECOND, "s", "growing mode"), False: (FIRST, "o", "decaying mode")}
-"""Colour, marker and word of modes, by whether they grow."""
+"""Fraction of the eigenvalues in the linear range of a symmetric logarithmic axis."""
+MODE_LOOKS = {True: (VERMILION, "s", "growing mode"), False: (BLUE, "o", "decaying mode")}
+"""(colour, marker, legend entry) of a mode, by whether it grows."""
 MAX_NUMBERED = 8
-"""Largest number of modes with a number beside the mark."""
+"""Largest number of modes of which each is labelled with its number."""
 
 
 def draw_eigenvalues(view: View) -> Figure:
-    """Figure of the stored eigenvalues of the only point in the complex plane, with their numbers."""
+    """Figure of the stored eigenvalues of the only point in a file, in the complex plane, labelled with their
+    numbers.
+    """
     modes = len(view.variables["mode"])
     growth, frequency = (view.variables[name].reshape(modes) for name in ("growth_rate", "frequency"))
     require(view, np.isfinite(growth).any(), "computed point")
@@ -44,7 +48,9 @@ def draw_eigenvalues(view: View) -> Figure:
 
 
 def draw_list_of_spectra(view: View) -> Figure:
-    """Figure of growth rates and frequencies of every point of a list, in order, without lines."""
+    """Figure of the growth rates and frequencies of a list of points, over the number of the point, without
+    lines.
+    """
     growth = view.variables["growth_rate"]
     frequency = view.variables["frequency"]
     figure = Figure(figsize=(5.2, 5.4), layout="constrained")
@@ -62,9 +68,11 @@ def draw_list_of_spectra(view: View) -> Figure:
 
 
 def _mark(axes: Axes, x: np.ndarray, y: np.ndarray, grows: np.ndarray) -> list[Line2D]:
-    """Marks each (x, y), arrays of equal shape; returns legend entries of growing and decaying modes."""
+    """Marks the points (x, y), arrays of equal shape; returns legend entries. grows: mask of
+    growing modes.
+    """
     handles = []
-    for kind, (colour, marker, word) in LOOKS.items():
+    for kind, (colour, marker, word) in MODE_LOOKS.items():
         chosen = (grows == kind) & np.isfinite(y)
         if chosen.any():
             handles += axes.plot(x[chosen], y[chosen], marker, color=colour, mfc="none", ms=4.5, label=word)
@@ -72,9 +80,11 @@ def _mark(axes: Axes, x: np.ndarray, y: np.ndarray, grows: np.ndarray) -> list[L
 
 
 def scale_if_spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
-    """Makes an axis symmetric logarithmic if its numbers, of any shape, differ much in size."""
+    """Makes an axis symmetric logarithmic if its numbers span a large ratio. x: None for the vertical axis
+    alone; y: of any shape.
+    """
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
         sizes = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)
         if sizes.size and sizes.max() > SPREAD_RATIO * sizes.min():
-            smallest = max(float(np.quantile(sizes, LINEAR_FRACTION)), sizes.max() * SMALLEST_SHOWN)
+            smallest = max(float(np.quantile(sizes, LINEAR_FRACTION)), sizes.max() * LINEAR_RANGE_FRACTION)
             set_scale("symlog", linthresh=10 ** np.floor(np.log10(smallest)))

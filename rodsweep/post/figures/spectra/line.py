@@ -1,4 +1,6 @@
-"""Spectra over a parameter: two roots, and their paths in the complex plane, as in the paper's Fig. 2."""
+"""Spectra along a line of points: two roots over the parameter and in the complex plane, as in the paper's
+Fig. 2.
+"""
 
 from collections.abc import Sequence
 from typing import Any
@@ -13,7 +15,7 @@ from ....results.file.view import View
 from ....sweep.points.points import lines_over
 from ...hopf_points import LocatedChange, StoredChanges
 from ..arm.quantities import NO_BREAK
-from ..style import FIRST, LABELS, SECOND, SYMBOLS, fixed_text, heading, legend_below, scale
+from ..style import BLUE, LABELS, SYMBOLS, VERMILION, fixed_text, heading, legend_below, scale
 from .eigenvalues import scale_if_spread
 
 FOLLOWED_ROOTS = {
@@ -21,28 +23,31 @@ FOLLOWED_ROOTS = {
     "smallest": "of the stored roots, the two smallest in magnitude",
     "all": "all stored roots",
 }
-"""Descriptions of the choices of roots."""
+"""Descriptions of the choices of roots, by name."""
 FOLLOWED_COUNT = 2
-"""Number of roots followed along a line."""
+"""Number of roots that are followed along a line."""
 LARGE_RATIO = 10.0
 """Ratio of the largest to the median root above which the axis of roots is logarithmic except near 0."""
 THRESHOLD_DIGITS = 6
-"""Number of digits of thresholds in the legend."""
+"""Number of significant digits of a threshold in the legend."""
 THRESHOLD_LOOKS = {
     "onset": (rf"${SYMBOLS['F']}_*$", ":"),
     "hopf": (rf"${SYMBOLS['F']}_{{**}}$", "--"),
     "restabilization": ("restabilization", "--"),
 }
-"""Name and line style of each kind of threshold."""
+"""(symbol or word, line style) of each kind of threshold."""
 THRESHOLD_LINE: dict[str, Any] = {"color": "0.3", "lw": 0.9}
+"""Colour and width of lines at thresholds."""
 SHADE_LOOK: dict[str, Any] = {"color": "0.92", "lw": 0, "zorder": 0}
-"""Look of the range in which the rod is unstable."""
+"""Look of the range in which the straight rod is unstable."""
 
 
 def select_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.ndarray:
-    """Two roots of each point, complex, shape (points, 2), or all stored roots, shape (points, modes).
+    """Two followed roots at each point, (points, 2), complex; or all stored roots, (points, modes) if `roots`
+    is "all".
 
-    In a pair the positive frequency comes first; two real roots are ordered as `roots` requires.
+    growth, frequency: parts of the stored roots, (points, modes). The first root of a complex pair has
+    positive frequency; two real roots are in the order of `roots`.
     """
     w = growth + 1j * frequency
     if roots == "all":
@@ -54,7 +59,9 @@ def select_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.nd
 
 
 def with_gaps(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(x, w) with a gap of NaN where the followed roots are exchanged for other roots between two points."""
+    """(x, w) with NaN inserted where the followed roots jump to other roots between two points. w: followed
+    roots, (n, 2).
+    """
     step = np.abs(np.diff(w, axis=0)).max(axis=1)
     size = np.abs(w).max(axis=1)
     # A root that is exchanged jumps far beyond the neighbouring steps, and by much of its own size.
@@ -64,10 +71,11 @@ def with_gaps(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
-    """Choice of the roots along lines of spectra: the user's, or the choice with fewer gaps.
+    """Name of the roots to follow along lines of spectra: the user's choice `asked`, or the choice with fewer
+    gaps.
 
-    If both have equally many gaps, the smallest roots are followed, as in the paper; all roots if a file
-    stores only one.
+    If both choices have equally many gaps, the smallest roots are followed, as in the paper. All roots are
+    drawn if a file stores one root only.
     """
     if any(len(view.variables["mode"]) < FOLLOWED_COUNT for view in views):
         return "all"
@@ -82,12 +90,12 @@ def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
 
 
 def _followed(view: View, roots: str) -> Complex:
-    """Roots shown for every point of a line, (points, 2), or all stored roots."""
+    """Roots that are drawn for each point of a line: two, (points, 2), or all stored roots."""
     return select_roots(view.by_point("growth_rate"), view.by_point("frequency"), roots)
 
 
 def _scatter_all(axes: Axes, x: Array, w: Complex, label: str) -> None:
-    """Draws all roots, (n, modes), in the complex plane, coloured by the parameter, (n,)."""
+    """Draws all roots w, (n, modes), in the complex plane; their colour shows the parameter x, (n,)."""
     across = np.broadcast_to(x[:, None], w.shape)
     dots = axes.scatter(w.real.ravel(), w.imag.ravel(), s=6, c=across.ravel(), cmap="viridis_r")
     scale_if_spread(axes, w.real, w.imag)
@@ -95,13 +103,13 @@ def _scatter_all(axes: Axes, x: Array, w: Complex, label: str) -> None:
 
 
 def draw_line(view: View, name: str, roots: str) -> Figure:
-    """Figure of two roots over a parameter, and of their paths in the complex plane."""
+    """Figure of the followed roots over the parameter `name`, and of their paths in the complex plane."""
     figure = Figure(figsize=(5.2, 6.6), layout="constrained")
     top, bottom = figure.subplots(2, 1)
     w = draw_roots(top, view, name, roots)
     mark_thresholds(top, view, name)
     if roots != "all":
-        for i, colour in enumerate((FIRST, SECOND)):
+        for i, colour in enumerate((BLUE, VERMILION)):
             bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3)
             _point_along(bottom, w[:, i], colour)
     else:
@@ -114,19 +122,21 @@ def draw_line(view: View, name: str, roots: str) -> Figure:
 
 
 def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
-    """Draws two roots over a parameter, (n, 2), NaN in gaps, or all roots; returns them."""
+    """Draws the followed roots, (n, 2), or all roots, over the parameter `name`; returns them, with NaN in
+    gaps.
+    """
     x = view.axes[name]
     w = _followed(view, roots)
     if roots != "all":
         x_broken, w = with_gaps(x, w)
         # Thin on thick, so that both show where they coincide.
-        for i, (colour, width) in enumerate(((FIRST, 3.0), (SECOND, 1.2))):
+        for i, (colour, width) in enumerate(((BLUE, 3.0), (VERMILION, 1.2))):
             look: dict[str, Any] = {"color": colour, "lw": width}
             axes.plot(x_broken, w[:, i].real, label=rf"$\mathrm{{Re}}\,\omega_{i + 1}$", **look)
             axes.plot(x_broken, w[:, i].imag, ":", label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$", **look)
     else:
         across = np.broadcast_to(x[:, None], w.shape)
-        for part, colour, marker in ((w.real, FIRST, "o"), (w.imag, SECOND, "s")):
+        for part, colour, marker in ((w.real, BLUE, "o"), (w.imag, VERMILION, "s")):
             word = rf"$\mathrm{{{'Re' if marker == 'o' else 'Im'}}}\,\omega$"
             axes.plot(
                 across.ravel(), part.ravel(), marker, color=colour, mfc="none", ms=2, mew=0.6, label=word
@@ -144,7 +154,9 @@ def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
 
 
 def _point_along(axes: Axes, w: Complex, colour: str) -> None:
-    """Draws an arrow half-way along the longest piece of a root's path, (n,), in its direction."""
+    """Draws an arrow in the middle of the longest segment of a root's path w, (n,), in the direction of the
+    path.
+    """
     pieces = np.split(w, np.flatnonzero(~np.isfinite(w)))
     path = max((piece[np.isfinite(piece)] for piece in pieces), key=len)
     ranges = max(np.ptp(path.real), 1e-300), max(np.ptp(path.imag), 1e-300)
@@ -158,15 +170,16 @@ def _point_along(axes: Axes, w: Complex, colour: str) -> None:
 
 
 def threshold_text(threshold: LocatedChange) -> str:
-    """Name and force of a threshold."""
+    """Symbol and force of a threshold, as text."""
     word, _ = THRESHOLD_LOOKS[threshold.kind]
     return f"{word} ={NO_BREAK}{threshold.position:#.{THRESHOLD_DIGITS}g}"
 
 
 def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
-    """Shades the range of the unstable rod, and draws lines at thresholds over F; returns the thresholds.
+    """Shades the range in which the straight rod is unstable, draws lines at thresholds over F, and returns
+    the thresholds.
 
-    Thresholds are the first force of oscillation, and forces at which the stability of the rod changes.
+    They are the first onset of oscillation, and forces at which the stability of the straight rod changes.
     """
     x = view.axes[name]
     unstable = view.variables["unstable_count"].reshape(-1) > 0

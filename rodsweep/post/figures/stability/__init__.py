@@ -1,1 +1,1 @@
-"""Figures of stability: thresholds, classes of rods in planes and rows, curves and normal forms."""
+"""Figures of stability: thresholds, classes of rods in planes and rows, boundary curves, normal forms."""

@@ -1,4 +1,6 @@
-"""Behaviour of single rods over F: a bar of classes for each rod, with its thresholds."""
+"""Stability class of single rods over F: a bar for each rod, whose colours are classes, with its
+thresholds.
+"""
 
 from collections.abc import Iterator
 from itertools import pairwise
@@ -19,14 +21,14 @@ from ....results.layouts.thresholds import CROSSING_KINDS
 from ....results.layouts.variables import number_of
 from ....wording import plural
 from ..lists import number_points, shared_parameters
-from ..style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, parameter_text, require
+from ..style import BLUE, GREEN, LABELS, SYMBOLS, VERMILION, heading, legend_below, parameter_text, require
 
-WORDS = {"class": CLASSES, "stable_states": STABLE_STATES}
-"""Words of each variable of a row, by number."""
+CLASS_WORDS = {"class": CLASSES, "stable_states": STABLE_STATES}
+"""(code, word) of every value of the variables `class` and `stable_states`, by variable."""
 STABILITY_CROSSINGS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
-"""Kinds of crossings at which the stability of the straight rod may change."""
-ON_A_CHANGE = 1e-9
-"""Relative distance from a change below which a point lies on the change and belongs to neither side."""
+"""Codes of the kinds of crossings at which the stability of the straight rod may change."""
+CHANGE_TOLERANCE = 1e-9
+"""Relative distance between a point and a change of class below which the point belongs to neither class."""
 CLASS_COLOURS = {
     "missing": "white",
     "monotone": "#DCE9F5",
@@ -35,7 +37,8 @@ CLASS_COLOURS = {
     "undecided": "#666666",
     "crushed": "#BBBBBB",
 }
-"""Colours of classes: light to dark blue for stable rods, orange for unstable ones, distinct in grey."""
+"""Colours of the classes: light to dark blue for stable rods, orange for unstable rods. They differ in grey
+prints."""
 STABLE_CLASS = {
     "onset": "oscillatory",
     "restabilization": "oscillatory",
@@ -43,26 +46,27 @@ STABLE_CLASS = {
     "real_leads": "monotone",
     "pair_leads": "oscillatory",
 }
-"""Class of a stable rod beyond a crossing, by the kind of the crossing."""
+"""Class of a stable rod beyond a crossing, by kind of the crossing."""
 FURTHER_HOPF = "later"
-"""Kind of a Hopf point at which the rod is unstable already and a further pair becomes unstable."""
-MARKS = {
-    "onset": (FIRST, "o", rf"onset ${SYMBOLS['F']}_*$"),
-    "hopf": (SECOND, "s", rf"Hopf ${SYMBOLS['F']}_{{**}}$"),
-    FURTHER_HOPF: (SECOND, "D", "further Hopf point"),
-    "restabilization": (THIRD, "^", "restabilization"),
+"""Kind of a Hopf point at which a further pair of modes becomes unstable, while the rod is
+unstable already."""
+CROSSING_MARKS = {
+    "onset": (BLUE, "o", rf"onset ${SYMBOLS['F']}_*$"),
+    "hopf": (VERMILION, "s", rf"Hopf ${SYMBOLS['F']}_{{**}}$"),
+    FURTHER_HOPF: (VERMILION, "D", "further Hopf point"),
+    "restabilization": (GREEN, "^", "restabilization"),
 }
-"""Colour, marker and word of the marked crossings."""
+"""(colour, marker, legend entry) of a marked crossing, by kind."""
 BAR_WIDTH = 0.8
-"""Width of the bar of a rod, as a fraction of the place."""
+"""Width of a bar, as a fraction of the distance between bars."""
 BAR_ASPECT = 0.12
-"""Height of the panel with a single bar, in units of the width."""
+"""Ratio of height to width of a panel with a single bar."""
 THRESHOLD_DIGITS = 6
-"""Number of digits of the thresholds of a single rod."""
+"""Number of significant digits of the thresholds of a single rod, in the legend."""
 
 
 def draw_class_bars(view: View) -> Figure:
-    """Figure of a horizontal bar for one rod, or of upright bars side by side for a list of rods."""
+    """Figure of a horizontal bar for a single rod, or of vertical bars for a list of rods."""
     count = view.variables["status"].size
     v = {name: view.variables[name] for name in ("F_end", "crossing_kind")}
     require(view, np.isfinite(v["F_end"]).any(), "computed rod")
@@ -86,13 +90,15 @@ def draw_class_bars(view: View) -> Figure:
 
 
 def class_entries(seen: set[str]) -> list[Patch]:
-    """Legend entries of the drawn classes."""
+    """Legend entries for the classes in `seen`."""
     shown = {word: colour for word, colour in CLASS_COLOURS.items() if word in seen}
     return [Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=word) for word, colour in shown.items()]
 
 
 def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str]]:
-    """Yields (F from, F to, class) of a rod, from F = 0 with real eigenvalues to the end of the search."""
+    """Yields (start, end, class) of each interval of F, from F = 0, where the class is "monotone", to the end
+    of the search.
+    """
     kinds, F, after = (view.by_point(name)[rod] for name in ("crossing_kind", "crossing_F", "unstable_after"))
     end = float(view.variables["F_end"].ravel()[rod])
     found = int(view.variables["crossing_count"].ravel()[rod])
@@ -109,9 +115,10 @@ def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str
 
 
 def classes_between_crossings(view: View, row: str) -> tuple[Array, Array, NDArray[np.intp]]:
-    """(value along the row, value of the row, class) half-way between neighbouring crossings of a diagram.
+    """(value along the row, value of the row, class) of points half-way between neighbouring crossings on
+    rows.
 
-    These classes are known however close two crossings are. Rows at infinity are left out.
+    The class of such a point is known however close the crossings are. Rows at infinity are left out.
     """
     numbers = {word: number for number, word in CLASSES}
     kinds, after, at = map(view.by_point, ("crossing_kind", "unstable_after", "crossing_at"))
@@ -127,7 +134,7 @@ def classes_between_crossings(view: View, row: str) -> tuple[Array, Array, NDArr
 
 
 def _class_beyond(kind: int, unstable: int) -> str:
-    """Class of a rod beyond a crossing, from the number of unstable modes there, -1 if unknown."""
+    """Class of a rod at F beyond a crossing. unstable: number of unstable modes there, -1 if unknown."""
     stable = STABLE_CLASS.get(CROSSING_KINDS[kind], "undecided")
     if unstable > 0:
         return "flutter"
@@ -135,7 +142,9 @@ def _class_beyond(kind: int, unstable: int) -> str:
 
 
 def draw_class_bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
-    """Draws the bar of a rod; returns its classes."""
+    """Draws the bar of the rod with index `rod`; returns its classes. upright: whether the bar is
+    vertical.
+    """
     pieces = list(classes_over_force(view, rod))
     from_, to = (view.variables[name].ravel()[rod] for name in ("open_from", "open_to"))
     if np.isfinite(from_):
@@ -151,16 +160,16 @@ def draw_class_bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
 def mark_thresholds_on_bars(
     axes: Axes, view: View, upright: bool, unit: str = "", factor: float = 1.0
 ) -> list[Line2D]:
-    """Marks the thresholds; returns legend entries, for a single rod with the forces.
+    """Marks the thresholds of all bars; returns legend entries, which for a single rod contain the forces.
 
-    unit: of the loads in the entries, empty for F of a rod. factor: the load in this unit at F = 1.
+    unit: of the loads in legend entries; empty for the F of a rod. factor: the load in this unit at F = 1.
     """
     kinds, F, after = map(view.by_point, ("crossing_kind", "crossing_F", "unstable_after"))
     hopf = kinds == CROSSING_KINDS.index("hopf")
-    chosen = {kind: kinds == CROSSING_KINDS.index(kind) for kind in MARKS if kind != FURTHER_HOPF}
+    chosen = {kind: kinds == CROSSING_KINDS.index(kind) for kind in CROSSING_MARKS if kind != FURTHER_HOPF}
     chosen |= {"hopf": hopf & (after <= 2), FURTHER_HOPF: hopf & (after > 2)}
     handles = []
-    for kind, (colour, marker, word) in MARKS.items():
+    for kind, (colour, marker, word) in CROSSING_MARKS.items():
         rods, places = np.nonzero(chosen[kind])
         if not rods.size:
             continue
@@ -180,10 +189,11 @@ def mark_thresholds_on_bars(
 def class_along_row(
     view: View, variable: str, line: str, row: str, place: int, edges: Array
 ) -> NDArray[np.intp]:
-    """Class of each pixel of a row, (n,), between the edges, (n + 1,); place: number of the row.
+    """Class of each pixel of a row of a diagram, (n,), from the edges of the pixels, (n + 1,). place: index
+    of the row.
 
     variable: `class` or `stable_states`. A pixel takes the class of the nearest computed point between the
-    same two changes of the row; without a point between the changes it is undecided.
+    same two changes of class. Without such a point its class is undecided.
     """
     x = view.variables[line]
     classes = view.by_point(variable)[place]
@@ -193,11 +203,11 @@ def class_along_row(
         own = rows == view.axes[row][place]
         x = np.append(x, between[own])
         classes = np.append(classes, found[own])
-    decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > ON_A_CHANGE * np.abs(x)
+    decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > CHANGE_TOLERANCE * np.abs(x)
     pixels = (edges[1:] + edges[:-1]) / 2
     piece_of_pixels = np.searchsorted(changes, pixels)
     piece_of_points = np.searchsorted(changes, x)
-    found = np.full(len(pixels), number_of("undecided", WORDS[variable]), dtype=np.intp)
+    found = np.full(len(pixels), number_of("undecided", CLASS_WORDS[variable]), dtype=np.intp)
     for piece in np.unique(piece_of_pixels):
         own_pixels = piece_of_pixels == piece
         own_points = decided & (piece_of_points == piece)
@@ -208,7 +218,7 @@ def class_along_row(
 
 
 def _changes(view: View, variable: str, line: str, place: int) -> Array:
-    """Positions of the changes of a row, increasing, (m,)."""
+    """Positions of the changes of class along a row, increasing, (m,)."""
     names = ("crossing_at", "crossing_kind", f"cycle_special_{line}")
     v = {name: view.by_point(name)[place] for name in names if name in view.variables}
     at = v["crossing_at"]

@@ -1,4 +1,4 @@
-"""Curves of a phase diagram, special points on the curves, and legend."""
+"""Curves of a phase diagram, special points on the curves, and their legend entries."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,41 +10,40 @@ from ....model.parameters import LINEAR_PARAMETERS
 from ....results.file.view import View
 from ....results.layouts.branch import SPECIAL_KINDS
 from ...stability_curves import bounds_stability
-from ..style import SYMBOLS, THIRD
+from ..style import GREEN, SYMBOLS
 from ..style import number as number_text
 
 CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")}
-"""Legend entry, width and style of a curve, by kind in the file."""
+"""(legend entry, width, style) of a boundary curve, by kind as coded in the file."""
 CURVE_NAMES = {1: (r"$\tilde F_{**}$", 0.85), 0: (r"$\tilde F_*$", 0.12)}
-"""Symbol beside the longest curve of a kind, and its place as a fraction of the visible length."""
+"""(symbol, position) of the text at the longest curve of a kind; position: fraction of visible length."""
 SIDE_LOOKS = {
     -1: ("supercritical Hopf points", 1.4, "-"),
     1: ("subcritical Hopf points", 1.4, "--"),
     0: ("Hopf points, side undecided", 0.6, "-"),
 }
-"""Legend entry, width and style of parts of Hopf curves, by the sign of Re c."""
+"""(legend entry, width, style) of a part of a Hopf curve, by sign of Re c."""
 CYCLE_MARKS = {
     "fold": ("folds of cycles on rows", "s"),
     "torus": ("torus points on rows", "D"),
     "symmetry_breaking": ("symmetry breakings", "^"),
     "period_doubling": ("period doublings", "v"),
 }
-"""Legend entry and marker, by kind, of special points of cycles on rows that lie on no curve."""
-ON_CURVE = 1e-3
-"""Distance, in units of the axis, up to which a point of a row lies on its curve; chords deviate by as
-much."""
-CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", THIRD)}
-"""Legend entry and colour of curves of special points of cycles, by kind."""
+"""(legend entry, marker) of special points of cycles on rows that lie on no curve, by kind."""
+CURVE_TOLERANCE = 1e-3
+"""Distance, as a fraction of the axis, up to which a point lies on a curve drawn by chords."""
+CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", GREEN)}
+"""(legend entry, colour) of curves of special points of cycles, by kind."""
 CHORD_ROUNDING = 1e-6
-"""Relative rounding error of a point of a curve on its own chord."""
+"""Relative rounding error in the distance of a curve's vertex from its own chord."""
 NAME_SIZE = 8
-"""Type size of a curve's symbol, in points."""
+"""Font size of a curve's symbol, in points."""
 BESIDE_SIDES = "double eigenvalue", 1.0, ":"
-"""Look of double eigenvalues beside Hopf curves drawn by criticality, where dashed means subcritical."""
+"""(legend entry, width, style) of double eigenvalues in a figure whose dashed curves are subcritical."""
 
 
 def draw_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> list[Line2D]:
-    """Draws boundary curves and folds, or for `states` only Hopf points; returns legend entries."""
+    """Draws boundary curves and folds, or with `states` only Hopf points; returns legend entries."""
     v = view.variables
     sides = "curve_criticality" in v
     handles = _sides(axes, view, line, row) if sides else []
@@ -70,9 +69,9 @@ def draw_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> li
 
 
 def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArray[np.bool_]]:
-    """Curves that get a symbol, each as a mask of the curves' points, (curve_point,).
+    """Masks of the curves of a kind that get a symbol, over the curve points of the file, (curve_point,).
 
-    F** is the boundary of stability of the straight rod, which Hopf points of further modes are not.
+    F** bounds the region of stable straight rods; curves of Hopf points of further modes get no symbol.
     """
     v = view.variables
     numbers = np.unique(v["curve_number"][v["curve_kind"] == kind])
@@ -81,7 +80,7 @@ def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArr
 
 
 def force_of_plane(view: View, line: str, row: str) -> str:
-    """Force of a plane without a force axis, as text behind a symbol; empty for other planes."""
+    """Constant F of a plane, as text to follow a symbol; empty for a plane with an axis of F."""
     return "" if "F" in (line, row) else f" = {float(view.axes['F'][0]):g}"
 
 
@@ -109,7 +108,7 @@ def _points(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
 
 
 def draw_cycle_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Draws the curves of folds and torus points of cycles; returns legend entries."""
+    """Draws the curves of folds and of torus points of cycles; returns legend entries."""
     v = view.variables
     handles = []
     for kind, (word, colour) in CYCLE_CURVES.items():
@@ -124,7 +123,7 @@ def draw_cycle_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2
 
 
 def mark_cycles_on_rows(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Marks special points of cycles on rows that lie on no curve; returns legend entries."""
+    """Marks special points of cycles that were found on rows and lie on no curve; returns legend entries."""
     handles: list[Line2D] = []
     values = view.point_columns[row]
     kinds, at = (view.by_point(f"cycle_special_{name}") for name in ("kind", line))
@@ -139,7 +138,7 @@ def mark_cycles_on_rows(axes: Axes, view: View, line: str, row: str) -> list[Lin
 
 
 def _on_curves(view: View, kind: int, line: str, row: str, x: Array, y: Array) -> NDArray[np.bool_]:
-    """Whether special points of a kind, x along a row at y, (n,), lie on a curve of their kind."""
+    """Mask of the special points (x, y), (n,) each, that lie on a curve of their kind `kind`."""
     v = view.variables
     near = np.zeros(len(x), dtype=bool)
     if "cycle_curve_number" not in v:
@@ -153,12 +152,14 @@ def _on_curves(view: View, kind: int, line: str, row: str, x: Array, y: Array) -
         share = np.divide(before, before - after, out=np.zeros_like(before), where=before != after)
         places = along[:-1, None] + share * np.diff(along)[:, None]
         off = np.where(before * after <= 0, np.abs(places - x), np.inf)
-        near |= off.min(axis=0, initial=np.inf) <= ON_CURVE * np.ptp(v[line])
+        near |= off.min(axis=0, initial=np.inf) <= CURVE_TOLERANCE * np.ptp(v[line])
     return near
 
 
 def _sides(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Draws Hopf curves by criticality, with generalised Hopf points; returns legend entries."""
+    """Draws Hopf curves with line styles by criticality, and generalised Hopf points; returns
+    legend entries.
+    """
     v = view.variables
     used = set()
     for curve in np.unique(v["curve_number"][v["curve_kind"] == 1]):
@@ -195,7 +196,7 @@ def _bautin_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
 
 
 def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple[int, np.ndarray]]:
-    """Parts of a Hopf curve between generalised Hopf points: (sign of Re c or 0 undecided, points (n, 2))."""
+    """(sign of Re c or 0, points (n, 2)) of each part of a Hopf curve between generalised Hopf points."""
     v = view.variables
     rows = np.flatnonzero(v["curve_number"] == curve)
     on = np.flatnonzero(v["bautin_curve"] == curve)
@@ -211,7 +212,7 @@ def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple
 
 
 def _first_over_force(paths: list[Array], force: int) -> list[Array]:
-    """Parts of curves, (n, 2) each, at which no curve has a smaller F; force: the column of F."""
+    """Parts of curves, (n, 2) each, that have the smallest F of all curves; force: column with F."""
     starts, ends = (
         np.concatenate([path[piece] for path in paths]) for piece in (slice(None, -1), slice(1, None))
     )
@@ -228,7 +229,9 @@ def _first_over_force(paths: list[Array], force: int) -> list[Array]:
 
 
 def _name_longest(axes: Axes, paths: list[Array], name: str, share: float) -> None:
-    """Writes a symbol beside the curve, (points, 2), of the greatest visible length, at a share of it."""
+    """Writes a symbol next to the curve, (points, 2), of the greatest visible length, at its fraction
+    `share`.
+    """
     lengths = []
     seen = []
     for path in paths:

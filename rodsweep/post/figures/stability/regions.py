@@ -1,4 +1,6 @@
-"""Regions of a plane bounded by curves: each pixel takes a class from points of the same region."""
+"""Regions of a plane that are bounded by curves. Each pixel takes the class of a known point in
+its region.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,22 +13,24 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ..style import is_logarithmic
 
-PIXELS = 900
-"""Number of pixels along either axis. In a figure of 183 mm a pixel has a fifth of a millimetre, half the
-width of the line drawn over a boundary."""
+PIXEL_COUNT = 900
+"""Number of pixels along each axis. In a figure 183 mm wide a pixel measures 0.2 mm, half the width of the
+line over a boundary."""
 CURVE_STEP = 0.4
-"""Distance, in pixels, of points at which a curve is drawn; with less than 1 the curve has no gap."""
+"""Distance, in pixels, between points of a drawn curve. Below 1 the curve has no gap."""
 
 
 @dataclass(frozen=True, slots=True)
 class DrawnPlane:
-    """Rectangle of two parameters, from first to last value of each, with the scales of their axes."""
+    """Rectangle of a plane. x, y: values along the axes, whose first and last values are the edges."""
 
     x: Array
     y: Array
 
     def unit(self, x: Array, y: Array) -> Array:
-        """Points, both (n,), as fractions of the axes, (n, 2): 0 and 1 are the edges."""
+        """Points x, y, both (n,), as fractions of the axes, (n, 2): 0 and 1 are the edges. Logarithmic axes
+        are taken into account.
+        """
         columns = []
         for values, axis in ((x, self.x), (y, self.y)):
             if is_logarithmic(axis):
@@ -39,32 +43,37 @@ class DrawnPlane:
 
 @dataclass(frozen=True, slots=True)
 class ClassifiedPoints:
-    """Points with a known class, (n, 2), as fractions of the axes, and their classes, (n,)."""
+    """Points with known classes. at: fractions of the axes, (n, 2). classes: (n,)."""
 
     at: Array
     classes: NDArray[Any]
 
     def within(self, regions: NDArray[Any]) -> tuple["ClassifiedPoints", NDArray[Any]]:
-        """(points in the plane, region of each of them), from the region of every pixel."""
+        """(points inside the plane, region of each of these points). regions: number of the region of every
+        pixel, (PIXEL_COUNT, PIXEL_COUNT).
+        """
         inside = ((self.at >= 0) & (self.at <= 1)).all(axis=1)
         at = self.at[inside]
         return ClassifiedPoints(at, self.classes[inside]), regions[tuple(_pixels(at).T)]
 
 
-def coloured(computed: ClassifiedPoints, further: ClassifiedPoints, curves: Sequence[Array]) -> NDArray[Any]:
-    """Class of each pixel, (PIXELS, PIXELS), lowest row first: the class of the nearest point of its region.
+def pixel_classes(
+    computed: ClassifiedPoints, further: ClassifiedPoints, curves: Sequence[Array]
+) -> NDArray[Any]:
+    """Class of each pixel, (PIXEL_COUNT, PIXEL_COUNT): the class of the nearest point in the same region.
 
-    further: points for regions without a computed point. curves: boundaries, (m, 2) each, as fractions of the
-    axes. A region without any point takes the class of the nearest computed point.
+    The lowest row of pixels comes first. further: points used in regions without a computed point. curves:
+    boundaries, (m, 2) each, as fractions of the axes. A region without any point takes the class of the
+    nearest computed point.
     """
-    walls = np.zeros((PIXELS, PIXELS), bool)
+    walls = np.zeros((PIXEL_COUNT, PIXEL_COUNT), bool)
     for curve in curves:
         row, column = _pixels(_dense(curve)).T
         walls[row, column] = True
     regions, count = scipy.ndimage.label(~walls)
     known, region_of_known = computed.within(regions)
     sources = [(known, region_of_known), further.within(regions), (known, None)]
-    table = np.zeros((PIXELS, PIXELS), computed.classes.dtype)
+    table = np.zeros((PIXEL_COUNT, PIXEL_COUNT), computed.classes.dtype)
     for region in range(1, count + 1):
         pixels = np.nonzero(regions == region)
         for source, of_region in sources:
@@ -79,25 +88,28 @@ def coloured(computed: ClassifiedPoints, further: ClassifiedPoints, curves: Sequ
 
 
 def _nearest(pixels: tuple[NDArray[Any], ...], places: Array, classes: NDArray[Any]) -> NDArray[Any]:
-    """Class of the point nearest to each pixel; pixels: (rows, columns), (n,) each."""
+    """Class of the point nearest to each pixel, (n,). pixels: (row, column), (n,) each. places: points in
+    pixels, (m, 2). classes: (m,).
+    """
     if (classes == classes[0]).all():
         return classes[0]
-    centres = (np.column_stack(pixels[::-1]) + 0.5) / PIXELS
+    centres = (np.column_stack(pixels[::-1]) + 0.5) / PIXEL_COUNT
     return classes[scipy.spatial.cKDTree(places).query(centres)[1]]
 
 
 def _pixels(places: Array) -> NDArray[np.intp]:
-    """(row, column) of the pixels containing points, (n, 2)."""
-    return np.clip(places[:, ::-1] * PIXELS, 0, PIXELS - 1).astype(np.intp)
+    """(row, column), (n,) each, of the pixels that contain the points, (n, 2)."""
+    return np.clip(places[:, ::-1] * PIXEL_COUNT, 0, PIXEL_COUNT - 1).astype(np.intp)
 
 
 def _dense(curve: Array) -> Array:
-    """Part of a curve, (n, 2), in the plane, at points less than a pixel apart.
+    """Points less than a pixel apart on the part of a curve, (n, 2), that lies inside the plane.
 
-    Each piece is first cut at the edges of the plane, because its outer part may be a thousand times as long.
+    Each segment is first cut at the edges of the plane, because it may be a thousand times as long as the
+    plane is wide.
     """
     curve = curve[np.isfinite(curve).all(axis=1)]
-    edge = 0.5 / PIXELS  # rounding may move an end on the edge outside
+    edge = 0.5 / PIXEL_COUNT  # rounding may move an end on the edge outside
     steps = np.diff(curve, axis=0)
     with np.errstate(all="ignore"):  # a piece parallel to an axis gives infinities, which are right
         crossed = np.stack([(bound - curve[:-1]) / steps for bound in (-edge, 1 + edge)])
@@ -106,7 +118,7 @@ def _dense(curve: Array) -> Array:
     pieces = [curve[:1]]
     for i in np.flatnonzero(enters <= leaves):
         share = leaves[i] - enters[i]
-        count = int(share * np.abs(steps[i]).max() * PIXELS / CURVE_STEP) + 1
+        count = int(share * np.abs(steps[i]).max() * PIXEL_COUNT / CURVE_STEP) + 1
         pieces.append(curve[i] + steps[i] * np.linspace(enters[i], leaves[i], count + 1)[:, None])
     places = np.concatenate(pieces)
     return places[((places > -edge) & (places < 1 + edge)).all(axis=1)]

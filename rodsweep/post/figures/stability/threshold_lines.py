@@ -1,4 +1,4 @@
-"""First thresholds of rods as lines over a parameter, for all values of a second parameter or for some."""
+"""First thresholds of rods over a parameter, as lines for all or some values of a second parameter."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -14,36 +14,39 @@ from ....results.file.view import View
 from .. import style
 
 CRITICAL_FORCES = (
-    ("F_onset", r"onset $\tilde F_*$", style.FIRST, "o", ":"),
-    ("F_hopf", r"Hopf $\tilde F_{**}$", style.SECOND, "s", "-"),
-    ("F_restabilization", "restabilization", style.THIRD, "^", "--"),
+    ("F_onset", r"onset $\tilde F_*$", style.BLUE, "o", ":"),
+    ("F_hopf", r"Hopf $\tilde F_{**}$", style.VERMILION, "s", "-"),
+    ("F_restabilization", "restabilization", style.GREEN, "^", "--"),
 )
-"""Variable, word, colour for lines of a single rod, marker and line style of each threshold."""
-FILE_COLOURS = (style.FIRST, style.SECOND, style.THIRD, "#CC79A7", "#56B4E9", "0.3")
-"""Colours of the files that share a figure."""
+"""(variable, legend entry, colour, marker, line style) of each kind of threshold; the colour is used for a
+single rod."""
+FILE_COLOURS = (style.BLUE, style.VERMILION, style.GREEN, "#CC79A7", "#56B4E9", "0.3")
+"""Colours of the files in a figure of several files."""
 LINE_STYLES = ("-", "--", ":")
-"""Line styles for the values of the second parameter in one panel."""
+"""Line styles of the values of the second parameter in one panel."""
 MAX_LINES = 6
-"""Largest number of values of the second parameter whose lines have distinct colours."""
-DARKEST = 0.0
-"""Start of the used part of the colour map."""
+"""Largest number of values of the second parameter whose lines have distinguishable colours."""
+DARKEST_SHADE = 0.0
+"""Start of the used range of the colour map."""
 LIGHTEST_SHADE = 0.85
-"""End of the used part of the colour map; lighter colours are invisible on white."""
-INDISTINCT = 0.01
-"""Distance of two lines, in units of the largest force, below which a single line is drawn."""
+"""End of the used range of the colour map; lighter colours are invisible on white paper."""
+MIN_LINE_DISTANCE = 0.01
+"""Distance of two lines, as a fraction of the largest force, below which one line stands for both."""
 HEADROOM = 1.05
 """Upper limit of the axis of forces, in units of the largest force."""
 
 
 def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, str]:
-    """Figure of lines over the longer axis, for every value of the shorter one; and a description."""
+    """(figure of thresholds over the parameter with more values, a line for each value of the other,
+    description). long: both parameters.
+    """
     along = max(long, key=lambda name: np.count_nonzero(np.isfinite(view.axes[name])))
     other = next((name for name in long if name != along), None)
     figure = Figure(figsize=(5.6, 4.2), layout="constrained")
     axes = figure.subplots()
     table = _table(view, along, other)
     style.require(view, np.isfinite(_abscissa(view, along)).sum() > 1, f"two finite values of {along}")
-    shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST, LIGHTEST_SHADE, len(table)))
+    shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST_SHADE, LIGHTEST_SHADE, len(table)))
     for values, shade in zip(table, shades, strict=True):
         handles = _draw(axes, _abscissa(view, along), values, {"color": shade} if other else {"ls": "-"})
     if other:
@@ -52,7 +55,7 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
             for value, shade in zip(view.axes[other].tolist(), shades, strict=True)
         ]
     _label(axes, view, along, table)
-    axes.set_ylabel(style.CRITICAL_FORCE)
+    axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=3)
     figure.suptitle(style.heading(view, style.fixed_text(view, *long), searched))
     words = f"critical forces against {along}" + (f" for every {other}" if other else "")
@@ -60,7 +63,7 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
 
 
 def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tuple[Figure, str]:
-    """Figure of lines over one parameter, in a colour for each file; and a description."""
+    """(figure of thresholds over the parameter `along`, in one colour for each file, description)."""
     figure = Figure(figsize=(5.6, 4.6), layout="constrained")
     axes = figure.subplots()
     tables = np.concatenate([_table(view, along, None) for view in views])
@@ -74,14 +77,16 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
     if style.is_logarithmic(forces):
         style.scale(axes, "y", forces)
         axes.set_ylim(forces[0] / HEADROOM, forces[-1] * HEADROOM)
-    axes.set_ylabel(style.CRITICAL_FORCE)
+    axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=2)
     figure.suptitle("\n".join(filter(None, (style.fixed_text(longest, along), searched))))
     return figure, f"critical forces against {along} of {len(views)} files" + _left_out(longest, [along])
 
 
 def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str) -> tuple[Figure, str]:
-    """Figure as the paper's Fig. 3: a panel over each of two parameters, for some values of the other."""
+    """(figure as the paper's Fig. 3, description): a panel over each of two parameters, with lines for some
+    values of the other.
+    """
     rows, columns = (2, 1) if narrow else (1, 2)
     figure = Figure(figsize=(4.6 * columns + 0.4, 4.0 * rows), layout="constrained")
     panels = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
@@ -89,7 +94,7 @@ def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str)
     for panel, along, other in zip(panels, long, reversed(long), strict=True):
         drawn.append(f"{_some_lines(panel, view, along, other)} of {len(view.axes[other])} values of {other}")
         if narrow or panel is panels[0]:
-            panel.set_ylabel(style.CRITICAL_FORCE)
+            panel.set_ylabel(style.CRITICAL_FORCE_LABEL)
     handles = [
         Line2D([], [], color=colour, marker=marker, ms=3, lw=1.2, label=word)
         for name, word, colour, marker, _ in CRITICAL_FORCES
@@ -102,7 +107,9 @@ def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str)
 
 
 def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:
-    """Draws lines over a parameter for the most different values of the other; returns their number."""
+    """Draws thresholds over `along` for up to three values of `other` that differ most; returns the number of
+    values.
+    """
     table = _table(view, along, other)
     some = _far_apart(table)
     for line, alike in zip(LINE_STYLES, _alike({at: table[at] for at in some}), strict=False):
@@ -116,9 +123,10 @@ def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:
 
 
 def _table(view: View, along: str, other: str | None) -> Array:
-    """The three critical forces over two parameters, shape (values of `other`, 3, values along).
+    """First forces of the three kinds of thresholds, (values of `other`, 3, values of `along`), NaN where
+    there is none.
 
-    other: the second parameter; None for a single row.
+    other: name of the second parameter; None for one row.
     """
     names = list(view.axes)
     kept = [names.index(name) for name in (other, along) if name]
@@ -132,15 +140,16 @@ def _table(view: View, along: str, other: str | None) -> Array:
 
 
 def _abscissa(view: View, along: str) -> Array:
-    """Values along the axis: the parameter, or 1/gamma3 as in the paper."""
+    """Values on the horizontal axis: of the parameter `along`, or 1/gamma3 as in the paper."""
     values = view.axes[along]
     return 1 / values if along == "gamma3" else values
 
 
 def _draw(axes: Axes, x: Array, values: Array, look: dict[str, Any]) -> list[Line2D]:
-    """Draws the three critical forces, (3, n), with gaps at unknown ones; returns entries of those known.
+    """Draws lines of the three kinds of thresholds; returns legend entries. values: first forces, (3, n),
+    with NaN as gaps.
 
-    look: replaces the colour, the style or the marks of the thresholds.
+    look: colour, style or markers that replace those of CRITICAL_FORCES.
     """
     place = np.isfinite(x)
     handles = []
@@ -153,16 +162,16 @@ def _draw(axes: Axes, x: Array, values: Array, look: dict[str, Any]) -> list[Lin
 
 
 def _label(axes: Axes, view: View, along: str, table: Array) -> None:
-    """Sets scale and label of the horizontal axis, and limits of the axis of forces, which starts at 0."""
+    """Labels the horizontal axis and sets its scale. The axis of forces starts at 0."""
     x = _abscissa(view, along)
     style.scale(axes, "x", np.sort(x[np.isfinite(x)]))
-    axes.set_xlabel(style.INVERSE_DRAG if along == "gamma3" else style.LABELS[along])
+    axes.set_xlabel(style.INVERSE_DRAG_LABEL if along == "gamma3" else style.LABELS[along])
     highest = max(float(np.nanmax(table, initial=0.0)) * HEADROOM, axes.get_ylim()[1] if axes.lines else 0.0)
     axes.set_ylim(0, highest or 1.0)
 
 
 def _kinds(table: Array) -> list[Line2D]:
-    """Legend entries of the thresholds in a table, (values, 3, values along)."""
+    """Legend entries for the kinds of thresholds in a table, (values, 3, values along)."""
     shown = np.isfinite(table).any(axis=(0, 2))
     return [
         Line2D([], [], color="0.3", marker=marker, ls=line, ms=3, lw=1.2, label=word)
@@ -172,7 +181,9 @@ def _kinds(table: Array) -> list[Line2D]:
 
 
 def _left_out(view: View, names: list[str]) -> str:
-    """Clause on values without a place on an axis, or an empty text."""
+    """Clause on infinite values of the parameters `names`, which an axis cannot show; empty if there are
+    none.
+    """
     left_out = [
         f"{name} = {value:g}"
         for name in names
@@ -182,7 +193,7 @@ def _left_out(view: View, names: list[str]) -> str:
 
 
 def _far_apart(table: Array) -> list[int]:
-    """Numbers of the first line, the last line and the line half-way in height; (lines, 3, n)."""
+    """Indices of the first and the last line, and of the line half-way in height. table: (lines, 3, n)."""
     last = len(table) - 1
     if last < 2:
         return list(range(len(table)))
@@ -193,16 +204,14 @@ def _far_apart(table: Array) -> list[int]:
 
 
 def _alike(lines: dict[int, Array]) -> list[list[int]]:
-    """Groups of lines that cannot be distinguished in the figure, by the lines' numbers; lines: (3, points)
-    each.
-    """
+    """Groups of lines that cannot be distinguished in the figure, by index. lines: (3, points) each."""
     size = max(float(np.nanmax(values, initial=0.0)) for values in lines.values())
     groups: list[list[int]] = []
     for number, values in lines.items():
         for group in groups:
             other = lines[group[0]]
             same = np.isnan(values) == np.isnan(other)
-            if same.all() and np.nanmax(np.abs(values - other), initial=0.0) < INDISTINCT * size:
+            if same.all() and np.nanmax(np.abs(values - other), initial=0.0) < MIN_LINE_DISTANCE * size:
                 group.append(number)
                 break
         else:

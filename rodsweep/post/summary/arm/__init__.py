@@ -1,1 +1,1 @@
-"""Summaries of arms in SI units."""
+"""Summaries of results about arms, in SI units."""

@@ -1,6 +1,6 @@
-"""First lines of `rodsweep show` for an arm: whether the model applies, and when and how fast the arm beats.
+"""First lines of `rodsweep show` for an arm: validity of the model, flutter load, and frequency of beating.
 
-Numbers are in the units typed by the user, frequencies in Hz.
+Quantities are in the units typed by the user, frequencies in Hz.
 """
 
 from collections.abc import Callable
@@ -19,28 +19,29 @@ from .drag_range import arms_of_drags, drag_lines
 from .validity import plane_lines, validity_sentence
 
 Lines = list[str]
+"""Lines of text."""
 ANSWER_DIGITS = 3
-"""Largest number of digits in an answer; a larger error leaves fewer."""
-FAILED = "failed"
-"""Status of a point about which nothing is stored."""
-NO_CYCLE = {
+"""Largest number of significant digits in an answer; numbers with larger errors have fewer."""
+FAILED_STATUS = "failed"
+"""Status of a point without a result, whose solve failed."""
+NO_CYCLE_WORDS = {
     "straight": "does not beat",
     "unstable": "has a cycle that it leaves at the least disturbance",
     "torus": "beats without repeating",
     "not_settled": "is not settled: no stable cycle was found, but one may exist",
     "left_the_model": "is crushed somewhere or loses its stiffness, where the model ends",
-    FAILED: "is not known: the integration failed",
+    FAILED_STATUS: "is not known: the integration failed",
 }
-"""Words about arms without a stable cycle, by status."""
+"""Words about an arm without a stable cycle, by status."""
 
 
 def arm_answer(view: View, done: np.ndarray) -> Lines:
-    """Lines about the points in `done`, a mask of the points' shape; empty without an arm."""
+    """Lines with the answer about the arms at the points in the mask `done`; an empty list for a rod."""
     return [*plane_lines(view.quantities), *_applied(view, done)] if view.quantities else []
 
 
 def _applied(view: View, done: np.ndarray) -> Lines:
-    """Lines about points, with the validity of the model."""
+    """Lines about the points in the mask `done`, with the validity of the model."""
     rods = done & (view.variables["status"] < NOT_SLENDER)
     if not rods.any():
         return (
@@ -60,23 +61,25 @@ def _applied(view: View, done: np.ndarray) -> Lines:
 
 
 def spanned(view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
-    """`in_own_unit` with the digits of an answer; values, errors: of any one shape."""
+    """Range of `values` in the SI unit `si`, as text in the arm's own unit. errors: absolute, of
+    equal shape.
+    """
     return in_own_unit(view, values, si, errors, ANSWER_DIGITS)
 
 
 def load_spanned(view: View, loads: np.ndarray) -> str:
-    """Range of loads in SI units, (n,), in the unit of the arm's load."""
+    """Range of loads in SI units, (n,), as text in the unit of the arm's load."""
     return spanned(view, loads, UNITS[load_of(view)][0])
 
 
 def _of_search(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
-    """Lines of a task that searches: the answer of points with a result, failed points, further lines.
+    """Lines of a task that searches along the load: answer, failed points, further lines.
 
-    answer: from (view, mask of points with a result) to (lines of the answer, further lines).
+    answer: function of the view and a mask of points with a result; returns (answer, further lines).
     """
 
     def lines(view: View, rods: np.ndarray) -> Lines:
-        failed = rods & view.with_status(FAILED)
+        failed = rods & view.with_status(FAILED_STATUS)
         unsolved = [f"not known{_share(failed, rods)}: the search failed"] if failed.any() else []
         if (failed == rods).all():
             return unsolved
@@ -87,7 +90,7 @@ def _of_search(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Cal
 
 
 def _of_thresholds(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """Lines about the loads at which arms flutter, oscillate and are stable again."""
+    """(lines about the loads from which arms flutter, oscillate or are stable again, further lines)."""
     load = load_of(view)
     v = view.variables
     hopf, end, rate = (v[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz"))
@@ -103,7 +106,9 @@ def _of_thresholds(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 
 
 def _where(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines:
-    """Lines about the arms with the smallest and the largest of loads in SI units, (n,), and about drag."""
+    """Lines on the arms with the smallest and the largest load, (n,) in SI units, and on the
+    effect of drag.
+    """
     if np.isfinite(loads).sum() < 2:
         return []
     places = np.flatnonzero(rods)
@@ -118,7 +123,7 @@ def _where(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines:
 
 
 def _of_crossings(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """Lines about the loads and frequencies of first Hopf points."""
+    """(lines about the loads and frequencies at the first Hopf points, further lines)."""
     v = view.variables
     load = load_of(view)
     end = v[f"{load}_end"][rods] if f"{load}_end" in v else np.full(rods.sum(), np.nan)
@@ -127,12 +132,12 @@ def _of_crossings(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 
 
 def _share(some: np.ndarray, rods: np.ndarray) -> str:
-    """Ending of a sentence with the share of the points in a mask; empty for a single point."""
+    """End of a sentence with the share of the arms in `rods` that are in `some`; empty for a single arm."""
     return f" at {int(some.sum())} of {int(rods.sum())} points" if rods.sum() > 1 else ""
 
 
 def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> Lines:
-    """Lines about flutter of n arms. hopf: loads; end: ends of the search; frequency: in Hz; (n,) each."""
+    """Lines about flutter. hopf: flutter loads; end: largest searched loads; frequency: in Hz; (n,) each."""
     flutters = np.isfinite(hopf)
     searched = f"up to {load_spanned(view, end)}" if np.isfinite(end).any() else ""
     if not flutters.any():
@@ -146,13 +151,13 @@ def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarra
 
 
 def _of_cycles(view: View, rods: np.ndarray) -> Lines:
-    """Lines about the frequency and the amplitude of cycles."""
+    """Lines about the frequency and the amplitude of limit cycles."""
     names = {"frequency_hz": "frequency", "tip_y_max_si": "tip_y_max"}
     v = {name: view.variables[name][rods] for name in names}
     errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}
     cycles = rods & view.with_status("cycle")
     if not cycles.any():  # where some arms beat, the line with all outcomes counts the others
-        masks = {words: rods & view.with_status(status) for status, words in NO_CYCLE.items()}
+        masks = {words: rods & view.with_status(status) for status, words in NO_CYCLE_WORDS.items()}
         return [f"{words}{_share(mask, rods)}" for words, mask in masks.items() if mask.any()]
     beats = cycles[rods]
     wide, rate = (
@@ -166,7 +171,9 @@ def _of_cycles(view: View, rods: np.ndarray) -> Lines:
 
 
 def _decided(view: View, rods: np.ndarray) -> Lines:
-    """Line on the number of arms and loads for which drag decides whether there is a cycle; may be empty."""
+    """Line on the number of combinations of arm and load for which the drag decides whether a cycle exists;
+    may be empty.
+    """
     arms = arms_of_drags(view)
     if arms is None:
         return []
@@ -183,7 +190,7 @@ def _decided(view: View, rods: np.ndarray) -> Lines:
 
 
 def _of_modes(view: View, rods: np.ndarray) -> Lines:
-    """Lines about the stability of arms and the frequency of their leading modes."""
+    """Lines about the stability of the straight arms and the frequency of their leading modes."""
     count = view.variables["unstable_count"]
     unstable = rods & (count > 0)
     unknown = rods & (count < 0)
@@ -199,7 +206,7 @@ def _of_modes(view: View, rods: np.ndarray) -> Lines:
 
 
 def _of_branches(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """Line about loads and frequencies of the cycles on branches."""
+    """(lines about the loads and the frequencies of the cycles on branches, further lines)."""
     loads = view.variables[f"branch_{load_of(view)}"][rods]
     if not np.isfinite(loads).any():
         return ["has no branch of cycles from a Hopf point in the range searched"], []
@@ -209,7 +216,7 @@ def _of_branches(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 
 
 def _of_diagram(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """Lines about the loads and frequencies of the first Hopf points on rows over F."""
+    """(lines about the loads and frequencies at the first Hopf points on rows over F, further lines)."""
     v = view.variables
     scale = np.broadcast_to(v[SCALE_OF[load_of(view)]], rods.shape)[rods]
     forces, frequency = _at_first_hopf(view, rods, "crossing_at")
@@ -218,7 +225,9 @@ def _of_diagram(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 
 
 def _at_first_hopf(view: View, rods: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """(a variable, frequency in Hz) at the first Hopf point of each point, (n,); NaN without a Hopf point."""
+    """(variable `name`, frequency in Hz) at the first Hopf point of each arm, (n,); NaN without a
+    Hopf point.
+    """
     hopf = view.variables["crossing_kind"][rods] == CROSSING_KINDS.index("hopf")
     at = np.arange(len(hopf)), np.argmax(hopf, axis=-1)
     values, frequency = (
@@ -237,4 +246,4 @@ ANSWERS: dict[str, Callable[[View, np.ndarray], Lines]] = {
     "branch": _of_search(_of_branches),
     "phase_diagram": lambda view, rods: [] if "F" in view.parameters else _of_search(_of_diagram)(view, rods),
 }
-"""Function of each task from (view, mask of computed points with a rod) to the lines of its answer."""
+"""Function of each task that returns the lines of the answer, from the view and a mask of computed points."""

@@ -1,7 +1,7 @@
-"""An arm in its own units in `rodsweep show`: quantities, results of every task, and thresholds.
+"""Results about an arm in its own units for `rodsweep show`: quantities, variables of every task, thresholds.
 
-Loads and lengths are in the units typed by the user, frequencies in Hz, and all powers of an answer in a
-single unit.
+Loads and lengths are in the units typed by the user, frequencies in Hz. All powers of an answer have the same
+unit.
 """
 
 import textwrap
@@ -22,39 +22,40 @@ from ...tables.rows import quantities_at_points
 from ..errors import errors_of, is_known
 from ..ranges import RANGE_DIGITS, rounded, span
 
-WIDTH = 80
-"""Width of lines in SI units, in characters."""
+SI_LINE_WIDTH = 80
+"""Largest length of a line in SI units, in characters."""
 FEW_ITEMS = 4
-"""Largest number of values of a table listed individually for a single rod."""
-TYPED_AS = {"m": ("length",), "Pa": ("pressure", "young"), "N": ("force",)}
-"""Quantities whose typed unit is used for all numbers with an SI unit; the first typed quantity decides."""
-PREFIXED = ("J", "W")
-"""Units with a prefix, such as mW."""
+"""Largest number of values in a table that are listed one by one; more values are given as a range."""
+TYPED_UNIT_SOURCES = {"m": ("length",), "Pa": ("pressure", "young"), "N": ("force",)}
+"""Quantities whose unit, as typed by the user, all numbers with an SI unit take. The first quantity that the
+user typed decides."""
+PREFIXED_UNITS = ("J", "W")
+"""SI units that get a prefix, such as mW."""
 SHORT_TIME = 0.1
-"""Time, in s, below which times are given in ms or smaller units."""
+"""Time below which times are written with a prefix, such as ms; in s."""
 AXIS_DIGITS = 3
-"""Number of digits of a quantity that identifies a point."""
-WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
-"""Words for quantities with an unclear name."""
+"""Number of significant digits of a quantity that identifies a point of the file."""
+QUANTITY_WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
+"""Words for quantities of an arm whose names are unclear."""
 THRESHOLD_SENTENCES = {
     "hopf": "flutters at {load}{rate}",
     "restabilization": "is straight again from {load} on",
     "onset": "a disturbance swings as it dies away from {load} on",
 }
-"""Sentences on the loads at which the straight arm changes, by kind of change."""
+"""Sentence on the load at which the straight arm changes, by kind of change."""
 
 
-def word(name: str) -> str:
-    """Name of a quantity in words."""
-    return WORDS.get(name, name.replace("_", " "))
+def quantity_words(name: str) -> str:
+    """Words for the quantity of an arm with the given name."""
+    return QUANTITY_WORDS.get(name, name.replace("_", " "))
 
 
 def own_unit(view: View, si: str, largest: float) -> tuple[float, str]:
-    """(factor, unit) for numbers in an SI unit that are at most `largest`."""
-    typed = next((view.typed[name] for name in TYPED_AS.get(si, ()) if name in view.typed), si)
+    """(factor, unit) that converts numbers up to `largest` from the SI unit `si` to the arm's own unit."""
+    typed = next((view.typed[name] for name in TYPED_UNIT_SOURCES.get(si, ()) if name in view.typed), si)
     if typed != si:
         return written_in(1.0, typed, si), typed
-    if si == "s" and largest < SHORT_TIME or si in PREFIXED:
+    if si == "s" and largest < SHORT_TIME or si in PREFIXED_UNITS:
         return compact(largest, si)
     return 1.0, si
 
@@ -66,28 +67,31 @@ def in_own_unit(
     errors: np.ndarray | float = 0.0,
     most: int = RANGE_DIGITS,
 ) -> str:
-    """Range of numbers in an SI unit, of any shape, in the arm's own unit.
+    """Range of `values` in the SI unit `si`, as text in the arm's own unit.
 
-    errors: absolute errors of the same shape, or 0; they limit the number of digits, at most `most`.
+    errors: absolute errors, of the shape of the values, or 0. They limit the number of digits, which is at
+    most `most`.
     """
     factor, unit = own_unit(view, si, _largest(values))
     return f"{span(factor * values, np.broadcast_to(factor * errors, values.shape), most)} {unit}"
 
 
 def _largest(values: np.ndarray) -> float:
-    """Largest modulus of the finite values; 0 without a finite value."""
+    """Largest absolute value among finite `values`; 0 if no value is finite."""
     finite = np.abs(values[np.isfinite(values)])
     return float(finite.max()) if finite.size else 0.0
 
 
 def given_columns(view: View) -> dict[str, np.ndarray]:
-    """Quantities of an arm that vary among the points of a file, at every point, each (points,)."""
+    """Quantities of an arm that differ between points of a file, by name: values at all points, (points,)."""
     given = {name: column for name, column in quantities_at_points(view).items() if name not in ARM_UNITS}
     return {name: column for name, column in given.items() if len(np.unique(column[~np.isnan(column)])) > 1}
 
 
 def region_of_arms(view: View, mask: np.ndarray) -> str:
-    """Ranges of varied quantities and tapers over points, a mask of their shape; empty for a single arm."""
+    """Ranges of an arm's quantities and of the taper over the points in `mask`; empty if all points have the
+    same arm.
+    """
     chosen = mask.ravel()
     ranges = [quantity_range(view, name, column, chosen) for name, column in given_columns(view).items()]
     for name in OPTIONAL_PARAMETERS:
@@ -99,7 +103,9 @@ def region_of_arms(view: View, mask: np.ndarray) -> str:
 
 
 def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray) -> str:
-    """Range of a quantity, (points,), over chosen points, a mask; empty if they have all drags."""
+    """Range of the quantity `name` over chosen points, as text; column: all values, (points,). Empty if the
+    points have all drags.
+    """
     values = column[chosen]
     if name == "drag":
         names = [DRAGS[int(place)] for place in np.unique(values)]
@@ -110,17 +116,17 @@ def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray
     extent = " to ".join(f"{end:.{AXIS_DIGITS + 1}g}" for end in sorted(set(ends)))
     if name in RELATIVE:
         return f"{extent} of flutter"
-    return f"{word(name)} {extent} {unit}".rstrip()
+    return f"{quantity_words(name)} {extent} {unit}".rstrip()
 
 
 def _unit(view: View, name: str) -> str:
-    """Unit of a quantity in the summary; empty for a ratio."""
+    """Unit of the quantity `name` in the summary; empty for a ratio."""
     si = ALL_QUANTITIES[name].unit
     return "" if si == "1" else view.typed.get(name, own_unit(view, si, 1.0)[1])
 
 
 def arm_lines(view: View, done: np.ndarray) -> list[str]:
-    """Ranges of the variables stored in SI units, over the points in `done`, a mask of the points' shape."""
+    """Lines with the ranges of all variables in SI units, over the points in the mask `done`."""
     if not view.quantities:
         return []
     si_variables = si_variables_of(LAYOUTS[view.task](view.config), view.config)
@@ -148,7 +154,7 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def _numbers(values: np.ndarray, errors: np.ndarray) -> str:
-    """Values as text: a few values of a table individually, more values as a range.
+    """Values as text: a few values one by one, more values as a range.
 
     errors: absolute errors, of the shape of the values, which limit the number of digits.
     """
@@ -161,31 +167,35 @@ def _numbers(values: np.ndarray, errors: np.ndarray) -> str:
 
 
 def wrapped(text: str) -> list[str]:
-    """A text in indented lines of at most WIDTH characters, which do not break at no-break spaces."""
-    lines = textwrap.wrap(text, WIDTH - 2, break_long_words=False, break_on_hyphens=False)
+    """`text` as indented lines of at most SI_LINE_WIDTH characters; no line ends at a no-break space."""
+    lines = textwrap.wrap(text, SI_LINE_WIDTH - 2, break_long_words=False, break_on_hyphens=False)
     return ["  " + line.replace("\xa0", " ") for line in lines]
 
 
 def errors_in_si(v: Mapping[str, np.ndarray], own: str, si_name: str) -> np.ndarray:
-    """Absolute errors of the SI variable `si_name` of the variable `own`, in SI units and of its shape."""
+    """Absolute errors, in SI units, of the SI variable `si_name`, from the errors of the dimensionless
+    variable `own`.
+    """
     known = np.isfinite(v[own]) & (v[own] != 0)
     scale = np.divide(v[si_name], v[own], out=np.zeros_like(v[si_name]), where=known)
     return np.asarray(np.abs(scale) * errors_of(v, own))
 
 
 def load_of(view: View) -> str:
-    """Kind of load that a follower force corresponds to: force or pressure."""
+    """Kind of the load on an arm to which the follower force corresponds: "force" or "pressure"."""
     return "force" if "force" in view.quantities else "pressure"
 
 
 def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:
-    """Follower forces F, (n,), at points of an arm's file, (n,) indices, as loads in their own unit."""
+    """Dimensionless forces F, (n,), as text of the loads. points: indices of the points of the arms, (n,)."""
     load = load_of(view)
     return in_own_unit(view, F * _at(view.quantities[SCALE_OF[load]], points), UNITS[load][0])
 
 
 def crossings_of_arm(view: View) -> list[str]:
-    """Line for every crossing of the single rod of a file, with load and frequency; empty without an arm."""
+    """A line for every change of stability of the only arm in a file, with load and frequency; an empty list
+    for a rod.
+    """
     if not view.quantities:
         return []
     v = view.variables
@@ -202,9 +212,10 @@ def crossings_of_arm(view: View) -> list[str]:
 
 
 def thresholds_of_arm(view: View, kind: str, found: Sequence[tuple[LocatedChange, np.ndarray]]) -> list[str]:
-    """Sentence on an arm's thresholds in SI units, as a list; empty without an arm or a threshold.
+    """Sentence, as a list, on thresholds of the given kind in SI units; an empty list for a rod, or without a
+    threshold.
 
-    found: thresholds of a kind, each with the indices of its points, (points,).
+    found: (threshold, indices of the points on its line, (points,)).
     """
     if not view.quantities or not found:
         return []
@@ -219,10 +230,14 @@ def thresholds_of_arm(view: View, kind: str, found: Sequence[tuple[LocatedChange
 
 
 def _in_hertz(view: View, frequency: np.ndarray, points: np.ndarray) -> str:
-    """Angular frequencies in rad/tau2, (n,), at points of an arm's file, (n,) indices, as text in Hz."""
+    """Angular frequencies in rad/tau2, (n,), as text in Hz. points: indices of the points of the
+    arms, (n,).
+    """
     return in_own_unit(view, frequency / (2 * np.pi * _at(view.quantities["tau2"], points)), HERTZ)
 
 
 def _at(values: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Quantity at points of a file; a quantity of shape () holds at all points."""
+    """Values of a quantity at points, given by indices; a quantity of shape () has the same value at all
+    points.
+    """
     return values[points] if values.ndim else values

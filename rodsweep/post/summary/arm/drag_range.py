@@ -1,4 +1,4 @@
-"""Variation of the results of a single arm over the drags of its range."""
+"""How much the results about an arm vary over the drag coefficients of its range."""
 
 from collections.abc import Mapping
 
@@ -9,7 +9,9 @@ from .arm import given_columns
 
 
 def drag_lines(view: View, numbers: Mapping[str, np.ndarray]) -> list[str]:
-    """Line on the variation of numbers, each (points,), by name, over the drags of an arm; may be empty."""
+    """Line on how much the numbers, (points,) by name, vary over the drags of an arm; an empty list if drag
+    never varies.
+    """
     arms = arms_of_drags(view)
     if arms is None:
         return []
@@ -27,7 +29,7 @@ def drag_lines(view: View, numbers: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def arms_of_drags(view: View) -> np.ndarray | None:
-    """Index of the arm at each point, (points,), equal for points that differ only in drag; None if drag
+    """Number of the arm at each point, (points,): equal for points that differ in drag alone. None if drag
     never varies.
     """
     columns = given_columns(view)
@@ -39,7 +41,9 @@ def arms_of_drags(view: View) -> np.ndarray | None:
 
 
 def _largest_spread(values: np.ndarray, arms: np.ndarray) -> float:
-    """Largest ratio, over all arms, of largest to smallest value of an arm; NaN if no arm has two values."""
+    """Largest ratio, over all arms, of the largest to the smallest of an arm's values; NaN if no arm has two
+    values. arms: as from `arms_of_drags`.
+    """
     spreads = [np.nan]
     for arm in np.unique(arms):
         own = values[(arms == arm) & np.isfinite(values)]

@@ -1,4 +1,4 @@
-"""Whether the model applies to an arm, and in which plane the arm moves, in sentences."""
+"""Sentences on whether the model applies to an arm, and on the plane in which the arm moves."""
 
 from collections.abc import Mapping
 
@@ -12,22 +12,23 @@ OTHER_PLANE = (
     "the motion is in the plane of the height; where that is above the width, the arm flutters first in the "
     "other plane, at a lower load: exchange width and height to see it"
 )
-"""Warning about a rectangular section of greater height than width."""
+"""Warning about a rectangular section whose height exceeds its width."""
 
 
 def plane_lines(quantities: Mapping[str, np.ndarray]) -> list[str]:
-    """Warning if some rectangular section flutters first in the plane that is not computed; else empty.
+    """Warning, as a list, if a rectangular arm flutters first in the plane that is not computed; else an
+    empty list.
 
-    quantities: quantities of an arm, in SI units, each a number or (n,).
+    quantities: quantities of the arm in SI units, by name; each a number, or (n,).
     """
     height, width = (np.asarray(quantities.get(name, np.nan)) for name in ("height", "width"))
     return [OTHER_PLANE] if np.max(height) > np.min(width) else []
 
 
 def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str:
-    """Sentence on the validity of the model at points, with the largest neglected effect.
+    """Sentence on the validity of the model at n points, which names the largest neglected effect.
 
-    validity: the variables of VALIDITY, (n,). when: condition of the validity, as a clause.
+    validity: variables of VALIDITY, (n,) each. when: condition under which the sentence holds, as a clause.
     """
     applies, effect, excess = (validity[variable.name] for variable in VALIDITY)
     unknown = applies == NOT_KNOWN

@@ -1,1 +1,1 @@
-"""Amplitudes of cycles over a parameter, with Hopf points and square-root laws."""
+"""Amplitudes of limit cycles over a parameter, with Hopf points and fitted square-root laws."""

@@ -1,4 +1,4 @@
-"""Cycles over a parameter: amplitudes of the tip as in the paper's Fig. 6, period and power."""
+"""Limit cycles over a parameter: amplitudes of the tip, as in the paper's Fig. 6, period and power."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,26 +14,30 @@ from .....config.task.limit_cycle import LONGEST
 from .....errors import InputError
 from .....results.file.view import View
 from .....results.layouts.limit_cycle import CYCLE_WORDS
-from ...style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, plain, require, scale
-from ..selection import shared_and_own, shared_and_own_of_arms
+from ...style import BLUE, GREEN, LABELS, SYMBOLS, VERMILION, heading, legend_below, plain, require, scale
+from ..selection import shared_and_own_of_arms, shared_and_own_texts
 from ..units import units_over
 from .branches import AmplitudeBranch, abscissa, branches_of
 from .hopf_marks import draw_laws, mark_hopf_points
 
 BRANCH_LOOKS = tuple(
-    zip((FIRST, SECOND, THIRD, "#CC79A7", "#56B4E9", "#000000"), ("o", "s", "^", "D", "v", "P"), strict=True)
+    zip(
+        (BLUE, VERMILION, GREEN, "#CC79A7", "#56B4E9", "#000000"), ("o", "s", "^", "D", "v", "P"), strict=True
+    )
 )
-"""Colour, from Okabe and Ito's palette, and marker of each branch."""
+"""(colour, marker) of each line, with colours from Okabe and Ito's palette."""
 MIN_ARROW_POINTS = 4
-"""Least number of points of a line that gets an arrow."""
+"""Least number of points of a line that gets an arrow in the direction of continuation."""
 UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
-"""Open markers for unstable cycles, drawn over the markers of the branch."""
+"""Open markers of unstable cycles, drawn over the markers of their line."""
 
 
 def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure, str]:
-    """Draws half the range of the tip's x, its largest y, the period and the power over F.
+    """(figure of half the range of the tip's x, its largest y, period and power over a parameter,
+    description).
 
-    A straight arm has amplitude 0 and no period. narrow: whether the panels are stacked.
+    A straight arm has amplitude 0 and no period. narrow: whether the panels are stacked. Raises InputError
+    for too many lines.
     """
     first = views[0]
     name = abscissa(first)
@@ -73,7 +77,9 @@ def _draw_branches(
     texts: Sequence[str],
     words: dict[Path, tuple[str, bool | None]],
 ) -> list[Line2D]:
-    """Draws all branches in all panels; returns legend entries with a text for each branch and file."""
+    """Draws all lines in all panels; returns legend entries. texts: legend entry of each line. words: of each
+    file, see `_file_words`.
+    """
     handles = []
     lost = set[str]()
     for branch, text, (colour, marker) in zip(branches, texts, BRANCH_LOOKS, strict=False):
@@ -95,9 +101,11 @@ def _draw_branches(
 
 
 def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool | None]]:
-    """Legend text of each of several files, and whether chains go upward; None for other differences.
+    """(legend entry, whether continuation goes upward) of each file, by path. The second is None unless files
+    differ in direction.
 
-    Files followed along the axis in both directions are distinguished by direction, other files by name.
+    Files that were followed along `name` in both directions are distinguished by direction, all other files
+    by name.
     """
     if len(views) == 1:
         return {views[0].path: ("", None)}
@@ -117,7 +125,9 @@ def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool 
 
 
 def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: bool, colour: str) -> None:
-    """Draws an arrow on each line in the direction of continuation."""
+    """Draws an arrow on each line in the direction of continuation; upward: whether the parameter
+    increases.
+    """
     arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14}
     for axes, values in zip(panels, branch.measures, strict=True):
         known = np.flatnonzero(np.isfinite(values))
@@ -131,16 +141,18 @@ def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: boo
 
 
 def _names(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[str]]:
-    """(parameters that all branches share, parameters of each branch), for an arm in typed units."""
+    """(text of the parameters that all lines share, text of each line's own parameters); for an arm in typed
+    units.
+    """
     view = branches[0].view
     if branches[0].units.in_si and all(branch.view is view for branch in branches):
         along = {name, *(quantity for quantity, moved in CHANGED_PARAMETER.items() if moved == name)}
         return shared_and_own_of_arms(view, [branch.first for branch in branches], along)
-    return shared_and_own([branch.parameters for branch in branches])
+    return shared_and_own_texts([branch.parameters for branch in branches])
 
 
 def _label(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:
-    """Sets limits and labels of the axes; amplitude 0, of straight arms, lies above the lower edge."""
+    """Sets limits and labels of the axes. The lower limit is below 0, so that straight arms are visible."""
     for axes, label in zip(panels, labels, strict=True):
         height = axes.dataLim.y1 if np.isfinite(axes.dataLim.y1) and axes.dataLim.y1 > 0 else 1.0
         axes.set_ylim(-0.04 * height, 1.1 * height)
@@ -152,7 +164,9 @@ def _label(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:
 
 
 def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str, Any]) -> set[str]:
-    """Draws a branch in all panels, unstable cycles open; returns words for points without an amplitude."""
+    """Draws a line in all panels, unstable cycles with open markers; returns words for points without an
+    amplitude.
+    """
     unstable = branch.words == "unstable"
     lost: set[str] = set()
     for axes, values in zip(panels, branch.measures, strict=True):
@@ -164,7 +178,7 @@ def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str
 
 
 def _mark_unknown(axes: Axes, branch: AmplitudeBranch, colour: str) -> set[str]:
-    """Marks points without an amplitude at the top; returns words for their statuses."""
+    """Marks points without a known amplitude at the top of a panel; returns words for their statuses."""
     lost = ~np.isin(branch.words, (*CYCLE_WORDS, "straight", "missing"))
     for x in branch.x[lost]:
         axes.plot(x, 1.0, "x", color=colour, ms=5, clip_on=False, transform=axes.get_xaxis_transform())

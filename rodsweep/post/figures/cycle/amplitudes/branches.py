@@ -1,4 +1,4 @@
-"""Cycles of a file as branches over a parameter: amplitudes of the tip, periods and powers."""
+"""Limit cycles of a file as lines over a parameter: amplitudes of the tip, periods and powers."""
 
 from dataclasses import dataclass
 
@@ -17,48 +17,52 @@ from .square_root import SquareRootLaw, square_root_laws
 
 @dataclass(frozen=True, slots=True)
 class AmplitudeBranch:
-    """Points that differ in a single parameter, in the order of the file.
+    """Limit cycles at points that differ in one parameter x, in the order of the file.
 
-    All arrays have the shape (points,). Amplitudes are NaN where unknown.
+    All arrays have the shape (points,). Unknown amplitudes are NaN.
     """
 
     view: View
     parameters: dict[str, float]
-    """The remaining parameters, by name."""
+    """Parameters that are constant along the line, by name."""
     x: Array
     amplitude_x: Array
     amplitude_y: Array
     period: Array
     power: Array
-    """Mean power of the force over a period."""
+    """Mean power of the follower force over a period."""
     words: NDArray[np.str_]
-    """Words of the status."""
+    """Status of each point, as a word."""
     hopf: list[LocatedChange]
-    """Hopf points along the branch, empty unless over F."""
+    """Hopf points on the line; empty unless x is F."""
     units: CycleUnits
-    """Units of all quantities."""
+    """Units of all drawn quantities."""
     first: int
-    """Number of the first point in the file, from 1."""
+    """Number of the first point of the line in the file, from 1."""
 
     @property
     def measures(self) -> tuple[Array, ...]:
-        """Quantity of each panel, in the order of the panels."""
+        """Quantities drawn in the panels, from top to bottom."""
         return self.amplitude_x, self.amplitude_y, self.period, self.power
 
     @property
     def laws(self) -> list[SquareRootLaw]:
-        """Square-root laws of the largest y near the Hopf points."""
+        """Square-root laws of the largest y of the tip near the Hopf points."""
         return square_root_laws(self.x, self.amplitude_y, self.hopf)
 
     def broken_at_onset(self, values: Array) -> tuple[Array, Array]:
-        """(x, values) with a gap where the rod starts to beat, because a line would suggest a slope."""
+        """(x, values) with a gap between the last straight arm and the first cycle, where a line would
+        suggest a slope.
+        """
         straight = self.words == "straight"
         change = np.flatnonzero(straight[1:] != straight[:-1]) + 1
         return np.insert(self.x, change, np.nan), np.insert(values, change, np.nan)
 
 
 def abscissa(view: View) -> str:
-    """Parameter of the horizontal axis: F, or the parameter with most values if F is fixed."""
+    """Name of the parameter on the horizontal axis: F, or if F is constant the parameter with most values.
+    Raises InputError for a file with one point.
+    """
     sizes = {name: len(np.unique(column)) for name, column in view.point_columns.items()}
     name = "F" if sizes["F"] > 1 else max(sizes, key=sizes.__getitem__)
     if sizes[name] < 2:
@@ -67,7 +71,7 @@ def abscissa(view: View) -> str:
 
 
 def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeBranch]:
-    """Branches of a file, a branch for each combination of the parameters without `name`."""
+    """Lines of a file over the parameter `name`, one for each combination of all other parameters."""
     words = view.outcomes
     v = view.variables
     straight = words == "straight"

@@ -1,4 +1,4 @@
-"""Hopf points in a figure over F: their positions, and the square-root law of the amplitudes near them."""
+"""Hopf points in a figure over F: vertical lines, and square-root laws of the amplitudes near them."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -12,26 +12,29 @@ from ...style import SYMBOLS
 from .square_root import SquareRootLaw
 
 HOPF_SYMBOL = rf"{SYMBOLS['F']}_{{**}}"
+"""Symbol F** in TeX, without dollar signs."""
 HOPF_WORDS = {"hopf": f"${HOPF_SYMBOL}$", "restabilization": "restabilization"}
-"""Legend entries of Hopf points at which the rod becomes unstable, and stable again, as F grows."""
+"""Legend entry of a Hopf point by kind: as F grows, the straight rod becomes unstable, or stable again."""
 HOPF_DIGITS = 6
-"""Number of digits of a Hopf point in a legend."""
-DOTTED: dict[str, Any] = {"ls": ":", "lw": 1.1}
+"""Number of significant digits of a Hopf point in a legend."""
+HOPF_LINE_LOOK: dict[str, Any] = {"ls": ":", "lw": 1.1}
+"""Line style of a vertical line at a Hopf point."""
 SHARED_GREY = "0.3"
-"""Colour of a Hopf point that several branches share."""
+"""Colour of a Hopf point that several lines share."""
 LAW_GREY = "0.45"
 """Colour of a square-root law."""
 COEFFICIENT_DIGITS = 3
-"""Largest number of digits of a coefficient in a legend."""
+"""Largest number of significant digits of a coefficient in a legend."""
 MAX_COEFFICIENTS = 3
-"""Largest number of coefficients in one legend entry; more are given as a range."""
+"""Largest number of coefficients that one legend entry lists; of more coefficients it gives the range."""
 
 
 def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange, str]]) -> list[Line2D]:
-    """Draws a vertical dotted line at each Hopf point in the colour of the branch; returns legend entries.
+    """Draws a dotted vertical line at each Hopf point, in the given colour; returns legend entries. marks:
+    (Hopf point, colour).
 
-    A Hopf point shared by several branches is drawn once, in grey. The legend gives the position of a Hopf
-    point if the kind has a single position.
+    A Hopf point shared by several lines is drawn once, in grey. The legend gives its position if it is the
+    only Hopf point of its kind.
     """
     handles = []
     for kind, word in HOPF_WORDS.items():
@@ -46,18 +49,20 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange
         for point, colours in places:
             colour = colours.pop() if len(colours) == 1 else SHARED_GREY
             for axes in panels:
-                axes.axvline(point.position, color=colour, zorder=0.5, **DOTTED)
+                axes.axvline(point.position, color=colour, zorder=0.5, **HOPF_LINE_LOOK)
         if len(places) == 1:
             equals = f"{word} = " if kind == "hopf" else rf"{word} at $\tilde F$ = "
             label = f"{equals}{places[0][0].position:.{HOPF_DIGITS}g}"
-            handles.append(Line2D([], [], color=colour, label=label, **DOTTED))
+            handles.append(Line2D([], [], color=colour, label=label, **HOPF_LINE_LOOK))
         elif places:
-            handles.append(Line2D([], [], color=SHARED_GREY, label=word, **DOTTED))
+            handles.append(Line2D([], [], color=SHARED_GREY, label=word, **HOPF_LINE_LOOK))
     return handles
 
 
 def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list[Line2D]:
-    """Draws dashed square-root laws; returns legend entries with formula and coefficients in `unit`, or L."""
+    """Draws square-root laws as dashed curves; returns legend entries with formula and coefficients. unit: of
+    the amplitude; empty for L.
+    """
     handles = []
     for above in (True, False):
         on_side = [law for law in laws if law.above == above]
@@ -73,7 +78,7 @@ def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list
 
 
 def _coefficients(laws: Sequence[SquareRootLaw]) -> str:
-    """Distinct coefficients of the laws as text, or the range of many."""
+    """Distinct coefficients of the laws as text; of many coefficients the range."""
     ordered = sorted(laws, key=lambda law: law.coefficient)
     each = {law: rounded(law.coefficient, law.error, COEFFICIENT_DIGITS) for law in laws}
     texts = list(dict.fromkeys(each.values()))

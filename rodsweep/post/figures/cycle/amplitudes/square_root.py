@@ -1,7 +1,7 @@
 """Square-root law of the amplitude near a Hopf point F**: y = a sqrt(|F - F**|/|F**|).
 
-The coefficient a is fitted to the cycles in a file; no cycle is computed. There is no law if the amplitudes
-do not tend to zero at the Hopf point, as on the far side of a fold.
+The coefficient a is fitted to the cycles in a file; nothing is solved. No law is fitted if the amplitudes do
+not tend to zero at the Hopf point, such as those of large cycles beyond a fold.
 """
 
 from collections.abc import Sequence
@@ -13,52 +13,55 @@ import numpy as np
 from .....arrays import Array
 from ....hopf_points import LocatedChange
 
-FARTHEST_FITTED = 0.1
-"""Largest |F - F**|/|F**| of a cycle used for the coefficient; farther cycles obey higher-order terms."""
-LARGEST_DEPARTURE = 0.2
-"""Largest relative difference between an amplitude and the law over the range in which the law is drawn."""
-SAFETY = 2.0
-"""Error of a coefficient, in units of the change by a further cycle."""
+MAX_FITTED_DISTANCE = 0.1
+"""Largest |F - F**|/|F**| of a cycle to which a law is fitted. Farther away higher-order terms matter."""
+MAX_LAW_DEVIATION = 0.2
+"""Largest relative difference between the amplitudes and a law in the range in which the law is drawn."""
+ERROR_SAFETY_FACTOR = 2.0
+"""Factor from the change of a coefficient by one more cycle to its error estimate."""
 MIN_ERRORS_AWAY = 100
-"""Least distance of a cycle from F**, in errors of F**, so that the distance is known to a percent."""
+"""Least distance of a fitted cycle from F**, in units of the error of F**; the distance is then known to one
+percent."""
 
 
 @dataclass(frozen=True, slots=True)
 class SquareRootLaw:
-    """Law on one side of a Hopf point."""
+    """Square-root law y = a sqrt(|F - F**|/|F**|) on one side of a Hopf point F**."""
 
     hopf: float
-    """F**, in k3/L^2."""
+    """Force F** of the Hopf point, in k3/L^2."""
     coefficient: float
-    """a, in L."""
+    """Coefficient a, in L."""
     above: bool
-    """Whether the cycles lie at F > F**."""
+    """Whether the law holds at F > F**; otherwise at F < F**."""
     end: float
-    """Last F at which the amplitude follows the law."""
+    """F farthest from F** at which the amplitude follows the law."""
     error: float
-    """Error of a, in L: twice the change by a third cycle, or without one by the extrapolation to F**."""
+    """Error estimate of a, in L: ERROR_SAFETY_FACTOR times the change of a by a third cycle; with two cycles,
+    times its change by extrapolation to F**."""
 
     def curve(self, points: int = 100) -> tuple[Array, Array]:
-        """(F, amplitude) from the Hopf point to the end, (points,) each; F is dense near the Hopf point."""
+        """(F, amplitude) of the law from F** to `end`, (points,) each; dense near F**."""
         step = np.linspace(0, 1, points, dtype=np.float64) ** 2
         F = self.hopf + (self.end - self.hopf) * step
         return F, self.coefficient * np.sqrt(np.abs(F - self.hopf) / abs(self.hopf))
 
 
 def square_root_laws(F: Array, amplitude: Array, points: Sequence[LocatedChange]) -> list[SquareRootLaw]:
-    """Laws that the amplitudes follow, at most one on each side of a Hopf point.
+    """Square-root laws that the amplitudes follow, at most one on each side of a Hopf point.
 
-    F, amplitude: shape (n,), in any order; amplitude is NaN or 0 without a cycle.
+    F, amplitude: of the cycles, (n,), in any order; amplitude is NaN or 0 where there is no cycle. points:
+    Hopf points.
     """
     laws = (_law(F, amplitude, point, side) for point in points for side in (1, -1) if point.position)
     return [law for law in laws if law]
 
 
 def _law(F: Array, amplitude: Array, point: LocatedChange, side: int) -> SquareRootLaw | None:
-    """The law above (side 1) or below (-1) the Hopf point; None if the amplitudes disagree.
+    """Law above (side 1) or below (side -1) a Hopf point; None if the amplitudes do not follow it.
 
-    amplitude^2/distance is linear in the distance to leading order. The value at distance 0 is extrapolated
-    from the nearest two cycles.
+    To leading order amplitude^2/distance is linear in the distance from the Hopf point. The two nearest
+    cycles give its value at distance 0.
     """
     distance = side * (F - point.position) / abs(point.position)
     # If two cycles exist at one F, only the smaller one can shrink to zero at the Hopf point.
@@ -71,25 +74,25 @@ def _law(F: Array, amplitude: Array, point: LocatedChange, side: int) -> SquareR
     gap = np.flatnonzero(~(size > 0))  # another branch begins behind a gap
     distance = distance[: gap[0] if gap.size else None]
     size = size[: gap[0] if gap.size else None]
-    if len(size) < 2 or distance[1] > FARTHEST_FITTED:
+    if len(size) < 2 or distance[1] > MAX_FITTED_DISTANCE:
         return None
     q = size[:2] ** 2 / distance[:2]
     square = q[0] - distance[0] * (q[1] - q[0]) / (distance[1] - distance[0])
     if square <= 0:
         return None
-    follows = np.abs(np.sqrt(square * distance) / size - 1) <= LARGEST_DEPARTURE
+    follows = np.abs(np.sqrt(square * distance) / size - 1) <= MAX_LAW_DEVIATION
     if not follows[:2].all():
         return None
     last = len(size) if follows.all() else int(np.argmin(follows))
     end = point.position + side * abs(point.position) * float(distance[last - 1])
     third = size[:3] ** 2 / distance[:3]
-    better = _at_zero(distance[:3], third) if len(third) > 2 and distance[2] <= FARTHEST_FITTED else q[0]
-    error = SAFETY * abs(sqrt(max(better, 0.0)) - sqrt(square))
+    better = _at_zero(distance[:3], third) if len(third) > 2 and distance[2] <= MAX_FITTED_DISTANCE else q[0]
+    error = ERROR_SAFETY_FACTOR * abs(sqrt(max(better, 0.0)) - sqrt(square))
     return SquareRootLaw(point.position, sqrt(square), side > 0, end, error)
 
 
 def _at_zero(x: Array, values: Array) -> float:
-    """Value at x = 0 of the parabola through three points (x, value), both (3,)."""
+    """Value at x = 0 of the parabola through three points (x, values), (3,) each."""
     a, b, c = x
     weights = [b * c / ((a - b) * (a - c)), a * c / ((b - a) * (b - c)), a * b / ((c - a) * (c - b))]
     return float(np.dot(weights, values))
