@@ -15,11 +15,13 @@ from typing import Any
 
 
 class _CalledPackage(ModuleType):
-    """A package that can be called: `rs.sweep(...)` is `rodsweep.api.sweeping.sweep(...)`."""
+    """Class of the module object `rodsweep.sweep`, made callable: `rs.sweep(...)` is
+    `rodsweep.api.sweeping.sweep(...)`.
+    """
 
     @property
     def __wrapped__(self) -> Any:
-        """The function; `help` and completion read the arguments here."""
+        """The function `rodsweep.api.sweeping.sweep`, whose signature `help` and tab completion show."""
         return import_module("rodsweep.api.sweeping").sweep  # by name: `api` imports `sweep`, not the reverse
 
     def __call__(self, *words: Any, **keywords: Any) -> Any:
