@@ -18,15 +18,16 @@ from .material.build import Build, LocalCoefficients
 from .rod import Rod
 
 SAMPLES = 64
-"""Number of samples of K, at equal ratios: 13 % apart, enough for an estimate."""
+"""Number of samples of K in geometric progression; the ratio 1.15 is fine enough for an estimate."""
 PIECE_SAMPLES = 33
-"""Points of each smooth piece of an arm at which local waves are evaluated."""
+"""Number of points, per interval of u on which coefficients are smooth, at which local waves are evaluated.
+"""
 KEPT = 16
-"""Arms whose samples are kept."""
+"""Number of arms whose samples are cached."""
 LOWEST = 1e-4
-"""Smallest sample of K in units of F g, the K above which every wave decays."""
+"""Smallest sample of K, in units of F g. Every wave with K > F g decays."""
 FRACTIONS: Array = LOWEST ** (1 - np.arange(SAMPLES) / SAMPLES)
-"""The samples of K in units of F g, (SAMPLES,)."""
+"""Samples of K = kappa^2, in units of F g, (SAMPLES,)."""
 
 
 def most_amplified_wave(rod: Rod) -> tuple[float, float]:
@@ -44,7 +45,7 @@ def most_amplified_wave(rod: Rod) -> tuple[float, float]:
 
 
 class SampledArm(NamedTuple):
-    """Points between the breaks of an arm, the length that each stands for, and the coefficients there.
+    """Sample points of an arm in u, their quadrature weights (lengths), and the local coefficients.
 
     points, weights: (points,).
     """
@@ -56,7 +57,7 @@ class SampledArm(NamedTuple):
 
 @lru_cache(maxsize=KEPT)
 def sampled(rod: Rod) -> SampledArm:
-    """The samples of an arm, kept for the next question about it."""
+    """Sample points, weights and local coefficients of an arm; cached."""
     points, weights = _points_of(rod.build)
     return SampledArm(points, weights, rod.local(points))
 

@@ -17,15 +17,16 @@ Given = float | str
 NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.ASCII)
 """Matches a number and its unit, which may be empty."""
 OF_A_UNIT = re.compile(r"[A-Za-zµμ]+|(?:\^|\*\*)?-?[1-4](?!\d)|[²³⁴]|[\s*/]")
-"""Matches a part of a valid unit. Other text must not reach pint, which evaluates it and may never return."""
+"""Matches one token of a valid unit: letters, exponent or operator. Other text must not reach pint, which
+evaluates text and may never return."""
 TOWER = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
 """Matches the start of a power of a power, which pint would evaluate."""
 LONGEST_UNIT = 40
 """Largest number of characters of a unit."""
 KEPT_UNITS = 1000
-"""Number of conversions that are remembered; a config has some ten."""
+"""Number of cached unit conversions; a config needs about ten."""
 COMMON = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN", "kg/m^3", "g/cm^3", "mbar")
-"""Units to suggest for a text that differs in blanks or capital letters."""
+"""Units suggested for a misspelt unit that differs only in blanks or capital letters."""
 OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
 """Matches a load as a multiple of the flutter threshold, "1.2 of flutter" or "120 % of flutter"."""
 FROM_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
@@ -89,7 +90,7 @@ def _number(name: str, given: Any, unit: str, allowed: str) -> float:
 
 
 def factor(subject: str, written: str, unit: str, allowed: str) -> float:
-    """Conversion factor from the unit `written` to `unit`.
+    """Factor that converts a value in the unit `written` to the unit `unit`.
 
     subject, allowed: quantity and remedy for messages. Raises InputError for an unknown unit or another
     dimension.
@@ -119,7 +120,7 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
 
 @lru_cache(KEPT_UNITS)
 def _ratio(written: str, unit: str) -> float:
-    """Number of `unit` in one `written`, cached for the points of a sweep; raises the errors of pint."""
+    """Size of the unit `written` in units of `unit`, cached; raises the errors of pint."""
     return float(registry().Quantity(1.0, written).to(unit).magnitude)
 
 

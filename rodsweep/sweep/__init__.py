@@ -15,9 +15,7 @@ from typing import Any
 
 
 class _CalledPackage(ModuleType):
-    """Class of the module object `rodsweep.sweep`, made callable: `rs.sweep(...)` is
-    `rodsweep.api.sweeping.sweep(...)`.
-    """
+    """Callable class of this package: `rs.sweep(...)` calls `rodsweep.api.sweeping.sweep(...)`."""
 
     @property
     def __wrapped__(self) -> Any:

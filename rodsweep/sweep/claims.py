@@ -44,9 +44,7 @@ class FirstRankClaims:
     """Requests of the first rank for chunks, and a thread that answers the requests of all other ranks."""
 
     def __init__(self, team: Team, handout: Handout, stop: StopRequest, show: Callable[[str, float], None]):
-        """show: function that displays (progress within a long point in words, work done on unfinished
-        points).
-        """
+        """show: displays progress within a long point, in words, and work done on unfinished points."""
         self.team = team
         self.handout = handout
         self.stop = stop
@@ -67,8 +65,7 @@ class FirstRankClaims:
             self.thread.start()
 
     def claim(self, report: RankReport) -> IndexRange:
-        """Returns the next chunk for the first rank, waiting until a chunk is available or all work is done.
-        """
+        """Returns the next chunk for the first rank; waits until a chunk is free or all work is done."""
         with self.serving:
             self._heed_stop()
         self.places.pop(0, None)
@@ -110,9 +107,7 @@ class FirstRankClaims:
             self._heed_stop()
 
     def _heed_stop(self) -> None:
-        """Stops the handout and notifies all working ranks after the first rank has received a stop request;
-        acts once.
-        """
+        """After a stop request to the first rank: stops the handout and notifies working ranks, once."""
         if self.stop and not self.handout.stopped:
             self.handout.stop()
             for rank in self.working:
@@ -182,8 +177,7 @@ class OtherRankClaims:
         self.stop_exchanged = False
 
     def claim(self, report: RankReport) -> IndexRange:
-        """Waits for the chunk that the first rank sends, requests the chunk after it, and returns the former.
-        """
+        """Waits for the next chunk from the first rank, requests a further chunk, and returns the next."""
         self.comm.send(report, dest=0, tag=REQUEST_TAG)
         # A blocking receive would spin and take the processor from the ranks that compute.
         pause = ASK_SECONDS
@@ -201,9 +195,7 @@ class OtherRankClaims:
         self.comm.send(place, dest=0, tag=PLACE_TAG)
 
     def between_points(self) -> None:
-        """Forwards a stop signal of this rank to the first rank, or adopts a stop request from the first
-        rank; acts once.
-        """
+        """Sends a stop request to the first rank, or adopts a stop request of the first rank, once."""
         if not self.stop_exchanged and self.comm.Iprobe(source=0, tag=STOP_TAG):
             self.stop.take(self.comm.recv(source=0, tag=STOP_TAG))
             self.stop_exchanged = True

@@ -108,8 +108,7 @@ class Estimate:
 
 
 def estimate_lines(lines: int, certify: bool, of_arms: bool) -> Estimate:
-    """Cost of a search for crossings on `lines` rods; of_arms: whether any rod is not uniform.
-    """
+    """Cost of a search for crossings on `lines` rods; of_arms: whether any rod is not uniform."""
     uniform = LINE_MS + (LINE_CERTIFICATE_MS if certify else 0)
     return Estimate(lines * 1e-3 * (LINE_OF_ARM_MS if of_arms else uniform))
 
@@ -143,8 +142,7 @@ def estimate_branches(points: Points, along: str, reach: tuple[float, float], ac
 
 
 def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> Estimate:
-    """Cost of `modes` modes at each of `count` points; spectra: cost of the eigenvalues alone.
-    """
+    """Cost of `modes` modes at each of `count` points; spectra: cost of the eigenvalues alone."""
     more = count * 1e-3 * (MODES_MS * modes**2 + (GROWTH_MS if growth else 0))
     return replace(spectra, seconds=spectra.seconds + more, unknowns=None)
 
@@ -162,8 +160,7 @@ def estimate_followed(alone: Estimate, stretches: Stretches, standard: bool) -> 
 
 
 def estimate_two_meshes(points: Points, modes: int, accuracy: float) -> Estimate:
-    """Cost of spectra by Krylov-Schur on two meshes; the second mesh gives the error estimates.
-    """
+    """Cost of spectra by Krylov-Schur on two meshes; the second mesh gives the error estimates."""
     alone = estimate_spectra(points, modes, accuracy, certify=False)
     unknowns = alone.unknowns and (alone.unknowns[0], math.ceil(FINER_MESH * alone.unknowns[1]))
     return replace(alone, seconds=COST_OF_TWO_MESHES * alone.seconds, unknowns=unknowns)

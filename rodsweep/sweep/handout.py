@@ -56,8 +56,7 @@ class RankReport:
 
 
 class Handout:
-    """Queue of the units that no rank has received, on the first rank; safe to use from two threads.
-    """
+    """Queue of the units that no rank has received, on the first rank; safe to use from two threads."""
 
     def __init__(self, todo: list[IndexRange], ranks: int):
         self.todo = deque(todo)
@@ -88,8 +87,7 @@ class Handout:
             self.change.notify_all()
 
     def take(self, rank: int) -> IndexRange | None:
-        """Next chunk for a rank; NO_WORK_LEFT at the end, None while other ranks may give units back.
-        """
+        """Next chunk for a rank; NO_WORK_LEFT at the end, None while other ranks may give units back."""
         with self.change:
             if self.todo:
                 return self._take(rank)
@@ -160,8 +158,7 @@ class Pool(Handout):
             self.change.notify_all()
 
     def take(self, rank: int) -> IndexRange | None:
-        """Next unit for a rank; NO_WORK_LEFT if no unit is left, None if the choice has to wait for results.
-        """
+        """Next unit for a rank; NO_WORK_LEFT at the end, None while the choice waits for results."""
         with self.change:
             if self.stopped:
                 return NO_WORK_LEFT

@@ -22,8 +22,7 @@ Indices = int | NDArray[np.int64]
 
 
 class UnitSolver(Protocol):
-    """Function that solves a unit; yields (flat index, result) for each point, or once for all points of a
-    stretch.
+    """Function that solves a unit; yields (flat index, result) for every point or whole stretch.
 
     A unit is a point, a chain of points yielded individually, or a stretch of points yielded at once.
     """
@@ -38,8 +37,7 @@ class ProgressSink(Protocol):
         """Displays the number of points that all ranks have finished."""
 
     def place(self, words: str, begun: float) -> None:
-        """Displays progress within a long point in words; begun: work done on unfinished points, in points.
-        """
+        """Displays progress in a long point in words; begun: work done on unfinished points, in points."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,8 +55,7 @@ class RankWork:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loop:
-    """Functions that every rank calls in the loop over units: solve, store, prepare, collect results, name.
-    """
+    """Functions that every rank calls in the loop over units, such as to solve and to store."""
 
     solve: UnitSolver
     keep: Callable[[Indices, Any], None]

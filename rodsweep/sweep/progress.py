@@ -20,8 +20,7 @@ BAR_SECONDS = 0.1
 
 
 def on_terminal() -> bool:
-    """Whether standard error, or under MPI the standard error of the launcher, is a terminal.
-    """
+    """Whether standard error, or under MPI the standard error of the launcher, is a terminal."""
     if sys.stderr.isatty():
         return True
     launcher = f"/proc/{os.getppid()}/fd/2"
@@ -66,9 +65,7 @@ class ProgressReporter:
             self.task = self.bar.add_task(title, total=total, count="", rate="", left="", where="")
 
     def __call__(self, done: int) -> None:
-        """Records the number `done` of finished points and updates the display if due; `done` = 0 starts the
-        clock.
-        """
+        """Records `done` finished points and updates the display if due; 0 starts the clock."""
         if not done:
             self.began = time.monotonic()
             self.next = self.began + FIRST_SECONDS

@@ -57,16 +57,13 @@ class Pace:
         return self.reported[1]
 
     def _record(self, done: int, now: float) -> None:
-        """Appends the record (done, now); thins earlier records to about 35 per doubling of the finished
-        points.
-        """
+        """Appends the record (done, now); thins earlier records to 35 per doubling of `done`."""
         if len(self.records) > 2 and self.records[-1][0] < RECORD_RATIO * self.records[-2][0]:
             self.records.pop()
         self.records.append((done, now))
 
     def _seconds_per_point(self, done: int, now: float, begun: float) -> float | None:
-        """Seconds per point over the latest finished points, or over the current point if it has taken
-        longer.
+        """Seconds per point over the latest points, or of the current point if it takes longer.
 
         Before MIN_POINTS points are finished the time follows from the work of unfinished points, or is None
         if the work is too little.

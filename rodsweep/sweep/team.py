@@ -40,8 +40,7 @@ class Team:
         return self.rank == 0
 
     def on_first(self, work: Callable[[], T]) -> T:
-        """Calls `work` on the first rank; every rank returns the result, or raises the refusal.
-        """
+        """Calls `work` on the first rank; every rank returns the result, or raises the refusal."""
         outcome: Any = None
         if self.first:
             try:

@@ -8,11 +8,13 @@ from numpy.typing import ArrayLike
 from ...arrays import Array
 
 LEAST_S = 1e-6
-"""Smallest frequency of the flow, in eta k^2/rho: rounding error would hide the phase, 1e-6, of a smaller."""
+"""Smallest frequency s, in eta k^2/rho; smaller values are raised to it, since rounding would hide their
+phase."""
 SECTIONS = 64
-"""Parts into which an interval of ln s is cut at once."""
+"""Number of equal subintervals into which each refinement divides the interval of ln s."""
 SECTIONINGS = 10
-"""Number of cuts: 2^60 parts of an interval 20 to 30 wide, down to rounding error, by few calls on arrays."""
+"""Number of refinements: 64^10 = 2^60 subintervals of an interval of width 20 to 30, down to rounding error.
+"""
 
 
 def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
@@ -34,7 +36,7 @@ def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
 
 
 def frequency_of_phase(phase: float, logarithm: float) -> float:
-    """The s at which `unsteady_phase` equals `phase` < pi/2, by sections of ln s."""
+    """Frequency s at which `unsteady_phase` equals `phase` < pi/2, by repeated subdivision in ln s."""
     low = log(LEAST_S)  # there the real part of the mobility is -1/2
     high = 2 * logarithm
     for _ in range(SECTIONINGS):

@@ -32,7 +32,7 @@ BYTES_A_READ = 1 << 20
 LARGEST_INCLUDED = 1 << 16
 """Largest size, in bytes, of a variable, such as an axis, whose numbers the checksum includes."""
 Piece = tuple[int, int]
-"""(offset, size) in bytes."""
+"""(offset, size), in bytes, of a part of a file."""
 
 
 class BrokenSeal(ValueError):

@@ -43,7 +43,7 @@ ERRORS = (
     ("extrema_error", "the error of the tip's other extrema, in units of tip_y_max"),
     ("multiplier_error", "the absolute error of multiplier"),
 )
-"""(name of the error of a cycle, its meaning); errors are at the stored value of the parameter."""
+"""(variable, meaning) of each error estimate of a cycle, at the stored parameter value."""
 
 
 def followed_variables(parameter: str) -> tuple[Variable, ...]:

@@ -91,9 +91,7 @@ def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[Sl
 def _forces(
     section: ArmSection, arms: Sequence[SlenderArm | None], tapers: Array | None, flutter: FlutterOf
 ) -> Forces:
-    """Force F of a unit load on each arm. tapers: values that replace the taper of the arms; None keeps the
-    taper.
-    """
+    """F of a load of 1 on each arm. tapers: values in place of the taper of the arms, or None."""
     beside = [None] if tapers is None or section.load_axis not in RELATIVE else tapers.ravel().tolist()
     forces = np.empty((len(arms), 1, len(beside)), object)
     for i, arm in enumerate(arms):
@@ -142,7 +140,5 @@ def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bo
 
 
 def _along(dimension: int, values: Any) -> Array:
-    """Reshapes values, (n,), along one of three dimensions: 0 arms, 1 loads, 2 combinations of other
-    parameters.
-    """
+    """Reshapes values, (n,), along a dimension: 0 arms, 1 loads, 2 combinations of parameters."""
     return np.asarray(values).reshape([-1 if i == dimension else 1 for i in range(3)])

@@ -33,9 +33,7 @@ ChainStep = Callable[[int, Any], tuple[Any, Any]]
 
 
 class ChainStates(Protocol):
-    """Interface of the checkpoints: by unfinished chain, the index of the last solved point and the state
-    after this point.
-    """
+    """Interface of checkpoints: last solved point of each unfinished chain, and the state after it."""
 
     def write(self, chain: int, index: int, state: State) -> None: ...
 
@@ -46,9 +44,7 @@ class ChainStates(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Chains:
-    """Chains that cut a grid of `shape` points along `axis`, solved by increasing value if `upward`, else by
-    decreasing value.
-    """
+    """Chains of a grid of `shape` points along `axis`, solved in increasing order if `upward`."""
 
     shape: tuple[int, ...]
     axis: int
@@ -76,9 +72,7 @@ class Chains:
 
 @dataclass(frozen=True, slots=True)
 class ChainedWork:
-    """Chains, the function that solves a point of a chain, and `state_of`, the inverse of
-    `ChainState.arrays`.
-    """
+    """Chains, and the functions that solve one point and that restore a state from its arrays."""
 
     chains: Chains
     solve_from: ChainStep

@@ -76,8 +76,7 @@ def flutter_of_rod(rod: Rod) -> FlutterForce:
 def flutter_of_arm(
     arm: SlenderArm, taper: float | None, known: FlutterForces, build: Build | None = None
 ) -> FlutterForce:
-    """Smallest flutter force over the planes of motion of an arm, in its k3/L^2; a failure if any plane
-    fails.
+    """Smallest flutter force of an arm over its planes of motion; a failure if any plane fails.
 
     taper: replaces the taper of the arm, unless None. known: flutter forces of the arm's rods. build: as in
     `rods_of_flutter`.

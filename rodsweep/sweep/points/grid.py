@@ -23,9 +23,7 @@ from .points import Points
 
 
 def grid_size(config: Config) -> int:
-    """Number of points of a grid of parameters, computed without its axes; 0 for a list or a grid over an
-    arm.
-    """
+    """Number of points of a grid of parameters, without making the axes; 0 for other points."""
     if config.parameters.is_list or config.parameters.over:
         return 0
     return math.prod(config.parameters.axes[name].size for name in config.names)
@@ -76,8 +74,7 @@ def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | 
 
 
 def flutter_rods(config: Config) -> list[Rod]:
-    """Distinct rods whose flutter force the points of a config need; InputError for an invalid arm or taper.
-    """
+    """Distinct rods whose flutter force the points of a config need; InputError for an invalid arm."""
     given = config.parameters.given_axes.get("taper")
     if given is None:
         return rods_of_flutter(config.parameters.arm, config.stated_build)

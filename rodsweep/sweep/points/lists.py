@@ -66,8 +66,7 @@ def _lines(file: TextIO, path: Path) -> Iterator[str]:
 
 
 def _row(row: list[str], header: list[str], where: str, build: Build) -> list[float]:
-    """Numbers in a line of the file; InputError for a cell that is no number, or parameters of no valid rod.
-    """
+    """Numbers in a line of the file; InputError for a cell that is no number, or an invalid rod."""
     if len(row) != len(header):
         raise InputError(f"{where} has {len(row)} values, but the header names {len(header)}")
     numbers = []

@@ -103,8 +103,7 @@ class Stretches:
 
 
 def stretches_along_longest_axis(shape: tuple[int, ...], moved: Sequence[str]) -> Stretches | None:
-    """Stretches of a grid along its longest usable axis; None if this axis has fewer than SHORTEST_AXIS
-    values.
+    """Stretches along the longest usable axis of a grid; None if shorter than SHORTEST_AXIS.
 
     moved: the parameter that varies along each axis; empty for an axis of several parameters, which is not
     usable.

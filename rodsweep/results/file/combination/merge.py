@@ -92,7 +92,7 @@ def _finished(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResu
 
 
 def _opened(paths: Sequence[Path]) -> list[ResultHeader]:
-    """Headers of the sources; raises InputError for a file with points in its journal."""
+    """Reads the headers of the files to merge; raises InputError for a file with points in its journal."""
     files = []
     for path in paths:
         files.append(read_header(path))
