@@ -66,7 +66,7 @@ class Axes(LinearAxes):
 
     @property
     def axes(self) -> dict[str, Axis]:
-        """Axes of a grid of parameters, by name, including axes made from an arm; else only the given axes."""
+        """Axes of a grid of parameters by name, including axes made from an arm; else the given axes."""
         if self.arm is None or self.over:
             return self.given_axes
         axes = self.arm.grid_axes() | self.given_axes

@@ -66,7 +66,7 @@ def named(name: object, most: int = 200) -> str:
 
 
 def printable(text: str) -> str:
-    """Text with control characters escaped, for example as `\\x1b` and such, because a terminal would obey
+    """Text with control characters escaped, for example as `\\x1b`, because a terminal would obey
     control characters."""
     return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
 

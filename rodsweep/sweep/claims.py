@@ -26,7 +26,7 @@ POLL_SECONDS = 2e-3
 """Seconds between two polls for MPI messages by the thread of the first rank. Each poll delays the solve on
 that rank by at least 20 microseconds."""
 RELIEVED_POLL_SECONDS = 5e-3
-"""Seconds between two polls by the thread of the first rank while its main thread also polls, after each
+"""Seconds between two polls by the thread of the first rank while its main thread also polls after each
 point."""
 ASK_SECONDS = 1e-4
 """Initial pause, in seconds, between two polls by a rank that waits for the answer to its request for a

@@ -73,11 +73,12 @@ over 24 rods."""
 GROWTH_MS = 20.0
 """Time of the transient growth of a rod, in ms: mean over the 24 rods."""
 CYCLE_SECONDS = 0.1
-"""Time of a limit cycle starting from the leading mode, about as in the benchmark."""
+"""Time of a limit cycle that starts from the leading mode, in s; the benchmark measures about the same."""
 CHAINED_CYCLE_SECONDS = 0.01
-"""Time of a limit cycle starting from a neighbour, about as in the benchmark."""
+"""Time of a limit cycle that starts from the cycle of a neighbouring point, in s; the benchmark measures
+about the same."""
 MARCHED_CYCLE_SECONDS = 0.25
-"""Time of a limit cycle by time integration alone to 1e-5: mean over 40 rods."""
+"""Time of a limit cycle by time integration alone to a relative accuracy of 1e-5, in s: mean over 40 rods."""
 BRANCH_SECONDS = 0.004
 """All branches of a rod take BRANCH_SECONDS F (accuracy/1e-7)^BRANCH_ACCURACY (1 + F/k2)^BRANCH_BENDING, in
 seconds, where F is the largest force of the range, or k1. Fourteen random rods (F up to 60 to 200, k2 from 12
@@ -88,9 +89,9 @@ BRANCH_ACCURACY = -0.17
 BRANCH_BENDING = 1.5
 """Exponent of 1 + F/k2 in the formula of BRANCH_SECONDS."""
 MEMORY_PER_UNKNOWN = 40_000
-"""Bytes per unknown of the largest mesh."""
+"""Memory of a rank, in bytes per unknown of the largest mesh."""
 BASE_MEMORY = 200_000_000
-"""Bytes of a rank without any mesh."""
+"""Memory of a rank without any mesh, in bytes."""
 
 
 @dataclass(frozen=True, slots=True)

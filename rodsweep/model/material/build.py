@@ -85,7 +85,7 @@ class Build:
 
     @property
     def law_number(self) -> int:
-        """Number of the law in compiled code, see `response`."""
+        """Number of the constitutive law in compiled code: LINEAR_LAW and so on in `response`."""
         return list(LAWS).index((self.law, self.section))
 
     @cached_property

@@ -32,7 +32,7 @@ BOOKKEEPING = frozenset(
 NUMBERS = "iuf"
 """Kind characters of the NumPy types allowed for variables of a result: integer, unsigned, float."""
 BYTES_A_READ = 1 << 18
-"""Bytes read at once, to bound the memory."""
+"""Number of bytes of a variable that a digest reads at once, to bound the memory."""
 FILLED_WITH_NAN = ("_FillValue", "[nan]")
 """(name, value as text) of an attribute that xarray adds on writing; digests omit it."""
 Digests = dict[str, dict[str, str]]

@@ -125,7 +125,7 @@ class View:
         return np.array([self.flags.get(int(s), "missing") for s in self.variables["status"].ravel()])
 
     def with_status(self, *words: str) -> NDArray[np.bool_]:
-        """Mask of the points with one of these statuses, of the points' shape."""
+        """Whether each point has one of the given status words: a mask in the shape of the points."""
         values = [value for value, word in self.flags.items() if word in words]
         return np.isin(self.variables["status"], values)
 

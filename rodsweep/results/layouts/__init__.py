@@ -45,8 +45,10 @@ def layout_of(config: dict[str, Any]) -> Layout:
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables of a file besides the points, by resolved config. `extra` has all dimensions of a
-    variable."""
+    """Variables in the file of a resolved config that do not belong to a single point.
+
+    `extra` names all dimensions of such a variable. is_grid: whether the points are a grid of parameters.
+    """
     found = BESIDE_POINTS.get(config["task"])
     return found(config, is_grid) if found else ()
 

@@ -82,7 +82,7 @@ EFFECTS = (
 )
 """Effects that the model neglects, named as in `rodsweep.model.arm.neglected` with underscores for blanks."""
 NOT_KNOWN = -1
-"""Value of model_applies where a motion may have been missed."""
+"""Value of the variable `model_applies` at points where the solver may have missed a motion of the arm."""
 VALIDITY = (
     word(
         "model_applies",
@@ -207,7 +207,7 @@ def _filled(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]
 
 
 def at_points(quantities: Iterable[Filled], points: Points) -> dict[str, NDArray[Any]]:
-    """Quantities by name; in a grid over quantities each has its value at every point, (points,)."""
+    """Values of an arm's quantities by name; in a grid over quantities, values at every point, (points,)."""
     if not points.over:
         return {variable.name: values for variable, values in quantities}
     dimensions = tuple(points.over)

@@ -20,7 +20,7 @@ JOURNALS = "rank-*"
 JOURNAL_HEAD = b"rodsweep journal 1\n"
 """First line of a journal; the second line is its fingerprint."""
 BYTES_A_BLOCK = 1 << 18
-"""Bytes read at once, to bound the memory."""
+"""Number of bytes of a journal that are read at once, to bound the memory."""
 TEXT_GOES_ON, TEXT_ENDS = -2, -1
 """Indices of records with a piece of a line of text, and with its last piece."""
 CHECKSUM_BYTES = 4

@@ -31,7 +31,7 @@ OF_ONE_FILE = (
     "program", "format", "fingerprint", "config_resolved", "coordinates", "finished", "snapshot",
     SEAL_ATTRIBUTE,
 )  # fmt: skip
-"""Attributes that a joined file does not inherit."""
+"""Attributes that describe one file only; a joined file does not copy them from its sources."""
 ROUNDING_FACTOR = 1e3
 """Maximum relative difference of two values that counts as rounding, in units of the accuracy of the config.
 """

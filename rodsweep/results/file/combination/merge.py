@@ -68,7 +68,7 @@ def _merge(exchange: FileReplacement, sources: Sequence[ResultHeader], planner: 
 
 
 def _join(exchange: FileReplacement, joint: JoinedFile) -> MergeResult:
-    """Replaces the output by a joined file with the points of all sources."""
+    """Replaces the output by the planned joined file and writes the points of all sources into it."""
     with exchange.replacing(None) as copy:
         create_file(copy, joint.plan)
         gave = joint.write(copy)
