@@ -21,20 +21,20 @@ from .team import Team
 REQUEST_TAG = 71
 ANSWER_TAG = 72
 STOP_TAG = 73
-PLACE_TAG = 74
+PROGRESS_TAG = 74
 POLL_SECONDS = 2e-3
 """Seconds between two polls for MPI messages by the thread of the first rank. Each poll delays the solve on
 that rank by at least 20 microseconds."""
 RELIEVED_POLL_SECONDS = 5e-3
 """Seconds between two polls by the thread of the first rank while its main thread also polls after each
 point."""
-ASK_SECONDS = 1e-4
+FIRST_CHUNK_POLL_SECONDS = 1e-4
 """Initial pause, in seconds, between two polls by a rank that waits for the answer to its request for a
 chunk."""
-LONGEST_ASK_SECONDS = 1e-2
+LONGEST_CHUNK_POLL_SECONDS = 1e-2
 """Longest pause, in seconds, between two such polls. An idle rank must not take processor time from solving
 ranks."""
-ASK_GROWTH = 1.1
+CHUNK_POLL_GROWTH = 1.1
 """Ratio of a pause between polls to the previous pause; a small ratio delays short waits little."""
 WAIT_SECONDS = 0.05
 """Seconds for which an idle first rank waits for the handout to change before it polls for MPI messages."""
@@ -135,9 +135,9 @@ class FirstRankClaims:
         """Receives and displays how far the other ranks have come within long points."""
         comm = self.team.comm
         MPI = self.team.MPI
-        while comm.Iprobe(source=MPI.ANY_SOURCE, tag=PLACE_TAG, status=self.status):
+        while comm.Iprobe(source=MPI.ANY_SOURCE, tag=PROGRESS_TAG, status=self.status):
             rank = self.status.Get_source()
-            self.places[rank] = comm.recv(source=rank, tag=PLACE_TAG)
+            self.places[rank] = comm.recv(source=rank, tag=PROGRESS_TAG)
 
     def _hear(self, rank: int, report: RankReport) -> None:
         """Handles a report of a rank: answers a request ahead at once, and queues any other request.
@@ -180,11 +180,11 @@ class OtherRankClaims:
         """Waits for the next chunk from the first rank, requests a further chunk, and returns the next."""
         self.comm.send(report, dest=0, tag=REQUEST_TAG)
         # A blocking receive would spin and take the processor from the ranks that compute.
-        pause = ASK_SECONDS
+        pause = FIRST_CHUNK_POLL_SECONDS
         while not self.comm.Iprobe(source=0, tag=ANSWER_TAG):
             self.between_points()
             time.sleep(pause)
-            pause = min(ASK_GROWTH * pause, LONGEST_ASK_SECONDS)
+            pause = min(CHUNK_POLL_GROWTH * pause, LONGEST_CHUNK_POLL_SECONDS)
         chunk: IndexRange = self.comm.recv(source=0, tag=ANSWER_TAG)
         if chunk != NO_WORK_LEFT:
             self.comm.send(RankReport(ahead=True), dest=0, tag=REQUEST_TAG)
@@ -192,7 +192,7 @@ class OtherRankClaims:
 
     def report_place(self, place: SolvePosition) -> None:
         """Sends the first rank a report of how far this rank has come within a long point."""
-        self.comm.send(place, dest=0, tag=PLACE_TAG)
+        self.comm.send(place, dest=0, tag=PROGRESS_TAG)
 
     def between_points(self) -> None:
         """Sends a stop request to the first rank, or adopts a stop request of the first rank, once."""

@@ -19,7 +19,7 @@ from .points.stretches import Stretches
 
 MAX_SAMPLE = 200
 """Largest number of points whose meshes are computed for an estimate."""
-HARDER_IF_LARGER = frozenset({"k1", "F"})
+COSTLIER_IF_LARGER = frozenset({"k1", "F"})
 """Parameters for which branches of cycles cost most at large values; for all other parameters, at small
 values."""
 FIXED_MS = 0.03
@@ -135,7 +135,7 @@ def estimate_branches(points: Points, along: str, reach: tuple[float, float], ac
     value of `along`. accuracy: relative accuracy of the cycles.
     """
     indices = sampled(points)
-    values: dict[str, Array | float] = points.values_of(indices) | {along: reach[along in HARDER_IF_LARGER]}
+    values: dict[str, Array | float] = points.values_of(indices) | {along: reach[along in COSTLIER_IF_LARGER]}
     F = np.clip(values["F"], 0.0, values["k1"])  # a rod under tension has no cycles
     per_force = BRANCH_SECONDS * (accuracy / 1e-7) ** BRANCH_ACCURACY
     each = per_force * F * (1 + F / values["k2"]) ** BRANCH_BENDING

@@ -15,11 +15,11 @@ from ..values import named, short
 
 KEY_SHOWN = 100
 """Maximum length of a key in a message, in characters."""
-LETTERS_A_SLIP = 3
+LETTERS_PER_TYPING_ERROR = 3
 """Minimum number of letters per typing error for two keys to be similar: one error in three letters."""
-MOST_MEANT = 4
+MAX_SUGGESTIONS = 4
 """Maximum number of suggested keys. If more are equally similar, the message lists all known keys."""
-LONG_PART = 4
+MIN_PART_LETTERS = 4
 """Minimum number of letters of a part that suggests a key, such as `density` for `fluid_density`."""
 
 
@@ -63,7 +63,7 @@ def nearest(key: str, known: Sequence[str]) -> list[str]:
     near = [(slips, name) for name in known if (slips := _slips(_plain(key), _plain(name))) is not None]
     least = min((slips for slips, _ in near), default=0)
     nearest_ones = [name for slips, name in near if slips == least]
-    return nearest_ones if key and len(nearest_ones) <= MOST_MEANT else []
+    return nearest_ones if key and len(nearest_ones) <= MAX_SUGGESTIONS else []
 
 
 def _plain(key: str) -> str:
@@ -74,13 +74,13 @@ def _slips(key: str, name: str) -> float | None:
     """Number of typing errors that turn `name` into `key`; 0.5 if `key` is a part; None if not similar."""
     if key == name:
         return 0
-    if name.startswith(key) or (len(key) >= LONG_PART and key in name):
+    if name.startswith(key) or (len(key) >= MIN_PART_LETTERS and key in name):
         return 0.5
     longest = max(len(key), len(name))
-    if LETTERS_A_SLIP * abs(len(key) - len(name)) > longest:  # the edit distance is no smaller
+    if LETTERS_PER_TYPING_ERROR * abs(len(key) - len(name)) > longest:  # the edit distance is no smaller
         return None
     distance = _edits(key, name)
-    return distance if LETTERS_A_SLIP * distance <= longest else None
+    return distance if LETTERS_PER_TYPING_ERROR * distance <= longest else None
 
 
 def _edits(a: str, b: str) -> int:

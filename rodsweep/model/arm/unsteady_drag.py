@@ -7,12 +7,12 @@ from numpy.typing import ArrayLike
 
 from ...arrays import Array
 
-LEAST_S = 1e-6
+MIN_S = 1e-6
 """Smallest frequency s, in eta k^2/rho; smaller values are raised to it, since rounding would hide their
 phase."""
-SECTIONS = 64
+SUBINTERVAL_COUNT = 64
 """Number of equal subintervals into which each refinement divides the interval of ln s."""
-SECTIONINGS = 10
+REFINEMENT_COUNT = 10
 """Number of refinements: 64^10 = 2^60 subintervals of an interval of width 20 to 30, down to rounding error.
 """
 
@@ -29,7 +29,7 @@ def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
 
     and Lambda/(4 pi eta) in steady flow. The phase, of the shape of s, is 3 s/(4 Lambda) for small s.
     """
-    z = 1j * np.maximum(np.asarray(s, float), LEAST_S)
+    z = 1j * np.maximum(np.asarray(s, float), MIN_S)
     with np.errstate(invalid="ignore"):  # nan where nothing moves
         mobility = logarithm - 0.5 - (1 - 1 / z) * np.log1p(z) / 2
     return np.asarray(-np.angle(mobility))
@@ -37,10 +37,10 @@ def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
 
 def frequency_of_phase(phase: float, logarithm: float) -> float:
     """Frequency s at which `unsteady_phase` equals `phase` < pi/2, by repeated subdivision in ln s."""
-    low = log(LEAST_S)  # there the real part of the mobility is -1/2
+    low = log(MIN_S)  # there the real part of the mobility is -1/2
     high = 2 * logarithm
-    for _ in range(SECTIONINGS):
-        edges = np.linspace(low, high, SECTIONS + 1)
+    for _ in range(REFINEMENT_COUNT):
+        edges = np.linspace(low, high, SUBINTERVAL_COUNT + 1)
         below = np.count_nonzero(unsteady_phase(np.exp(edges[1:-1]), logarithm) < phase)  # the phase rises
         low = float(edges[below])
         high = float(edges[below + 1])
