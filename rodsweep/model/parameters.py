@@ -97,7 +97,7 @@ LARGEST_TAPER = 100.0
 
 
 def stiffness(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
-    """A stiffness, which may be inf; `rigid` is the adjective for a rod with infinite stiffness."""
+    """Makes the table entry of a stiffness; rigid: adjective for a rod whose stiffness is infinite."""
     return Parameter(
         name=name,
         symbol=symbol,

@@ -119,7 +119,7 @@ SWELLING = Law(
     shortening=_neo_hookean_shortening,
 )
 LAWS = {(law.law, law.section): law for law in (LINEAR, NEO_HOOKEAN, SWELLING)}
-"""All laws by (law, section)."""
+"""Constitutive laws by (name of the law, name of the section), as in the config."""
 
 
 def law_of(law: str, section: str) -> Law:

@@ -36,7 +36,7 @@ BYTES_A_READ = 1 << 18
 FILLED_WITH_NAN = ("_FillValue", "[nan]")
 """(name, value as text) of an attribute that xarray adds on writing; digests omit it."""
 Digests = dict[str, dict[str, str]]
-"""Digests by name, under the keys `attributes` and `variables`."""
+"""Content of a seal: digests of a file by name, under the keys `attributes` and `variables`."""
 
 
 def is_users(name: str) -> bool:

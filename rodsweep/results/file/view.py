@@ -131,7 +131,7 @@ class View:
 
     @property
     def sentences(self) -> dict[str, str]:
-        """Meaning of every status, by its word."""
+        """Sentence with the meaning of every status of the task, by the word of the status."""
         return sentences_in(self.attributes)
 
     def by_point(self, name: str) -> np.ndarray:

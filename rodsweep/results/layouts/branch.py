@@ -112,8 +112,9 @@ def special_variables(parameter: str) -> tuple[Variable, ...]:
 
 
 def _has(name: str) -> IncreaseRule:
-    """Rule for the length of a list: a stored list with room left holds all items, however long it may be
-    now.
+    """Rule for an option that limits the length of a list; name: variable with the number of all items.
+
+    A stored list that is not full already contains all items.
     """
     return IncreaseRule(lambda records, before: records[name] < before)
 

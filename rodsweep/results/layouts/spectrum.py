@@ -111,7 +111,7 @@ INCREASES = dict.fromkeys(SOLVED_ANEW, NEEDS_NEW_SOLVE) | {"longitudinal": NEEDS
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables of the file besides the variables of its points."""
+    """Variables in the file of a spectrum that do not belong to a single point."""
     gamma1 = config["parameters"].get("gamma1")
     if gamma1 is None:
         return FORCE_CHANGES
