@@ -64,7 +64,7 @@ class Config(StrictSection):
 
     @property
     def build(self) -> Build:
-        """Law and profile of all rods of the sweep."""
+        """Law and profile of the rods: from the section `material`, else from the arm, else STANDARD."""
         if self.stated_build is not None:
             return self.stated_build
         return STANDARD if self.parameters.arm is None else self.parameters.arm.build

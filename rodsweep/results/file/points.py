@@ -64,7 +64,7 @@ def stored_points(path: Path, layout: Layout) -> Iterator[np.ndarray]:
 
 
 def _at_once(layout: Layout) -> int:
-    """Number of points that are read in one block, so that a block has at most BYTES_AT_ONCE bytes."""
+    """Number of points that are read in one block, so that a block has about BYTES_AT_ONCE bytes at most."""
     return min(POINTS_AT_ONCE, BYTES_AT_ONCE // layout.record.itemsize + 1)
 
 
