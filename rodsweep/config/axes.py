@@ -13,12 +13,12 @@ from .values import Axis, Number, StrictSection, Text, Values
 
 BEYOND_LINEAR = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
 REQUIRED = tuple(p.name for p in PARAMETERS.values() if p.default is None and p.name != "F")
-"""Parameters that every rod needs."""
+"""Names of the parameters without default, except F: a config must give them for every rod."""
 DEFAULTS = {p.name: p.default for p in PARAMETERS.values() if p.default is not None and not p.optional}
 
 
 def _section(base: type[StrictSection], names: tuple[str, ...], kind: Any) -> Any:
-    """Subclass of `base` with an additional optional key for each name."""
+    """Subclass of `base` with an additional optional key of type `kind` for each of `names`."""
     fields: dict[str, Any] = dict.fromkeys(names, (kind | None, None))
     return create_model("Section", __base__=base, **fields)
 
@@ -60,13 +60,13 @@ class Axes(LinearAxes):
 
     @property
     def optional(self) -> tuple[str, ...]:
-        """Optional parameters that are given as an axis or as a column of a list."""
+        """Names of the optional parameters that the config gives as an axis or as a column of a list."""
         given = (*self.given_axes, *(self.columns or ()))
         return tuple(name for name in OPTIONAL_PARAMETERS if name in given)
 
     @property
     def axes(self) -> dict[str, Axis]:
-        """Axes of a grid of parameters by name, with those made from an arm; else only the given axes."""
+        """Axes of a grid of parameters by name, including axes made from an arm; else the given axes."""
         if self.arm is None or self.over:
             return self.given_axes
         axes = self.arm.grid_axes() | self.given_axes
@@ -74,7 +74,7 @@ class Axes(LinearAxes):
 
     @cached_property
     def given_axes(self) -> dict[str, Axis]:
-        """Axes given by name."""
+        """Parameters that the config gives as an axis, by name."""
         return {name: value for name, value in self._given.items() if isinstance(value, Axis)}
 
     @property
@@ -84,7 +84,7 @@ class Axes(LinearAxes):
 
     @property
     def over(self) -> tuple[str, ...]:
-        """Axes of a grid over an arm's quantities; empty for points of another kind."""
+        """Names of the axes of a grid over an arm's quantities; empty for a grid of parameters or a list."""
         if self.arm is None:
             return ()
         given = self.arm.given | self.given_axes
@@ -92,7 +92,7 @@ class Axes(LinearAxes):
 
     @property
     def alone(self) -> dict[str, int]:
-        """Number of values of each parameter that is the only one changed by its axis."""
+        """Number of values on each axis that changes exactly one parameter, by name of the parameter."""
         if self.arm is None or not self.over:
             return {name: axis.size for name, axis in self.axes.items()}
         given = self.arm.given | self.given_axes
@@ -100,7 +100,7 @@ class Axes(LinearAxes):
 
     @property
     def numbers(self) -> dict[str, float]:
-        """Parameters with one number for the whole sweep instead of an axis, by name."""
+        """Parameters that have one value in the whole sweep instead of an axis, by name."""
         return {name: value for name, value in self._given.items() if isinstance(value, float)}
 
     @property
@@ -108,7 +108,7 @@ class Axes(LinearAxes):
         return {name: getattr(self, name, None) for name in PARAMETERS}
 
     def require(self, names: tuple[str, ...], or_points: bool = True) -> None:
-        """Raises ValueError unless all axes `names`, an arm or, if allowed, a file of points is given."""
+        """Raises ValueError unless the axes `names`, an arm or, if `or_points`, a file are given."""
         if self.points is not None and self.arm is not None:
             raise ValueError("parameters.points and parameters.arm are both given; give one of them")
         if self.points is not None and self.axes:
@@ -160,5 +160,5 @@ class NonlinearParameters(AllAxes):
 
 
 def words(names: tuple[str, ...], last: str) -> str:
-    """Names in a sentence: "a, b and c" with `last` = "and"."""
+    """Joins names for a sentence: "a, b and c" with `last` = "and"."""
     return f"{', '.join(names[:-1])} {last} {names[-1]}" if names[1:] else names[0]

@@ -26,7 +26,8 @@ from .values import Axis, StrictSection
 
 Schema = dict[str, Any]
 QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc{percent}]"
-"""Pattern of a number followed by the beginning of a unit."""
+"""Regular expression, with fields `sign` and `percent`, for a number followed by the first letter of a unit.
+"""
 BOUNDS_OF_ARM: dict[str, Schema] = {
     **{name: {"exclusiveMinimum": 0} for name in ALL_BUT_LOAD if not QUANTITIES[name].signed},
     "poisson": {"exclusiveMinimum": -1, "maximum": 0.5},
@@ -36,7 +37,8 @@ BOUNDS_OF_ARM: dict[str, Schema] = {
 DIALECT = "http://json-schema.org/draft-07/schema#"
 """Draft 7 of JSON schema, which most editors support."""
 BOUNDS = {"ge": "minimum", "le": "maximum", "gt": "exclusiveMinimum", "lt": "exclusiveMaximum"}
-"""JSON schema's names of bounds, for bounds that pydantic leaves unconverted behind a validator of ours."""
+"""JSON schema keyword by pydantic's name of a bound. Pydantic does not convert bounds of types with a
+validator."""
 
 
 def json_schema() -> dict[str, Any]:
@@ -67,7 +69,7 @@ def json_schema() -> dict[str, Any]:
 
 
 def sections_of(config: type[BaseModel]) -> Iterator[type[BaseModel]]:
-    """Models of the sections of a config, including nested sections."""
+    """Classes of the sections of a config class, nested sections included."""
     for field in config.model_fields.values():
         kind = model_of(field)
         if isinstance(kind, type) and issubclass(kind, StrictSection) and not issubclass(kind, Axis):
@@ -106,17 +108,17 @@ def _describe_keys(schema: dict[str, Any], section: type[BaseModel]) -> None:
 
 
 def given(name: str) -> Schema:
-    """Schema: a key is present and not null."""
+    """JSON schema that requires the key `name` with a value other than null."""
     return {"required": [name], "properties": {name: {"not": {"type": "null"}}}}
 
 
 def none_of(names: Iterable[str]) -> Schema:
-    """Schema: not a single key of the list is given."""
+    """JSON schema that forbids all keys in `names`; null is allowed."""
     return {"not": {"anyOf": [given(name) for name in names]}}
 
 
 def all_of(names: Iterable[str], *more: Schema) -> Schema:
-    """Schema: all keys are given, and all further schemas hold."""
+    """JSON schema that requires all keys in `names` and all further schemas."""
     return {"allOf": [*map(given, names), *more]}
 
 
@@ -190,7 +192,7 @@ def points_of(needed: Iterable[str], lists: bool) -> Schema:
 
 
 def nodes_of(schema: Any) -> Iterable[Schema]:
-    """All mappings within a schema."""
+    """Yields all mappings nested in a JSON schema, including the schema."""
     if isinstance(schema, dict):
         yield schema
     if isinstance(schema, dict | list):

@@ -13,7 +13,7 @@ from ..model.material.profile import FACTORS, Profile
 from .values import Number, StrictSection, cell_number, short
 
 MOST_ROWS = 1000
-"""Largest number of rows of a profile."""
+"""Maximum number of rows of a profile; a longer profile is refused."""
 LARGEST_FILE = 1_000_000
 """Largest number of characters in a profile's file."""
 LawName = Literal["linear", "neo_hookean"]
@@ -43,7 +43,7 @@ class ProfileTable(StrictSection):
 
     @cached_property
     def profile(self) -> Profile:
-        """The profile; ValueError for a table that describes no profile."""
+        """Converts the table to a `Profile` of the model; ValueError for an invalid table."""
         given = {name: getattr(self, name) for name in FACTORS}
         columns = {name: [1.0] * len(self.u) if column is None else column for name, column in given.items()}
         for name, column in columns.items():
@@ -79,7 +79,7 @@ class MaterialSection(StrictSection):
 
     @cached_property
     def build(self) -> Build:
-        """The material; ValueError for a section that the law does not have."""
+        """Converts the section to a `Build` (law and profile); ValueError if the law has no such section."""
         return Build(self.law, self.section, self.profile.profile if self.profile else None)
 
     @model_validator(mode="after")

@@ -38,7 +38,7 @@ class Config(StrictSection):
     of_cycles: ClassVar[bool] = False
     """Whether the task solves the nonlinear motion of the rods."""
     into_crushed: ClassVar[bool] = False
-    """Whether a grid may contain crushed rods, because `crushed` is a state of the task."""
+    """Whether a grid may contain crushed rods, because the task has a state `crushed` for them."""
 
     others_may_be_needed: ClassVar[bool] = False
     """Whether the needed parameters depend on the options of the task."""
@@ -47,24 +47,24 @@ class Config(StrictSection):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Parameters of a point of the sweep: needed by the task, or added by the config."""
+        """Names of the parameters of every point: required by the task, or optional and given."""
         return (*self.taken_of_a_rod({}), *self.added)
 
     @property
     def added(self) -> tuple[str, ...]:
-        """Optional parameters given in the config, by name or by the shape of the arm."""
+        """Names of the optional parameters that the config gives, directly or through the shape of an arm."""
         arm = self.parameters.arm
         made = () if arm is None else arm.tapering
         return tuple(n for n in OPTIONAL_PARAMETERS if n in self.parameters.optional or n in made)
 
     @property
     def stated_build(self) -> Build | None:
-        """Law and profile of the section `material`; None without such a section."""
+        """Law and profile in the section `material`; None if the config has no such section."""
         return None if self.material is None else self.material.build
 
     @property
     def build(self) -> Build:
-        """Law and profile of the arm."""
+        """Law and profile of the rods: from the section `material`, else from the arm, else STANDARD."""
         if self.stated_build is not None:
             return self.stated_build
         return STANDARD if self.parameters.arm is None else self.parameters.arm.build
@@ -81,7 +81,7 @@ class Config(StrictSection):
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        """Parameters of a rod that the task uses with these options."""
+        """Names of the parameters of a rod on which results of the task with these options depend."""
         return NONLINEAR_PARAMETERS
 
     @property
@@ -118,7 +118,7 @@ class Config(StrictSection):
         return meant | {"arm": self.parameters.arm.meaning}
 
     def refuse_found(self, name: str, why: str) -> None:
-        """Raises ValueError, with the reason, if a parameter is given that the task finds."""
+        """Raises ValueError with the reason `why` if `name`, which the task finds, is given."""
         if name in self.parameters.given_axes:
             raise ValueError(f"parameters.{name} is given but the task {self.task} {why}")
 
@@ -138,12 +138,12 @@ class Config(StrictSection):
 
 
 class LinearConfig(Config):
-    """Common part of the configs of the linear problem."""
+    """Base class of the configs of tasks on the linear problem."""
 
     parameters: LinearParameters
 
     beyond: ClassVar[tuple[str, ...]] = ()
-    """Parameters of the nonlinear rod only that the task can still use."""
+    """Parameters absent from the linear problem that the task can use with some options."""
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:

@@ -42,14 +42,14 @@ def overflows(text: str) -> bool:
 
 
 def cell_number(cell: str) -> float:
-    """Number in a cell of a CSV file; ValueError for any other text."""
+    """Converts a cell of a CSV file to a number; ValueError for text that is no number."""
     if "_" in cell or not cell.isascii() or overflows(cell):
         raise ValueError
     return as_number(float(cell))
 
 
 def short(value: Any) -> str:
-    """`repr` of a value, cut to 60 characters."""
+    """`repr` of a value for a message, truncated to 60 characters."""
     try:
         text = repr(value)
     except (ValueError, RecursionError):  # an integer of thousands of digits, or a tree too deep
@@ -66,13 +66,13 @@ def named(name: object, most: int = 200) -> str:
 
 
 def printable(text: str) -> str:
-    """Text with control characters escaped, for example as `\\x1b` and such, because a terminal would obey
+    """Text with control characters escaped, for example as `\\x1b`, because a terminal would obey
     control characters."""
     return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
 
 
 def as_text(value: Any) -> Any:
-    """The value; ValueError for text with control characters or lone surrogates."""
+    """Returns `value` unchanged; ValueError for text with control characters or lone surrogates."""
     if isinstance(value, str) and not all(c.isprintable() or c == " " for c in value):
         raise ValueError(f"{short(value)} has characters that cannot be printed")
     return value
@@ -84,9 +84,9 @@ Number = Annotated[
     BeforeValidator(as_number),
     PlainSerializer(lambda number: str(number) if isinf(number) else number, when_used="json"),
 ]
-"""A number. JSON stores infinite numbers as text."""
+"""Type of a number in a config. JSON output stores infinite numbers as text."""
 NUMBER_SCHEMA: dict[str, Any] = {"anyOf": [{"type": "number"}, {"enum": ["inf", "+inf", "-inf"]}]}
-"""JSON schema of a number on an axis."""
+"""JSON schema of one value on an axis: a number or a word for infinity."""
 AXIS_SCHEMA: dict[str, Any] = {
     "description": "a number, a list in increasing order, or a range",
     "anyOf": [
@@ -107,7 +107,7 @@ AXIS_SCHEMA: dict[str, Any] = {
 }
 """JSON schema of the values taken by `as_axis`."""
 DIGITS_OF_QUANTITY = 15
-"""Significant digits of a quantity in SI units; unit conversion changes the 16th digit."""
+"""Number of significant digits to which SI quantities are rounded; unit conversion changes the 16th digit."""
 
 
 class Axis(StrictSection):
@@ -126,7 +126,7 @@ class Axis(StrictSection):
     factor: Annotated[float, Field(exclude=True)] = 1.0
     """Multiplier of all values of a range, such as the ratio of the parameter F to a pressure in Pa."""
     written: Annotated[Any, Field(exclude=True)] = None
-    """The user's own form, for values with units; else None."""
+    """Values in the user's notation, if the user gave units; else None."""
 
     @property
     def size(self) -> int:
@@ -142,13 +142,13 @@ class Axis(StrictSection):
 
     @property
     def resolved(self) -> dict[str, Any]:
-        """Keys and values, JSON-compatible, with the factor applied to the ends of a range."""
+        """Axis as JSON-compatible keys and values; `factor` is applied to the ends of a range."""
         tree = self.model_dump(mode="json", exclude_none=True)
         ends = {} if self.values is not None else {"start": self.start, "stop": self.stop}
         return tree | {name: self.factor * value for name, value in ends.items()}
 
     def scaled(self, scale: float) -> "Axis":
-        """The axis with all values multiplied by a number."""
+        """Copy of the axis with all values multiplied by `scale`."""
         if self.values is not None:
             return Axis(values=tuple(scale * value for value in self.values))
         # The ends stay unscaled, so that a longer range contains exactly the same values.
@@ -173,7 +173,7 @@ class Axis(StrictSection):
 
 
 def as_axis(value: Any) -> Axis:
-    """A number, a list or a mapping {start, stop, num, spacing} as an Axis; ValueError otherwise."""
+    """Converts a number, list or mapping {start, stop, num, spacing} to an Axis; ValueError otherwise."""
     if isinstance(value, Axis):
         return value
     if isinstance(value, dict):
@@ -218,7 +218,7 @@ def _range(value: dict) -> Axis:
 
 
 def axis_of(resolved: dict[str, Any]) -> Axis:
-    """The axis in a resolved config; ValueError or TypeError if the value is no axis."""
+    """Converts the value of an axis in a resolved config to an Axis; ValueError or TypeError if invalid."""
     values = resolved.get("values")
     return Axis(**resolved | ({} if values is None else {"values": tuple(map(as_number, values))}))
 

@@ -66,4 +66,4 @@ SE2 = algebra(3, [(0, 1, 2, 1.0), (0, 2, 1, -1.0), (1, 2, 0, 1.0), (1, 0, 2, -1.
 SE3 = algebra(6, _cross(0, 3, 0) + _cross(0, 0, 3) + _cross(3, 3, 3))
 """ad_E V = (kappa x v + h x Omega; kappa x Omega)."""
 ALGEBRAS = {3: SE2, 6: SE3}
-"""Algebras by number of components."""
+"""SE2 and SE3 by their number of components."""

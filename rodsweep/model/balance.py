@@ -49,7 +49,7 @@ def coad(E: Values, Sigma: Values) -> Values:
 
 
 def elastic_force(E: Values, Sigma: Values, dSigma: Values) -> Values:
-    """D*_E Sigma from Sigma and its derivative dSigma along the rod, in k3/L^3 (moments: k3/L^2)."""
+    """Force per length D*_E Sigma from Sigma and dSigma = Sigma', in k3/L^3 (moments: k3/L^2)."""
     return dSigma + coad(E, Sigma)
 
 
@@ -75,7 +75,7 @@ class Material(NamedTuple):
         return first_component(-self.F, len(self.drag))
 
     def strain(self, Sigma: Values) -> Values:
-        """E = Ebar + C Sigma."""
+        """Deformation E = Ebar + C Sigma under the stress Sigma."""
         return _along(self.straight, Sigma) + _along(self.compliance, Sigma) * Sigma
 
     def velocity(self, Sigma: Values, dSigma: Values) -> Values:
@@ -106,5 +106,5 @@ def first_component(number: float, size: int) -> Values:
 
 
 def _along(diagonal: Values, field: Values) -> Values:
-    """A diagonal, (d,) or (d, nodes), reshaped to broadcast against a field (d, ..., nodes)."""
+    """Reshapes a diagonal, (d,) or (d, nodes), to broadcast against a field, (d, ..., nodes)."""
     return diagonal.reshape(len(diagonal), *(1,) * (field.ndim - diagonal.ndim), *diagonal.shape[1:])

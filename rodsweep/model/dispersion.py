@@ -17,16 +17,17 @@ from ..arrays import Array
 from .material.build import Build, LocalCoefficients
 from .rod import Rod
 
-SAMPLES = 64
-"""Number of samples of K, at equal ratios: 13 % apart, enough for an estimate."""
-PIECE_SAMPLES = 33
-"""Points of each smooth piece of an arm at which local waves are evaluated."""
-KEPT = 16
-"""Arms whose samples are kept."""
-LOWEST = 1e-4
-"""Smallest sample of K in units of F g, the K above which every wave decays."""
-FRACTIONS: Array = LOWEST ** (1 - np.arange(SAMPLES) / SAMPLES)
-"""The samples of K in units of F g, (SAMPLES,)."""
+SAMPLE_COUNT = 64
+"""Number of samples of K in geometric progression; the ratio 1.15 is fine enough for an estimate."""
+SAMPLES_PER_INTERVAL = 33
+"""Number of points, per interval of u on which coefficients are smooth, at which local waves are evaluated.
+"""
+CACHED_ARM_COUNT = 16
+"""Number of arms whose samples are cached."""
+MIN_K_FRACTION = 1e-4
+"""Smallest sample of K, in units of F g. Every wave with K > F g decays."""
+K_FRACTIONS: Array = MIN_K_FRACTION ** (1 - np.arange(SAMPLE_COUNT) / SAMPLE_COUNT)
+"""Samples of K = kappa^2, in units of F g, (SAMPLE_COUNT,)."""
 
 
 def most_amplified_wave(rod: Rod) -> tuple[float, float]:
@@ -44,7 +45,7 @@ def most_amplified_wave(rod: Rod) -> tuple[float, float]:
 
 
 class SampledArm(NamedTuple):
-    """Points between the breaks of an arm, the length that each stands for, and the coefficients there.
+    """Sample points of an arm in u, their quadrature weights (lengths), and the local coefficients.
 
     points, weights: (points,).
     """
@@ -54,23 +55,23 @@ class SampledArm(NamedTuple):
     local: LocalCoefficients
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=CACHED_ARM_COUNT)
 def sampled(rod: Rod) -> SampledArm:
-    """The samples of an arm, kept for the next question about it."""
+    """Sample points, weights and local coefficients of an arm; cached."""
     points, weights = _points_of(rod.build)
     return SampledArm(points, weights, rod.local(points))
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=CACHED_ARM_COUNT)
 def _points_of(build: Build) -> tuple[Array, Array]:
     """`points` and `weights` of `SampledArm` for the arms of a build."""
     lengths = np.diff(build.breaks)
-    inside = (np.arange(PIECE_SAMPLES) + 0.5) / PIECE_SAMPLES
+    inside = (np.arange(SAMPLES_PER_INTERVAL) + 0.5) / SAMPLES_PER_INTERVAL
     points = (build.breaks[:-1, None] + lengths[:, None] * inside).ravel()
-    return points, np.repeat(lengths / PIECE_SAMPLES, PIECE_SAMPLES)
+    return points, np.repeat(lengths / SAMPLES_PER_INTERVAL, SAMPLES_PER_INTERVAL)
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=CACHED_ARM_COUNT)
 def local_growth(rod: Rod) -> tuple[Array, Array]:
     """Growth rates and wave numbers of the most amplified waves at the samples u of an arm, both (points,).
 
@@ -80,17 +81,17 @@ def local_growth(rod: Rod) -> tuple[Array, Array]:
     top = np.maximum(rod.F * c3 * g, 0.0)
     _, rates = _growth_rates(*(x[:, None] for x in (top, g * nu, c2 / c3, gamma3 / gamma2)))
     largest = rates.max(axis=-1)
-    wave = np.where(largest > 0, np.sqrt(top * FRACTIONS[rates.argmax(axis=-1)]), 0.0)
+    wave = np.where(largest > 0, np.sqrt(top * K_FRACTIONS[rates.argmax(axis=-1)]), 0.0)
     return largest / (gamma2 * c3), wave
 
 
 def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:
-    """(K, growth rates) of the sampled waves, both (..., SAMPLES), for k3 = gamma2 = 1; 0 for decaying waves.
+    """(K, growth rates) of the sampled waves, (..., SAMPLE_COUNT), at k3 = gamma2 = 1; 0: decaying.
 
     top: F g. relaxation: g nu. All arguments are numbers, or arrays (n, 1) for n rods.
     """
     square = c2 * gamma3
-    K = top * FRACTIONS
+    K = top * K_FRACTIONS
     with np.errstate(all="ignore"):
         # Growth rates as functions of K = q^2: waves with K < F g grow.
         drive = K * (top - K)

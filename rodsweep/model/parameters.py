@@ -97,7 +97,7 @@ LARGEST_TAPER = 100.0
 
 
 def stiffness(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
-    """A stiffness, which may be inf; `rigid` is the adjective for a rod with infinite stiffness."""
+    """Makes the table entry of a stiffness; rigid: adjective for a rod whose stiffness is infinite."""
     return Parameter(
         name=name,
         symbol=symbol,
@@ -173,7 +173,7 @@ OF_TRANSVERSE_PROBLEM = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 ALLOWED = [(name, parameter.allowed.contains) for name, parameter in PARAMETERS.items()]
 """(name, range check) of each parameter, prepared once because sweeps create many rods."""
 CRUSHING = ("F", "k1")
-"""Force and stiffness: the rod is crushed if the first reaches the second."""
+"""Names of the force and of the stiffness that decides on crushing: the rod is crushed if F >= k1."""
 
 
 def all_but(varied: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
@@ -182,7 +182,7 @@ def all_but(varied: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[st
 
 
 def with_parameters(cls: type[Decorated]) -> type[Decorated]:
-    """Class decorator: adds all parameters of the table as fields, in the table's order with its defaults."""
+    """Class decorator: adds all of PARAMETERS as fields, with the order and defaults of the table."""
     own = dict(cls.__annotations__)
     cls.__annotations__ = dict.fromkeys(PARAMETERS, float) | {
         n: a for n, a in own.items() if n not in PARAMETERS

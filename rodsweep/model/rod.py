@@ -92,7 +92,7 @@ class Rod:
 
     @staticmethod
     def local_of_all(rods: Sequence["Rod"], u: Array) -> LocalCoefficients:
-        """`local` of n rods of one build, (n, *u.shape), in the time of one."""
+        """Local coefficients, (n, *u.shape), of n rods with equal `build`, in one array operation."""
         if len(rods) == 1:
             return LocalCoefficients(*(x[None] for x in rods[0].local(u)))
         shape = (len(rods), *(1,) * u.ndim)
@@ -125,7 +125,7 @@ class Rod:
 
     @property
     def equivalent(self) -> tuple["Rod", float]:
-        """(linear rod, rate): eigenvalues of this uniform rod are `rate` times the linear rod's eigenvalues.
+        """(rod of linear material, rate): eigenvalues of this rod are `rate` times those of the linear rod.
 
         With K = B(nu), the linear rod has the coefficients (F/K, nu, c2 K, gamma3), and rate = K. Raises
         NotUniform for an arm that varies.
@@ -142,7 +142,7 @@ class Rod:
 
     @property
     def linear(self) -> "Rod":
-        """The rod with the same transverse linear problem; parameters of cycles alone have their defaults."""
+        """Rod with the same transverse linear problem; parameters that affect only cycles have defaults."""
         return Rod(**{name: self.values[name] for name in OF_TRANSVERSE_PROBLEM}, build=self.build)
 
     def coordinate(self, name: str) -> float:
@@ -150,11 +150,11 @@ class Rod:
         return float(PARAMETERS[name].coordinate(getattr(self, name)))
 
     def with_coordinate(self, name: str, coordinate: float) -> "Rod":
-        """The rod with another coordinate of a parameter; ValueError for a coordinate outside the model."""
+        """Copy of the rod with the parameter `name` at `coordinate`; ValueError outside the allowed range."""
         return self.changed(**{name: PARAMETERS[name].value(coordinate)})
 
     def changed(self, **values: float) -> "Rod":
-        """The rod with other values of some parameters; ValueError for values outside the model."""
+        """Copy of the rod with other parameter values; ValueError for values outside the allowed range."""
         # `dataclasses.replace` takes a third longer.
         return Rod(**{**self.values, **values}, build=self.build)
 

@@ -13,7 +13,7 @@ from .parameters import SCALINGS
 
 
 def scaled(values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Loads, stiffnesses and drags by name: each value times the parameters that scale it in the table."""
+    """Loads, stiffnesses and drags by name: each value in `values` times the parameters that scale it."""
     if not SCALINGS:
         return values
     own = dict(values)

@@ -16,16 +16,30 @@ Given = float | str
 """A quantity from the user: text with a unit, or a number in SI."""
 NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.ASCII)
 """Matches a number and its unit, which may be empty."""
-OF_A_UNIT = re.compile(r"[A-Za-zµμ]+|(?:\^|\*\*)?-?[1-4](?!\d)|[²³⁴]|[\s*/]")
-"""Matches a part of a valid unit. Other text must not reach pint, which evaluates it and may never return."""
-TOWER = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
+UNIT_TOKEN = re.compile(r"[A-Za-zµμ]+|(?:\^|\*\*)?-?[1-4](?!\d)|[²³⁴]|[\s*/]")
+"""Matches one token of a valid unit: letters, exponent or operator. Other text must not reach pint, which
+evaluates text and may never return."""
+NESTED_POWER = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
 """Matches the start of a power of a power, which pint would evaluate."""
 LONGEST_UNIT = 40
 """Largest number of characters of a unit."""
-KEPT_UNITS = 1000
-"""Number of conversions that are remembered; a config has some ten."""
-COMMON = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN", "kg/m^3", "g/cm^3", "mbar")
-"""Units to suggest for a text that differs in blanks or capital letters."""
+CACHED_CONVERSION_COUNT = 1000
+"""Number of cached unit conversions; a config needs about ten."""
+SUGGESTED_UNITS = (
+    "cm",
+    "mm",
+    "kPa",
+    "MPa",
+    "GPa",
+    "Pa s",
+    "mPa s",
+    "kPa s",
+    "mN",
+    "kg/m^3",
+    "g/cm^3",
+    "mbar",
+)
+"""Units suggested for a misspelt unit that differs only in blanks or capital letters."""
 OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
 """Matches a load as a multiple of the flutter threshold, "1.2 of flutter" or "120 % of flutter"."""
 FROM_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
@@ -89,14 +103,14 @@ def _number(name: str, given: Any, unit: str, allowed: str) -> float:
 
 
 def factor(subject: str, written: str, unit: str, allowed: str) -> float:
-    """Conversion factor from the unit `written` to `unit`.
+    """Factor that converts a value in the unit `written` to the unit `unit`.
 
     subject, allowed: quantity and remedy for messages. Raises InputError for an unknown unit or another
     dimension.
     """
     if written.startswith(","):
         raise InputError(f"{subject} has a decimal comma; write a point")
-    if len(written) > LONGEST_UNIT or OF_A_UNIT.sub("", written) or TOWER.search(written):
+    if len(written) > LONGEST_UNIT or UNIT_TOKEN.sub("", written) or NESTED_POWER.search(written):
         raise InputError(
             f"{subject} has the unit '{written[:LONGEST_UNIT]}', which is not understood; write {allowed}"
         )
@@ -117,16 +131,16 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
         ) from error
 
 
-@lru_cache(KEPT_UNITS)
+@lru_cache(CACHED_CONVERSION_COUNT)
 def _ratio(written: str, unit: str) -> float:
-    """Number of `unit` in one `written`, cached for the points of a sweep; raises the errors of pint."""
+    """Size of the unit `written` in units of `unit`, cached; raises the errors of pint."""
     return float(registry().Quantity(1.0, written).to(unit).magnitude)
 
 
 def _suggestion(written: str, unit: str) -> str:
     """A suggestion "did you mean 'kPa'? " for a misspelt common unit; empty without a suggestion."""
     squeezed = "".join(written.split()).casefold()
-    for common in COMMON:
+    for common in SUGGESTED_UNITS:
         if "".join(common.split()).casefold() == squeezed and registry()(common).check(registry()(unit)):
             return f"did you mean '{common}'? "
     return ""

@@ -15,11 +15,11 @@ from typing import Any
 
 
 class _CalledPackage(ModuleType):
-    """A package that can be called: `rs.sweep(...)` is `rodsweep.api.sweeping.sweep(...)`."""
+    """Callable class of this package: `rs.sweep(...)` calls `rodsweep.api.sweeping.sweep(...)`."""
 
     @property
     def __wrapped__(self) -> Any:
-        """The function; `help` and completion read the arguments here."""
+        """The function `rodsweep.api.sweeping.sweep`, whose signature `help` and tab completion show."""
         return import_module("rodsweep.api.sweeping").sweep  # by name: `api` imports `sweep`, not the reverse
 
     def __call__(self, *words: Any, **keywords: Any) -> Any:

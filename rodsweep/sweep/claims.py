@@ -1,4 +1,4 @@
-"""Claims of chunks of units: by the first rank from the handout, by further ranks through messages.
+"""Requests for chunks of units: the first rank asks the handout directly, other ranks send MPI messages.
 
 The first rank computes like every rank. A thread of the first rank answers requests meanwhile, and no rank
 needs to wait for the end of a solve on the first rank. A solve may still delay the thread. Every rank
@@ -21,27 +21,30 @@ from .team import Team
 REQUEST_TAG = 71
 ANSWER_TAG = 72
 STOP_TAG = 73
-PLACE_TAG = 74
+PROGRESS_TAG = 74
 POLL_SECONDS = 2e-3
-"""Seconds between two polls by the thread of the first rank. Each poll takes 20 microseconds or more from the
-solve of that rank."""
+"""Seconds between two polls for MPI messages by the thread of the first rank. Each poll delays the solve on
+that rank by at least 20 microseconds."""
 RELIEVED_POLL_SECONDS = 5e-3
-"""Seconds between two polls by the thread while the first rank itself answers between its points."""
-ASK_SECONDS = 1e-4
-"""First pause, in seconds, between two polls of a rank waiting for a chunk."""
-LONGEST_ASK_SECONDS = 1e-2
-"""Longest pause, in seconds: an idle rank must not take processor time from solving ranks."""
-ASK_GROWTH = 1.1
-"""Ratio of a pause to the previous pause. Slow growth prolongs a wait of a millisecond little."""
+"""Seconds between two polls by the thread of the first rank while its main thread also polls after each
+point."""
+FIRST_CHUNK_POLL_SECONDS = 1e-4
+"""Initial pause, in seconds, between two polls by a rank that waits for the answer to its request for a
+chunk."""
+LONGEST_CHUNK_POLL_SECONDS = 1e-2
+"""Longest pause, in seconds, between two such polls. An idle rank must not take processor time from solving
+ranks."""
+CHUNK_POLL_GROWTH = 1.1
+"""Ratio of a pause between polls to the previous pause; a small ratio delays short waits little."""
 WAIT_SECONDS = 0.05
-"""Seconds for which the idle first rank waits for a change of the handout before a poll for messages."""
+"""Seconds for which an idle first rank waits for the handout to change before it polls for MPI messages."""
 
 
 class FirstRankClaims:
-    """Claims of the first rank, with a thread that serves all further ranks."""
+    """Requests of the first rank for chunks, and a thread that answers the requests of all other ranks."""
 
     def __init__(self, team: Team, handout: Handout, stop: StopRequest, show: Callable[[str, float], None]):
-        """show: displays the progress of a long point, in words, and the work done of unfinished points."""
+        """show: displays progress within a long point, in words, and work done on unfinished points."""
         self.team = team
         self.handout = handout
         self.stop = stop
@@ -62,7 +65,7 @@ class FirstRankClaims:
             self.thread.start()
 
     def claim(self, report: RankReport) -> IndexRange:
-        """The next chunk; waits until a chunk is available or the work is over."""
+        """Returns the next chunk for the first rank; waits until a chunk is free or all work is done."""
         with self.serving:
             self._heed_stop()
         self.places.pop(0, None)
@@ -83,16 +86,16 @@ class FirstRankClaims:
             self._hear_places()
 
     def report_place(self, place: SolvePosition) -> None:
-        """Shows the progress of this rank within a long point."""
+        """Displays how far the first rank has come within a long point."""
         self.places[0] = place
         self.show(place.words, self._begun())
 
     def _begun(self) -> float:
-        """Work done of all unfinished long points, in points."""
+        """Work done on all unfinished long points of all ranks, as a sum of fractions of a point."""
         return sum(place.share or 0.0 for place in list(self.places.values()))
 
     def between_points(self) -> None:
-        """Answers requests of ranks; called between points.
+        """Answers the requests of the other ranks; the first rank calls this after each of its points.
 
         During a long point the thread answers. The thread alone would not be enough: a solve inside PETSc
         keeps Python's lock, and the thread might get the lock only once a point for each step of the solve.
@@ -104,7 +107,7 @@ class FirstRankClaims:
             self._heed_stop()
 
     def _heed_stop(self) -> None:
-        """After a stop request to this rank, ends the handout and notifies all working ranks, once."""
+        """After a stop request to the first rank: stops the handout and notifies working ranks, once."""
         if self.stop and not self.handout.stopped:
             self.handout.stop()
             for rank in self.working:
@@ -129,12 +132,12 @@ class FirstRankClaims:
                     self.working.discard(rank)
 
     def _hear_places(self) -> None:
-        """Receives the progress of the other ranks."""
+        """Receives and displays how far the other ranks have come within long points."""
         comm = self.team.comm
         MPI = self.team.MPI
-        while comm.Iprobe(source=MPI.ANY_SOURCE, tag=PLACE_TAG, status=self.status):
+        while comm.Iprobe(source=MPI.ANY_SOURCE, tag=PROGRESS_TAG, status=self.status):
             rank = self.status.Get_source()
-            self.places[rank] = comm.recv(source=rank, tag=PLACE_TAG)
+            self.places[rank] = comm.recv(source=rank, tag=PROGRESS_TAG)
 
     def _hear(self, rank: int, report: RankReport) -> None:
         """Handles a report of a rank: answers a request ahead at once, and queues any other request.
@@ -166,7 +169,7 @@ class FirstRankClaims:
 
 
 class OtherRankClaims:
-    """Claims of all ranks but the first, by messages to the first."""
+    """Requests for chunks by a rank other than the first, sent as MPI messages to the first rank."""
 
     def __init__(self, team: Team, stop: StopRequest):
         self.comm = team.comm
@@ -174,25 +177,25 @@ class OtherRankClaims:
         self.stop_exchanged = False
 
     def claim(self, report: RankReport) -> IndexRange:
-        """The next chunk; waits for the answer of the first rank, and requests the following chunk."""
+        """Waits for the next chunk from the first rank, requests a further chunk, and returns the next."""
         self.comm.send(report, dest=0, tag=REQUEST_TAG)
         # A blocking receive would spin and take the processor from the ranks that compute.
-        pause = ASK_SECONDS
+        pause = FIRST_CHUNK_POLL_SECONDS
         while not self.comm.Iprobe(source=0, tag=ANSWER_TAG):
             self.between_points()
             time.sleep(pause)
-            pause = min(ASK_GROWTH * pause, LONGEST_ASK_SECONDS)
+            pause = min(CHUNK_POLL_GROWTH * pause, LONGEST_CHUNK_POLL_SECONDS)
         chunk: IndexRange = self.comm.recv(source=0, tag=ANSWER_TAG)
         if chunk != NO_WORK_LEFT:
             self.comm.send(RankReport(ahead=True), dest=0, tag=REQUEST_TAG)
         return chunk
 
     def report_place(self, place: SolvePosition) -> None:
-        """Sends the progress of this rank within a long point to the first rank."""
-        self.comm.send(place, dest=0, tag=PLACE_TAG)
+        """Sends the first rank a report of how far this rank has come within a long point."""
+        self.comm.send(place, dest=0, tag=PROGRESS_TAG)
 
     def between_points(self) -> None:
-        """Sends a stop request to the first rank, or receives a stop request from there; once in all."""
+        """Sends a stop request to the first rank, or adopts a stop request of the first rank, once."""
         if not self.stop_exchanged and self.comm.Iprobe(source=0, tag=STOP_TAG):
             self.stop.take(self.comm.recv(source=0, tag=STOP_TAG))
             self.stop_exchanged = True

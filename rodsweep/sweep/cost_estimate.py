@@ -19,26 +19,28 @@ from .points.stretches import Stretches
 
 MAX_SAMPLE = 200
 """Largest number of points whose meshes are computed for an estimate."""
-HARDER_IF_LARGER = frozenset({"k1", "F"})
-"""Parameters whose large values make branches expensive; of all others small values do."""
+COSTLIER_IF_LARGER = frozenset({"k1", "F"})
+"""Parameters for which branches of cycles cost most at large values; for all other parameters, at small
+values."""
 FIXED_MS = 0.03
-"""Overhead of the solve of a spectrum, in ms, measured."""
+"""Fixed part of the time of one spectrum, independent of the mesh, in ms; measured."""
 LINEAR_MS = 2.2e-3
-"""Time of the orthogonalisation, in ms per unknown, measured."""
+"""Time of the orthogonalisation of Krylov vectors for one spectrum, in ms per unknown; measured."""
 CUBIC_MS = 1.5e-7
-"""Time of the dense factorisation, in ms per cubed number of unknowns, measured."""
+"""Time of a dense factorisation, in ms, divided by the cube of the number of unknowns; measured."""
 SPARSE_FROM = 300
-"""Number of unknowns above which factorisations are sparse."""
+"""Number of unknowns above which the solver factorises sparse matrices instead of dense matrices."""
 SPARSE_MS = 8e-3
-"""Time of a solve with a sparse factorisation, in ms per unknown."""
+"""Time of one spectrum with a sparse factorisation, in ms per unknown."""
 CERTIFICATE_MS = 0.15
 """Time of the certificate of a spectrum, in ms."""
 ARM_MS = 4.0
 """Time of D and of the certificate of an arm that is not uniform, in ms: median over 40 random arms."""
 FIRST_POINTS = 2.0
-"""Cost of the first point of a stretch, in units of a point solved alone."""
+"""Time of the first point of a stretch, divided by the time of the same point solved alone."""
 FOLLOWED_MS = 0.006
-"""Time of every point of a stretch, followed from a neighbour, in ms."""
+"""Time per point of a stretch of uniform rods, whose eigenvalues are followed from the neighbouring point, in
+ms."""
 FOLLOWED_ARM_MS = 0.4
 """Time of every point of a stretch of arms that are not uniform, in ms: median over 24 random arms, the first
 point included."""
@@ -71,11 +73,12 @@ over 24 rods."""
 GROWTH_MS = 20.0
 """Time of the transient growth of a rod, in ms: mean over the 24 rods."""
 CYCLE_SECONDS = 0.1
-"""Time of a limit cycle starting from the leading mode, about as in the benchmark."""
+"""Time of a limit cycle that starts from the leading mode, in s; the benchmark measures about the same."""
 CHAINED_CYCLE_SECONDS = 0.01
-"""Time of a limit cycle starting from a neighbour, about as in the benchmark."""
+"""Time of a limit cycle that starts from the cycle of a neighbouring point, in s; the benchmark measures
+about the same."""
 MARCHED_CYCLE_SECONDS = 0.25
-"""Time of a limit cycle by time integration alone to 1e-5: mean over 40 rods."""
+"""Time of a limit cycle by time integration alone to a relative accuracy of 1e-5, in s: mean over 40 rods."""
 BRANCH_SECONDS = 0.004
 """All branches of a rod take BRANCH_SECONDS F (accuracy/1e-7)^BRANCH_ACCURACY (1 + F/k2)^BRANCH_BENDING, in
 seconds, where F is the largest force of the range, or k1. Fourteen random rods (F up to 60 to 200, k2 from 12
@@ -86,9 +89,9 @@ BRANCH_ACCURACY = -0.17
 BRANCH_BENDING = 1.5
 """Exponent of 1 + F/k2 in the formula of BRANCH_SECONDS."""
 MEMORY_PER_UNKNOWN = 40_000
-"""Bytes per unknown of the largest mesh."""
+"""Memory of a rank, in bytes per unknown of the largest mesh."""
 BASE_MEMORY = 200_000_000
-"""Bytes of a rank without any mesh."""
+"""Memory of a rank without any mesh, in bytes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,36 +105,37 @@ class Estimate:
     unknowns: tuple[int, int] | None = None
     """Smallest and largest number of unknowns in the sample; None without a mesh."""
     too_large: int = 0
-    """Number of sampled points whose mesh would exceed RESOLUTION.max_unknowns."""
+    """Number of sampled points whose mesh would need more than RESOLUTION.max_unknowns unknowns."""
 
 
 def estimate_lines(lines: int, certify: bool, of_arms: bool) -> Estimate:
-    """Cost of searching `lines` rods for crossings, each along one parameter; of_arms: as below."""
+    """Cost of a search for crossings on `lines` rods; of_arms: whether any rod is not uniform."""
     uniform = LINE_MS + (LINE_CERTIFICATE_MS if certify else 0)
     return Estimate(lines * 1e-3 * (LINE_OF_ARM_MS if of_arms else uniform))
 
 
 def estimate_diagram(rows: int, certify: bool, of_arms: bool, curves: bool, criticality: bool) -> Estimate:
-    """Cost of a diagram without its cycles; of uniform rods the curves take little."""
+    """Cost of a phase diagram without its cycles. The cost of the curves of uniform rods is neglected."""
     lines = estimate_lines(rows, certify, of_arms)
     more = CURVES_OF_ARMS_SECONDS * curves + CRITICALITY_OF_ARMS_SECONDS * criticality
     return replace(lines, seconds=lines.seconds + more * of_arms)
 
 
 def estimate_criticality(rods: int, certify: bool, of_arms: bool) -> Estimate:
-    """Cost of the Hopf points of rods with their normal forms; of_arms: whether some are not uniform."""
+    """Cost of Hopf points and their normal forms for `rods` rods; of_arms: whether any rod is not uniform."""
     search = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
     each = HOPF_POINTS_MS + (LINE_OF_ARM_MS if of_arms else search)
     return Estimate(rods * 1e-3 * each)
 
 
 def estimate_branches(points: Points, along: str, reach: tuple[float, float], accuracy: float) -> Estimate:
-    """Cost of the branches of cycles of all rods, each along a parameter between two values.
+    """Cost of the branches of cycles of all rods.
 
-    points: the rods; the branch's parameter is no column. accuracy: relative accuracy of the cycles.
+    points: the rods, without a column for the continuation parameter `along`. reach: smallest and largest
+    value of `along`. accuracy: relative accuracy of the cycles.
     """
     indices = sampled(points)
-    values: dict[str, Array | float] = points.values_of(indices) | {along: reach[along in HARDER_IF_LARGER]}
+    values: dict[str, Array | float] = points.values_of(indices) | {along: reach[along in COSTLIER_IF_LARGER]}
     F = np.clip(values["F"], 0.0, values["k1"])  # a rod under tension has no cycles
     per_force = BRANCH_SECONDS * (accuracy / 1e-7) ** BRANCH_ACCURACY
     each = per_force * F * (1 + F / values["k2"]) ** BRANCH_BENDING
@@ -139,14 +143,17 @@ def estimate_branches(points: Points, along: str, reach: tuple[float, float], ac
 
 
 def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> Estimate:
-    """Cost of `modes` modes with vectors at each of `count` points, from the cost of eigenvalues alone."""
+    """Cost of `modes` modes at each of `count` points; spectra: cost of the eigenvalues alone."""
     more = count * 1e-3 * (MODES_MS * modes**2 + (GROWTH_MS if growth else 0))
     return replace(spectra, seconds=spectra.seconds + more, unknowns=None)
 
 
 def estimate_followed(alone: Estimate, stretches: Stretches, standard: bool) -> Estimate:
-    """Cost of spectra along stretches, from the cost of points solved alone; standard: uniform, linear
-    rods."""
+    """Cost of spectra followed along stretches.
+
+    alone: cost if every point were solved alone. standard: whether all rods are uniform and of linear
+    material.
+    """
     points = math.prod(stretches.shape)
     share = FIRST_POINTS * stretches.count / points
     each = FOLLOWED_MS if standard else FOLLOWED_ARM_MS
@@ -154,14 +161,14 @@ def estimate_followed(alone: Estimate, stretches: Stretches, standard: bool) -> 
 
 
 def estimate_two_meshes(points: Points, modes: int, accuracy: float) -> Estimate:
-    """Cost of spectra by Krylov-Schur on two meshes."""
+    """Cost of spectra by Krylov-Schur on two meshes; the second mesh gives the error estimates."""
     alone = estimate_spectra(points, modes, accuracy, certify=False)
     unknowns = alone.unknowns and (alone.unknowns[0], math.ceil(FINER_MESH * alone.unknowns[1]))
     return replace(alone, seconds=COST_OF_TWO_MESHES * alone.seconds, unknowns=unknowns)
 
 
 def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:
-    """Cost of spectra, from sampled points spread evenly over the sweep."""
+    """Cost of the spectra of a sweep, extrapolated from points sampled evenly over the sweep."""
     rods = [points.rod(int(index)) for index in sampled(points)]
     sizes = [_unknowns(rod, modes, accuracy) for rod in rods]
     if not sizes:  # no rod covers any point of the sample
@@ -177,7 +184,7 @@ def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool)
 
 
 def _unknowns(rod: Rod, modes: int, accuracy: float) -> int:
-    """The unknowns of the first mesh of a rod."""
+    """Number of unknowns of the mesh on which a rod is solved first."""
     if not rod.standard:
         return arm_mesh(rod, modes, accuracy).unknowns
     _, wave = most_amplified_wave(rod)

@@ -1,4 +1,5 @@
-"""The mesh on which the rods of a sweep begin to be solved, of those that need most: for `check`."""
+"""Finest of the meshes on which the solves of a sweep begin, estimated from a sample of rods for `rodsweep
+check`."""
 
 from collections.abc import Callable, Iterator, Mapping
 from itertools import product
@@ -17,7 +18,7 @@ from .points.points import Points
 
 
 def spectrum_mesh(rod: Rod, modes: int, accuracy: float) -> Elements:
-    """The first mesh for the leading eigenvalues of a rod, to a relative accuracy of the mesh."""
+    """Initial mesh for the leading `modes` eigenvalues of a rod, to the relative accuracy `accuracy`."""
     if not rod.uniform:
         return arm_mesh(rod, modes, accuracy)
     _, wave = most_amplified_wave(rod.equivalent[0])
@@ -28,10 +29,11 @@ def spectrum_mesh(rod: Rod, modes: int, accuracy: float) -> Elements:
 def largest_first_mesh(
     points: Points, mesh_of: Callable[[Rod], Elements], ends: Mapping[str, Array] | None = None
 ) -> Elements | None:
-    """The finest of the first meshes of a sample of rods and of the rods at the corners of a grid; None
-    without a mesh.
+    """Finest of the initial meshes of sampled rods and of the rods at the corners of a grid.
 
-    ends: values, (n,), of parameters along which every rod is searched.
+    None if no point has a rod. mesh_of: function from a rod to its initial mesh. ends: end values of a
+    search,
+    (n,), by name of the searched parameter.
     """
     indices = {*sampled(points).tolist(), *_corners(points)}
     rods = (rod for index in sorted(indices) for rod in _moved(points.rod(index), ends or {}))
@@ -39,8 +41,9 @@ def largest_first_mesh(
 
 
 def _moved(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod]:
-    """Yields the rod at all combinations of the values in `ends`. A force is lowered to just below crushing;
-    rods outside the model are left out.
+    """Yields the rod with every combination of parameter values in `ends`; skips rods outside the model.
+
+    A force that would crush the rod is replaced by a force just below crushing.
     """
     for values in product(*(column.tolist() for column in ends.values())):
         named = dict(zip(ends, values, strict=True))
@@ -56,7 +59,7 @@ def _moved(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod]:
 
 
 def _corners(points: Points) -> Iterator[int]:
-    """Flat indices of the corners of a grid that have a rod; none for a list."""
+    """Flat indices of the corner points of a grid that have a rod; empty for a list of points."""
     ends = [sorted({0, size - 1}) for size in points.shape] if points.axes else []
     for corner in product(*ends):
         index = int(np.ravel_multi_index(corner, points.shape))

@@ -14,47 +14,49 @@ from typing import Any, Protocol
 from .points.ranges import IndexRange, index_count
 
 CHUNK_SECONDS = 0.1
-"""Planned time of a chunk, in s: long compared with a message, short compared with a run."""
+"""Planned solve time of a chunk, in s: long compared with a message, short compared with a run."""
 CHUNK_SECONDS_A_RANK = 1e-3
-"""Planned time of a chunk with many ranks, in s per rank. The first rank answers a request in 50 microseconds
+"""Planned solve time of a chunk, divided by the number of ranks, in s, where this exceeds CHUNK_SECONDS. The
+first rank answers a request in 50 microseconds
 and so spends a twentieth of its time on answers."""
 GIVE_BACK_AFTER = 3.0
 """Time after which a rank gives back the rest of a chunk, in units of the planned time of the chunk."""
 LARGEST_CHUNK = 1 << 16
 """Largest number of units in a chunk."""
 MIN_UNITS_AHEAD = 4
-"""Smallest number of units left, per rank, for a rank to get the next chunk in advance."""
+"""Minimum number of waiting units per rank for which a rank gets its next chunk before it has finished the
+present chunk."""
 NO_WORK_LEFT: IndexRange = (0, 0)
-"""Answer to a request once no work is left."""
+"""Empty range of units, the answer to a request for a chunk once all units are solved or dropped."""
 
 
 def chunk_seconds(ranks: int) -> float:
-    """Planned time of a chunk, in s, for this number of ranks."""
+    """Planned solve time of a chunk, in s, for a run on `ranks` ranks."""
     return max(CHUNK_SECONDS, ranks * CHUNK_SECONDS_A_RANK)
 
 
 @dataclass(frozen=True, slots=True)
 class RankReport:
-    """Report of a rank with a request for the next chunk."""
+    """Message of a rank to the first rank: results of its last chunk, and a request for the next chunk."""
 
     done: int = 0
-    """Units finished since the last report, in `seconds`."""
+    """Number of units finished since the last report."""
     seconds: float = 0.0
     given_back: IndexRange = NO_WORK_LEFT
-    """Units of the chunk left undone."""
+    """Units of the chunk that the rank has not solved and returns to the handout."""
     points: int = 0
-    """Number of points stored since the last report."""
+    """Number of points that the rank has stored in its journal since the last report."""
     ahead: bool = False
-    """Whether the rank has only begun a chunk, and requests the next chunk in advance."""
+    """Whether the rank requests the next chunk in advance, at the start of the present chunk."""
     stop: str = ""
-    """Name of the stop signal of the rank, or empty; units given back after a stop are left for another
-    run."""
+    """Name of the stop signal that the rank received, else empty. A later run solves units given back after a
+    stop."""
     results: dict[int, Any] = field(default_factory=dict)
-    """Results of finished units, by unit, where later units depend on results."""
+    """Results of finished units, by unit; empty in sweeps whose later units do not depend on results."""
 
 
 class Handout:
-    """Units still to do, on the first rank; safe to use from two threads."""
+    """Queue of the units that no rank has received, on the first rank; safe to use from two threads."""
 
     def __init__(self, todo: list[IndexRange], ranks: int):
         self.todo = deque(todo)
@@ -70,7 +72,7 @@ class Handout:
         self.change = threading.Condition()
 
     def settle(self, rank: int, report: RankReport) -> None:
-        """Takes a report into account: finished units, and units given back."""
+        """Records the finished units of a report, and queues the units given back."""
         with self.change:
             if self.held[rank]:
                 self.held[rank] -= 1
@@ -85,20 +87,20 @@ class Handout:
             self.change.notify_all()
 
     def take(self, rank: int) -> IndexRange | None:
-        """The next chunk for a rank; OVER if no work is left, None if the rank has to wait."""
+        """Next chunk for a rank; NO_WORK_LEFT at the end, None while other ranks may give units back."""
         with self.change:
             if self.todo:
                 return self._take(rank)
             return None if self.held.total() and not self.stopped else NO_WORK_LEFT
 
     def take_ahead(self, rank: int) -> IndexRange | None:
-        """A further chunk for a rank before its present chunk is finished; None if few units are left."""
+        """Chunk for a rank that has not finished its present chunk; None if few units are left."""
         with self.change:
             return self._take(rank) if self.todo and self.left >= MIN_UNITS_AHEAD * self.ranks else None
 
     def _take(self, rank: int) -> IndexRange:
         # Half of an equal share at most: chunks shrink toward the end, where waiting costs most.
-        """Cuts the next chunk, sized by the rank's pace, off the units still to do; needs the lock."""
+        """Removes a chunk, sized by the rank's pace, from the queue; the caller holds the lock."""
         share = max(1, self.left // (2 * self.ranks))
         pace = self.pace.get(rank)
         size = 1 if pace is None else int(chunk_seconds(self.ranks) / max(pace, 1e-7))
@@ -111,7 +113,7 @@ class Handout:
         return first, end
 
     def stop(self) -> None:
-        """Drops all units not handed out; a later run solves them."""
+        """Drops all units not handed out, after a stop request; a later run solves these units."""
         with self.change:
             self.stopped = True
             self.todo.clear()
@@ -125,9 +127,9 @@ class UnitChooser(Protocol):
 
 
 class Pool(Handout):
-    """Units to solve next, on the first rank; safe to use from two threads.
+    """Queue of single units that `work` chooses from the results so far; safe to use from two threads.
 
-    results: by unit, at first from an earlier run; reported results are added.
+    results: results of an earlier run, by unit; results that ranks report are added.
     """
 
     def __init__(self, work: UnitChooser, results: dict[int, Any], ranks: int):
@@ -140,14 +142,14 @@ class Pool(Handout):
 
     @property
     def open(self) -> list[int]:
-        """Chosen units in progress on no rank."""
+        """Units that `work` has chosen and no rank is solving, the most urgent unit first."""
         if self._wanted is None:
             self._wanted = self.work.wanted(self.results)
         in_hand = {first for first, _ in self.taken.values()}
         return [unit for unit in self._wanted if unit not in in_hand]
 
     def settle(self, rank: int, report: RankReport) -> None:
-        """Takes the results of a rank into account; a unit without a result can be chosen again."""
+        """Adds the results in a report; a unit whose rank reports no result can be chosen again."""
         with self.change:
             self.points += report.points
             self.results |= report.results
@@ -156,7 +158,7 @@ class Pool(Handout):
             self.change.notify_all()
 
     def take(self, rank: int) -> IndexRange | None:
-        """The next unit for a rank; OVER if no unit is left, None if the rank has to wait."""
+        """Next unit for a rank; NO_WORK_LEFT at the end, None while the choice waits for results."""
         with self.change:
             if self.stopped:
                 return NO_WORK_LEFT
@@ -167,5 +169,5 @@ class Pool(Handout):
             return None if self.taken else NO_WORK_LEFT
 
     def take_ahead(self, rank: int) -> IndexRange | None:
-        """None: the choice of the next unit depends on the unfinished unit."""
+        """Always None: the choice of the next unit depends on the result of the unfinished unit."""
         return None

@@ -18,11 +18,11 @@ from .stop import RankListener, StopRequest
 from .team import Team
 
 Indices = int | NDArray[np.int64]
-"""Index of a single point, or indices of points stored together, shape (n,)."""
+"""Flat index of one point, or flat indices, (n,), of points that are stored together."""
 
 
 class UnitSolver(Protocol):
-    """Function from a unit to its points; yields (index, result) for each point, or for a whole stretch.
+    """Function that solves a unit; yields (flat index, result) for every point or whole stretch.
 
     A unit is a point, a chain of points yielded individually, or a stretch of points yielded at once.
     """
@@ -31,20 +31,20 @@ class UnitSolver(Protocol):
 
 
 class ProgressSink(Protocol):
-    """Display of the progress of all ranks, on the first rank."""
+    """Interface of a display, on the first rank, for the progress of all ranks."""
 
     def __call__(self, done: int) -> None:
-        """Shows the total number of finished points."""
+        """Displays the number of points that all ranks have finished."""
 
     def place(self, words: str, begun: float) -> None:
-        """Shows the progress of a long point; begun: work done of all unfinished points, in points."""
+        """Displays progress in a long point in words; begun: work done on unfinished points, in points."""
 
 
 @dataclass(frozen=True, slots=True)
 class RankWork:
-    """Work of a rank: number of points, and seconds spent on solving (busy) and on waiting (idle).
+    """What a rank did in a run: number of points solved, seconds of solving (busy) and of waiting (idle).
 
-    ended: a stop request ended an unfinished solve; a later run solves the unit again.
+    ended: whether a stop request interrupted a solve; a later run solves the interrupted unit again.
     """
 
     points: int
@@ -55,17 +55,18 @@ class RankWork:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loop:
-    """Work of every rank on units."""
+    """Functions that every rank calls in the loop over units, such as to solve and to store."""
 
     solve: UnitSolver
     keep: Callable[[Indices, Any], None]
     """Stores a point durably, on the rank that solved the point, before the next point begins."""
     prepare: Callable[[], object] = lambda: None
-    """Runs before the first unit."""
+    """Function that a rank calls once before its first unit."""
     results: Callable[[], dict[int, Any]] = dict
-    """Results of the units stored since the last call, by unit, where later units depend on results."""
+    """Function that returns, by unit, results stored since its last call; empty if later units need no
+    results."""
     name: Callable[[int], str] = lambda unit: ""
-    """Name of a unit in words."""
+    """Function from a unit to its name in words, for progress messages."""
 
 
 def sweep(team: Team, todo: Handout, loop: Loop, shown: ProgressSink, stop: StopRequest) -> RankWork:
@@ -82,7 +83,7 @@ def sweep(team: Team, todo: Handout, loop: Loop, shown: ProgressSink, stop: Stop
 
 
 class _RankLoop:
-    """The loop on one rank."""
+    """State of the loop of one rank: its requests for chunks, and its counts of points and seconds."""
 
     def __init__(
         self,
@@ -126,7 +127,7 @@ class _RankLoop:
         return RankWork(self.points, busy, time.monotonic() - started - busy, self.ended)
 
     def _solved_up_to(self, chunk: IndexRange) -> int:
-        """Solves units of a chunk; returns the first unit not solved.
+        """Solves the units of a chunk in order; returns the number of the first unit not solved.
 
         The rest of the chunk is left undone after a stop request, or if the chunk takes too long.
         """

@@ -20,7 +20,7 @@ BAR_SECONDS = 0.1
 
 
 def on_terminal() -> bool:
-    """Whether the user sees standard error live; under a launcher, its own standard error decides."""
+    """Whether standard error, or under MPI the standard error of the launcher, is a terminal."""
     if sys.stderr.isatty():
         return True
     launcher = f"/proc/{os.getppid()}/fd/2"
@@ -65,7 +65,7 @@ class ProgressReporter:
             self.task = self.bar.add_task(title, total=total, count="", rate="", left="", where="")
 
     def __call__(self, done: int) -> None:
-        """Takes the number of finished points, 0 to start the clock, and shows it if an update is due."""
+        """Records `done` finished points and updates the display if due; 0 starts the clock."""
         if not done:
             self.began = time.monotonic()
             self.next = self.began + FIRST_SECONDS
@@ -75,7 +75,7 @@ class ProgressReporter:
         self._show()
 
     def place(self, words: str, begun: float = 0.0) -> None:
-        """Shows, if due, the progress of a long point in words; begun: work done of unfinished points."""
+        """Displays, if due, progress within a long point in words; begun: work done on unfinished points."""
         self.begun = begun
         self.where = words
         self._show()

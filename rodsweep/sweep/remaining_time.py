@@ -12,17 +12,18 @@ from math import exp
 PACE_FROM = 0.5
 """The pace is measured from this fraction of the finished points to the latest."""
 MIN_POINTS = 2
-"""Finished points after the first record that are needed for a pace."""
+"""Minimum number of points finished after the first record for a measurement of the pace."""
 MIN_BEGUN = 0.1
-"""Least work of unfinished points, in points, for a first estimate; below, the start-up cost dominates."""
+"""Minimum work done on unfinished points, in points, for a first estimate. With less work, start-up cost
+dominates."""
 TIME_CONSTANT = 0.25
 """Time constant of the reported remaining time, as a fraction of the shorter of time passed and left."""
 RECORD_RATIO = 1.02
-"""Ratio of finished points between two stored records: about 35 records for each doubling."""
+"""Minimum ratio of the numbers of finished points in successive stored records: 35 records per doubling."""
 
 
 class Pace:
-    """Remaining time of `total` points; times are in s since the start."""
+    """Estimator of the remaining time of a sweep of `total` points; all times are in s since the start."""
 
     def __init__(self, total: int):
         self.total = total
@@ -56,13 +57,13 @@ class Pace:
         return self.reported[1]
 
     def _record(self, done: int, now: float) -> None:
-        """Stores the latest record; earlier ones are thinned to about 35 for each doubling of the points."""
+        """Appends the record (done, now); thins earlier records to 35 per doubling of `done`."""
         if len(self.records) > 2 and self.records[-1][0] < RECORD_RATIO * self.records[-2][0]:
             self.records.pop()
         self.records.append((done, now))
 
     def _seconds_per_point(self, done: int, now: float, begun: float) -> float | None:
-        """Time per point over the latest finished points, longer if the current point takes longer.
+        """Seconds per point over the latest points, or of the current point if it takes longer.
 
         Before MIN_POINTS points are finished the time follows from the work of unfinished points, or is None
         if the work is too little.

@@ -17,7 +17,7 @@ from ..watch import MakePosition, SolvePosition, SolveStopped
 POLL_SECONDS = 0.05
 """Seconds between two polls for messages and stop requests during a solve."""
 PLACE_SECONDS = 0.5
-"""Seconds after which a solve counts as long and progress is reported, and between two reports."""
+"""Seconds from the start of a solve to its first progress report, and between two reports."""
 STOP_SIGNALS = (signal.SIGTERM, signal.SIGUSR1, signal.SIGINT)
 """Signals that ask for a stop: `kill` or a scheduler's end, a scheduler's warning, and Ctrl-C."""
 GRACE_SECONDS = 0.3
@@ -62,7 +62,7 @@ class StopRequest:
             signal.signal(number, signal.SIG_IGN)
 
     def take(self, name: str) -> None:
-        """Adopts a request to another rank, by the name of the signal."""
+        """Adopts the stop request that another rank received; name: name of the signal."""
         self.name = name
 
     def _note(self, number: int, _: FrameType | None) -> None:
@@ -73,7 +73,7 @@ class StopRequest:
 
 
 class Claims(Protocol):
-    """Communication between ranks during a solve."""
+    """Interface for communication between ranks during a solve."""
 
     def between_points(self) -> None: ...
 
@@ -81,7 +81,7 @@ class Claims(Protocol):
 
 
 class NoClaims:
-    """Claims of a lone rank; `shown` receives the progress of a long solve."""
+    """Communication of a rank that runs alone; `shown` displays the progress of a long solve."""
 
     def __init__(self, shown: Callable[[SolvePosition], object] | None = None):
         self.shown = shown
@@ -89,13 +89,13 @@ class NoClaims:
     def between_points(self) -> None: ...
 
     def report_place(self, place: SolvePosition) -> None:
-        """Shows the progress within a long point if `shown` is given."""
+        """Displays progress within a long point, if `shown` is given."""
         if self.shown:
             self.shown(place)
 
 
 class RankListener:
-    """Listener of the solves of a rank; every unit gets a new listener."""
+    """Listener that a solver calls during the solve of one unit, on any rank."""
 
     def __init__(self, claims: Claims, stop: StopRequest, name: Callable[[], str] = str):
         """name: describes the unit in words."""
@@ -106,7 +106,7 @@ class RankListener:
         self.next_report = time.monotonic() + PLACE_SECONDS
 
     def __call__(self, place: MakePosition) -> None:
-        """Receives a report of a solver; raises Stopped if the solve has to end here."""
+        """Receives the progress `place` of a solver; raises Stopped if a stop request ends the solve."""
         now = time.monotonic()
         if now >= self.next_report and (here := place()).words:
             self.next_report = now + PLACE_SECONDS

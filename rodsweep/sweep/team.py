@@ -12,9 +12,9 @@ from ..errors import BUG_STATUS, EnvironmentIncomplete, Refusal, import_refusal
 T = TypeVar("T")
 S = TypeVar("S")
 SHORTEST_PAUSE = 1e-4
-"""First pause, in seconds, between two tests whether all ranks have arrived."""
+"""Initial pause, in seconds, between two tests of whether all ranks have reached a barrier."""
 LONGEST_PAUSE = 1e-2
-"""Longest pause, in seconds; pauses double until then."""
+"""Longest pause, in seconds, between two such tests; each pause is twice the previous pause up to here."""
 
 
 class Team:
@@ -41,7 +41,7 @@ class Team:
         return self.rank == 0
 
     def on_first(self, work: Callable[[], T]) -> T:
-        """Result of `work` on the first rank, returned on every rank; every rank raises a refusal."""
+        """Calls `work` on the first rank; every rank returns the result, or raises the refusal."""
         outcome: Any = None
         if self.first:
             try:
@@ -63,7 +63,7 @@ class Team:
             pause = min(2 * pause, LONGEST_PAUSE)
 
     def require_on_all_ranks(self, work: Callable[[], object]) -> None:
-        """Does `work` on every rank; all ranks raise the refusal of any rank."""
+        """Calls `work` on every rank; if any rank raises a refusal, all ranks raise the same refusal."""
         refusal: Refusal | None = None
         try:
             work()

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from rodsweep.sweep.claims import (
     ANSWER_TAG,
-    PLACE_TAG,
+    PROGRESS_TAG,
     REQUEST_TAG,
     STOP_TAG,
     FirstRankClaims,
@@ -234,7 +234,7 @@ def test_a_rank_that_is_asked_to_stop_stops_all(monkeypatch, asked):
 def test_progress_counts_what_is_done_of_every_long_point_until_it_is_reported(monkeypatch):
     mail, shown = Mail(), []
     first = claims(mail, [(0, 9)], monkeypatch, lambda words, begun: shown.append((words, begun)))
-    mail.post(PLACE_TAG, SolvePosition("branch", 0.5))
+    mail.post(PROGRESS_TAG, SolvePosition("branch", 0.5))
     first.between_points()
     first.report_place(SolvePosition("mesh"))  # its share is not known
     first.report_place(SolvePosition("cycle", 0.25))

@@ -16,11 +16,12 @@ from ...model.arm.section import NoWall
 from ...model.parameters import PARAMETERS
 
 LOAD_AXES = (*LOADS, *RELATIVE)
-"""Keys of the load. An arm has at most one load."""
+"""Config keys of the load, absolute or relative to flutter. An arm has at most one of them."""
 AXIS_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
-"""The affected parameter, by name of each quantity that affects exactly one parameter."""
+"""Parameter that a quantity changes, by name of every quantity that changes exactly one parameter."""
 CHANGED_PARAMETER = AXIS_OF | dict.fromkeys(RELATIVE, "F")
-"""The parameter changed by an axis, in a grid over an arm's quantities."""
+"""Parameter that an axis changes in a grid over an arm's quantities, by name of the axis, where there is only
+one."""
 STORED_ALONG = AXIS_OF | {"drag": "gamma3", "tau2": "gamma3"}
 """The parameter along whose axis a quantity or unit with several values is stored."""
 FLUID = ("viscosity", "fluid_density", "density_difference")
@@ -40,11 +41,12 @@ ALL_BUT_LOAD = (
 )
 """All quantities of an arm except the load."""
 SLENDER, NOT_SLENDER, CRUSHED, NO_WALL, NO_FLUTTER, FLUTTER_UNKNOWN = 0, 100, 101, 102, 103, 104
-"""Codes for whether a rod covers a point: covered; arm too short for the drag of slender bodies; F reaches
+"""Codes of a point of an arm: the rod model applies; arm too short for the drag of slender bodies; F reaches
 k1; bore as wide as the arm; load relative to a flutter threshold that does not exist, or that the search does
-not find. All but the first are statuses, numbered above every task's own statuses."""
+not find. All but SLENDER are statuses, numbered above the statuses of every task."""
 MOST_POINTS = 1_000_000
-"""Maximum number of points of a grid over an arm's quantities, whose parameters are all kept in memory."""
+"""Maximum number of points of a grid over an arm's quantities, since the parameters of all points are held in
+memory."""
 
 
 def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
@@ -61,12 +63,12 @@ def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
 
 
 def parameter_of_axis(axis: str) -> str:
-    """The only parameter that an axis of an arm's grid changes; "" for several parameters or none."""
+    """Parameter that an axis of a grid over an arm's quantities changes; "" for several or no parameter."""
     return axis if axis in PARAMETERS else CHANGED_PARAMETER.get(axis, "")
 
 
 STATUS_OF_ERROR = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
-"""Status of a point by the error of its arm."""
+"""Status of a point by class of the error that its arm raises."""
 
 
 class UncoveredArm(ValueError):

@@ -37,7 +37,7 @@ def _axis_in_si(name: str, value: Any) -> Axis:
 
 
 def _without_unit(name: str, span: dict[str, Any]) -> str:
-    """Remark on a range with a unit at one end only; else ""."""
+    """Sentence for a message about a range that has a unit at one end only; "" for any other range."""
     ends = [end for end in ("start", "stop") if end in span]
     bare = [end for end in ends if not isinstance(span[end], str)]
     unit = UNITS[name][0]
@@ -45,7 +45,7 @@ def _without_unit(name: str, span: dict[str, Any]) -> str:
 
 
 def _read(name: str, value: Any) -> float:
-    """A quantity in SI units; ValueError if the value is no quantity."""
+    """Converts the value of the quantity `name` to SI units; ValueError if the value is no quantity."""
     if not isinstance(value, str):
         return as_number(value)
     try:
@@ -80,7 +80,7 @@ def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _shares(value: Any) -> tuple[list[float | None], bool]:
-    """(numbers of a load as multiples of the flutter load, None if not relative; whether any is relative)."""
+    """(values of a load divided by the flutter load, or None; whether any value is relative to flutter)."""
     shares = [None if one is None else share_of_flutter(one) for one in _each(value)]
     return shares, any(share is not None for share in shares)
 
@@ -106,13 +106,13 @@ def drags_written(values: list[float]) -> list[str]:
 
 
 def typed_unit(name: str, axis: Axis) -> str:
-    """Unit typed by the user, the first of several; the SI unit if none was typed."""
+    """Unit in which the user typed the first value of a quantity; the SI unit if the user typed none."""
     units = [split_quantity(value)[1] for value in _each(axis.written) if isinstance(value, str)]
     return next(filter(None, units), UNITS[name][0])
 
 
 def given_text(quantities: Mapping[str, Axis]) -> str:
-    """Quantities of an arm in words, in the typed units, with a remark on quantities given without a unit."""
+    """Sentence with the quantities of an arm in the typed units; names quantities given without a unit."""
     words = []
     bare = []
     for name, axis in quantities.items():
@@ -131,7 +131,7 @@ def given_text(quantities: Mapping[str, Axis]) -> str:
 
 
 def _each(written: Any) -> list[Any]:
-    """Values that a user wrote for a quantity; the ends of a range."""
+    """Values of a quantity as the user wrote them: the numbers of a list, or both ends of a range."""
     if isinstance(written, Mapping):
         return [written.get(end) for end in RANGE_ENDS]
     return list(written) if isinstance(written, list | tuple) else [written]
@@ -148,7 +148,7 @@ def _schema() -> dict[str, Any]:
 
 
 NAMED_DRAG = {"enum": list(DRAGS)}
-"""JSON schema of one drag."""
+"""JSON schema of the name of one estimate of drag."""
 Quantities = Annotated[Axis, BeforeValidator(as_quantities), WithJsonSchema(_schema())]
 Drags = Annotated[
     Axis,

@@ -75,7 +75,7 @@ class ArmSection(StrictSection):
     @model_validator(mode="before")
     @classmethod
     def _with_shares(cls, given: Any) -> Any:
-        """Moves a load relative to flutter to its own key, and adds the length of segments."""
+        """Moves a load relative to flutter to its key in RELATIVE; adds `length`, the sum of the segments."""
         return with_length(with_relative_load(given)) if isinstance(given, dict) else given
 
     @model_validator(mode="after")
@@ -109,7 +109,7 @@ class ArmSection(StrictSection):
 
     @property
     def load_axis(self) -> str | None:
-        """The given key of LOAD_AXES, None without a load."""
+        """Name of the key of LOAD_AXES that is given; None without a load."""
         return next((name for name in LOAD_AXES if getattr(self, name) is not None), None)
 
     @property
@@ -152,7 +152,7 @@ class ArmSection(StrictSection):
             self.made(self.firsts, loaded=True)
 
     def refuse_misuse(self, forced: bool, beside: Collection[str]) -> None:
-        """Raises ValueError unless the task has exactly the load it needs, and every axis changes something.
+        """Raises ValueError unless the load is what the task needs, and every axis changes a result.
 
         forced: whether F is a parameter of the task. beside: parameters given beside the arm.
         """
@@ -213,7 +213,7 @@ class ArmSection(StrictSection):
 
     @property
     def firsts(self) -> dict[str, float]:
-        """First value of every given quantity."""
+        """First value of every given quantity, by name."""
         return {name: float(axis.array()[0]) for name, axis in self.given.items()}
 
     def sections(self) -> Iterator[dict[str, float]]:
@@ -223,10 +223,11 @@ class ArmSection(StrictSection):
             yield dict(zip(names, map(float, values), strict=True))
 
     def made(self, values: Mapping[str, float], loaded: bool = False) -> SlenderArm:
-        """Arm with the given values of its quantities, with its load or without; ValueError for invalid
-        values.
+        """Makes the arm with `values` of its quantities, and with its load if `loaded`.
 
-        UncoveredArm if no rod covers the arm. A load relative to flutter is left out.
+        A load relative to flutter is omitted.
+
+        Raises ValueError for invalid values, UncoveredArm for an arm to which the rod model does not apply.
         """
         section: dict[str, Any] = {name: value for name, value in values.items() if name in ALL_BUT_LOAD}
         has_load = loaded and self.load_axis in LOADS

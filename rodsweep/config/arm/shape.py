@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from .section import ArmSection
 
 OF_MATERIAL = ("segments", "law", "section")
-"""Keys of an arm with the content of the section `material` of a dimensionless rod."""
+"""Keys of an arm that replace the section `material` of a dimensionless rod."""
 SHAPE_KEYS = ("tip_radius", "segments")
 """Keys of an arm that varies along its length."""
 RUBBER_POISSON = 0.5
-"""Poisson's ratio of rubber, which a section needs in order to swell."""
+"""Poisson's ratio of incompressible rubber; a swelling section requires this ratio."""
 
 
 def as_segments(value: Any) -> tuple[str, ...] | None:
-    """Segments as texts; ValueError if the value is no list of segments."""
+    """Converts the key `segments` to texts, one per segment; ValueError if `value` is no list of segments."""
     if value is None:
         return None
     try:
@@ -35,7 +35,7 @@ def as_segments(value: Any) -> tuple[str, ...] | None:
 
 
 def with_length(given: dict[str, Any]) -> dict[str, Any]:
-    """Keys of an arm, with the sum of its segments where no length is given."""
+    """Copy of the keys of an arm; a missing `length` becomes the sum of the lengths of the segments."""
     if given.get("segments") is None or given.get("length") is not None:
         return given
     texts = as_segments(given["segments"]) or ()
@@ -45,7 +45,7 @@ def with_length(given: dict[str, Any]) -> dict[str, Any]:
 
 
 def build_of(arm: "ArmSection") -> Build:
-    """Law of all arms, profile of the first with a rod; ValueError for several profiles in a grid."""
+    """Law of all arms and profile of the first arm with a rod; ValueError if profiles differ in a grid."""
     alike = Build(arm.law or STANDARD.law, arm.section or STANDARD.section)
     if all(getattr(arm, name) is None for name in SHAPE_KEYS):
         return alike
@@ -65,7 +65,7 @@ def builds_of(arm: "ArmSection") -> Iterator[Build]:
 
 
 def tapers_of(arm: "ArmSection") -> set[float]:
-    """Tip radius over base radius of all arms, as a cone has it; {1.0} without a tip radius."""
+    """Distinct ratios of tip radius to base radius of all arms; {1.0} without a tip radius."""
     if arm.tip_radius is None or arm.radius is None:
         return {1.0}
     pairs = product(arm.tip_radius.array().tolist(), arm.radius.array().tolist())

@@ -32,7 +32,7 @@ def in_sentences(example: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 def refuse_misfit(
     asked: Signature, example: str, values: tuple[object, ...], named: Mapping[str, object]
 ) -> None:
-    """Raises InputError for the first unknown, repeated, surplus or missing argument."""
+    """Raises InputError for the first unknown, repeated, surplus or missing argument of a call."""
     ours = list(asked.parameters.values())
     by_place = [p.name for p in ours if p.kind is Parameter.POSITIONAL_OR_KEYWORD]
     if len(values) > len(by_place):
@@ -52,5 +52,5 @@ def refuse_misfit(
 
 
 def unknown(name: str, known: list[str]) -> InputError:
-    """InputError for an unknown argument, with the nearest known name."""
+    """InputError that names an unknown argument and suggests the most similar known argument."""
     return InputError(f"unknown key {name}; {hint_of(name, known)}")

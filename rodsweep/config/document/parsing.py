@@ -22,9 +22,9 @@ MAX_TEXT_LENGTH = 1000
 HDF5_SIGNATURE = b"\x89HDF"
 """First bytes of an HDF5 file, hence of a result file."""
 TABLE_ENDINGS = (".csv", ".tsv")
-"""Endings of lists of points and of the tables written by `rodsweep export`."""
+"""File suffixes of lists of points and of tables that `rodsweep export` writes; no config has them."""
 MAX_DEPTH = 20
-"""Maximum depth of nested lists and mappings."""
+"""Maximum depth of nested lists and mappings; a deeper document is refused."""
 
 
 def read_text(path: Path) -> str:
@@ -55,7 +55,7 @@ def read_text(path: Path) -> str:
 
 
 def parse(text: str, where: str) -> Any:
-    """Tree of a YAML text; InputError, beginning with `where`, for anything not allowed in a config."""
+    """Parses YAML to mappings and lists; InputError, beginning with `where`, for forbidden YAML."""
     if any(line.startswith("%") for line in text.splitlines()):
         raise InputError(f"{where}: directives (%...) are not allowed in a config")
     yaml = YAML(typ="safe", pure=True)

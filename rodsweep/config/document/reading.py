@@ -56,7 +56,7 @@ def validated(tree: dict[str, Any]) -> Config:
 
 
 def canonical(config: Config) -> dict[str, Any]:
-    """The config with all defaults and axes of parameters, as JSON-compatible values; inf becomes "inf"."""
+    """Resolved config: all keys, defaults and parameter axes as JSON-compatible values; inf becomes "inf"."""
     tree = config.model_dump(mode="json", exclude_none=True)
     if config.parameters.arm is not None:
         tree["parameters"] |= {name: axis.resolved for name, axis in config.parameters.axes.items()}
@@ -64,7 +64,7 @@ def canonical(config: Config) -> dict[str, Any]:
 
 
 def config_of(resolved: dict[str, Any]) -> Config:
-    """The config from which `canonical` made `resolved`; ValueError if this version does not accept it."""
+    """Inverse of `canonical`; ValueError if this version does not accept the config `resolved`."""
     try:
         task = resolved["task"]
         section: Any = CONFIGS[task].model_fields[task].annotation
@@ -85,7 +85,7 @@ def config_of(resolved: dict[str, Any]) -> Config:
 
 
 def _axes_of(section: dict[str, Any]) -> dict[str, Any]:
-    """Keys of a resolved section, with its axes as `Axis`."""
+    """Keys of a resolved section; converts the values of axes to `Axis`."""
     return {
         name: axis_of(value) if name != "arm" and isinstance(value, dict) else value
         for name, value in section.items()
@@ -93,7 +93,7 @@ def _axes_of(section: dict[str, Any]) -> dict[str, Any]:
 
 
 def _without_those_of_the_arm(parameters: dict[str, Any], in_diagram: bool) -> dict[str, Any]:
-    """Parameters without the axes that `canonical` made from the arm; in_diagram: for a phase diagram."""
+    """Removes the axes that `canonical` made from an arm; in_diagram: whether the task is phase_diagram."""
     arm = ArmSection.model_validate(parameters["arm"])
     made = arm.grid_axes() if in_diagram or arm.is_grid else {}
     return {
@@ -104,7 +104,7 @@ def _without_those_of_the_arm(parameters: dict[str, Any], in_diagram: bool) -> d
 
 
 def yaml_of(tree: dict[str, Any]) -> str:
-    """Text of a config file with a given tree."""
+    """YAML text of a config file with the keys and values `tree`."""
     text = StringIO()
     yaml = YAML()
     yaml.default_flow_style = None  # lists of numbers on one line
@@ -113,7 +113,7 @@ def yaml_of(tree: dict[str, Any]) -> str:
 
 
 def text_of(config: Config) -> str:
-    """Text of a config file: only keys that differ from their defaults, axes in the user's form."""
+    """YAML text of a config: only keys that differ from defaults, axes in the user's notation."""
     given = config.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
     axes = {name: _written(value) for name, value in given["parameters"].items()}
     options = {
@@ -125,7 +125,7 @@ def text_of(config: Config) -> str:
 
 
 def _written(axis: Any) -> Any:
-    """A resolved axis, or the section of an arm, in the user's form: a number, a list or a range."""
+    """Value of a resolved axis or arm section in the user's notation: a number, a list or a range."""
     if not isinstance(axis, dict):
         return axis
     if "length" in axis:
@@ -159,7 +159,7 @@ def _override(tree: dict, override: str) -> None:
 
 
 def _task(tree: dict) -> str:
-    """Task named by the config; InputError for an unknown task or a section of another task."""
+    """Name of the task in a config; InputError for an unknown task or the section of another task."""
     known = words(tuple(CONFIGS), "or")
     if "task" not in tree:
         others = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]

@@ -15,12 +15,12 @@ from ..values import named, short
 
 KEY_SHOWN = 100
 """Maximum length of a key in a message, in characters."""
-LETTERS_A_SLIP = 3
-"""Minimum number of letters of a key per typing error; a key with more typing errors resembles no name."""
-MOST_MEANT = 4
-"""Maximum number of suggested keys. If more are equally near, all known keys are listed instead."""
-LONG_PART = 4
-"""Minimum letters of a part of a key that identifies the key, such as `density` for `fluid_density`."""
+LETTERS_PER_TYPING_ERROR = 3
+"""Minimum number of letters per typing error for two keys to be similar: one error in three letters."""
+MAX_SUGGESTIONS = 4
+"""Maximum number of suggested keys. If more are equally similar, the message lists all known keys."""
+MIN_PART_LETTERS = 4
+"""Minimum number of letters of a part that suggests a key, such as `density` for `fluid_density`."""
 
 
 def sentence_of(config: type[Config], problem: Any) -> str:
@@ -49,21 +49,21 @@ def sentence_of(config: type[Config], problem: Any) -> str:
 
 
 def hint_of(key: str, known: Sequence[str], there_are: str = "known keys are") -> str:
-    """Hint for an unknown key: the keys it may mean, or else all known keys."""
+    """Hint for a message about an unknown key: the most similar known keys, or else all known keys."""
     close = nearest(key, known)
     return f"did you mean {words(tuple(close), 'or')}?" if close else f"{there_are} {', '.join(known)}"
 
 
 def nearest(key: str, known: Sequence[str]) -> list[str]:
-    """Known keys nearest to an unknown key, in their order; empty if no key is near.
+    """Known keys most similar to an unknown key, in the order of `known`; empty if no key is similar.
 
-    A known key is near if the unknown key differs only in capitals and underscores, is the beginning or a
+    A known key is similar if the unknown key differs only in capitals and underscores, is the beginning or a
     long part of the known key, or has at most one typing error in three letters.
     """
     near = [(slips, name) for name in known if (slips := _slips(_plain(key), _plain(name))) is not None]
     least = min((slips for slips, _ in near), default=0)
     nearest_ones = [name for slips, name in near if slips == least]
-    return nearest_ones if key and len(nearest_ones) <= MOST_MEANT else []
+    return nearest_ones if key and len(nearest_ones) <= MAX_SUGGESTIONS else []
 
 
 def _plain(key: str) -> str:
@@ -71,16 +71,16 @@ def _plain(key: str) -> str:
 
 
 def _slips(key: str, name: str) -> float | None:
-    """Number of typing errors between a key and a name, 0.5 if the key is a part of the name; None if far."""
+    """Number of typing errors that turn `name` into `key`; 0.5 if `key` is a part; None if not similar."""
     if key == name:
         return 0
-    if name.startswith(key) or (len(key) >= LONG_PART and key in name):
+    if name.startswith(key) or (len(key) >= MIN_PART_LETTERS and key in name):
         return 0.5
     longest = max(len(key), len(name))
-    if LETTERS_A_SLIP * abs(len(key) - len(name)) > longest:  # the edit distance is no smaller
+    if LETTERS_PER_TYPING_ERROR * abs(len(key) - len(name)) > longest:  # the edit distance is no smaller
         return None
     distance = _edits(key, name)
-    return distance if LETTERS_A_SLIP * distance <= longest else None
+    return distance if LETTERS_PER_TYPING_ERROR * distance <= longest else None
 
 
 def _edits(a: str, b: str) -> int:
@@ -98,7 +98,7 @@ def _edits(a: str, b: str) -> int:
 
 
 def places_of(config: type[Config], location: Sequence[str]) -> list[str]:
-    """Places in other sections where an unknown key would be known."""
+    """Full names of known keys of other sections with the same last name as the unknown key `location`."""
     task = str(get_args(config.model_fields["task"].annotation)[0])
     found = []
     for section in ((), ("parameters",), (task,), ("material",), ("parameters", "arm")):
@@ -108,12 +108,12 @@ def places_of(config: type[Config], location: Sequence[str]) -> list[str]:
 
 
 def dotted(location: Sequence[str]) -> str:
-    """A place in the config in the notation of --set."""
+    """Full name of a key in the notation of --set, like "parameters.arm.length"."""
     return named(".".join(location), KEY_SHOWN)
 
 
 def _section(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]:
-    """Class of the section of a config in which a place, given by the names of keys, lies."""
+    """Class of the innermost section of a config on the path `location`, a tuple of key names."""
     section: type[BaseModel] = config
     for name in location:
         kind = model_of(section.model_fields[name])
@@ -124,7 +124,7 @@ def _section(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]
 
 
 def model_of(field: FieldInfo) -> Any:
-    """Type of a key, without the None of an optional key."""
+    """Type of the values of a key; an optional key has its type without None."""
     kinds = [kind for kind in get_args(field.annotation) if kind is not NoneType]
     return kinds[0] if get_origin(field.annotation) is UnionType and len(kinds) == 1 else field.annotation
 

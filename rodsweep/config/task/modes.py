@@ -9,7 +9,7 @@ from ..values import StrictSection
 
 
 class ModesOptions(StrictSection):
-    """Number of modes at each point, their nodes, and whether transient growth is computed."""
+    """Options of the task modes: modes per point, nodes per mode, and whether to compute transient growth."""
 
     modes: Modes = 2
     """Number of leading modes at each point."""

@@ -55,9 +55,9 @@ class SlenderArm:
     density_difference: Given | None = None
     drag: str = DRAGS[0]
     si: SimpleNamespace = field(init=False, repr=False, compare=False)
-    """Each quantity of UNITS as a number in SI; nan where it is not given."""
+    """Each quantity of UNITS as a number in SI units; nan for a quantity that is not given."""
     pieces: tuple[ArmSegment, ...] = field(init=False, repr=False, compare=False)
-    """The segments in SI units; empty without."""
+    """Segments of the arm in SI units, from the base; empty for an arm without segments."""
 
     def __post_init__(self) -> None:
         """Converts quantities to SI. Raises InputError for invalid quantities, NotSlender for a short arm."""
@@ -83,7 +83,7 @@ class SlenderArm:
 
     @cached_property
     def shape(self) -> Shape:
-        """The sections along the arm."""
+        """Cross-sections and Young's moduli along the arm, in SI units."""
         if self.pieces:
             own = self.si.young
             return in_segments([(L, each, own if E is None else E) for L, each, E in self.pieces])
@@ -130,7 +130,7 @@ class SlenderArm:
 
     @property
     def crushing_force(self) -> float:
-        """The force that crushes the weakest section, in k3/L^2; inf where no force does."""
+        """Follower force that crushes the weakest section, in k3/L^2; inf if no force crushes it."""
         return self.build.crushing_share(self.taper) * self.k1
 
     @property
@@ -140,7 +140,7 @@ class SlenderArm:
 
     @property
     def share_of_flutter(self) -> float | None:
-        """Load divided by the flutter load, if the load is given in this way."""
+        """Load divided by the flutter load; None unless the user gave the load relative to flutter."""
         return None if self.load is None else share_of_flutter(getattr(self, self.load))
 
     def mass_at(self, station: Station) -> float:
@@ -182,27 +182,27 @@ class SlenderArm:
 
     @property
     def bending_stiffness(self) -> float:
-        """k3 = E I at the base, in N m^2 (Sec. III)."""
+        """Bending stiffness k3 = E I at the base, in N m^2 (Sec. III)."""
         return self.si.young * self.cross_section.second_moment
 
     @property
     def force_scale(self) -> float:
-        """k3/L^2, in N: the unit of F, k1 and k2, independent of drag."""
+        """Unit k3/L^2 of F, k1 and k2, in N; independent of drag."""
         return self.bending_stiffness / self.si.length**2
 
     @property
     def k1(self) -> float:
-        """k1 = E A L^2/k3 = A L^2/I (Sec. III and VI). Young's modulus cancels before rounding."""
+        """Stretch stiffness k1 = E A L^2/k3 = A L^2/I (Sec. III, VI). E cancels before rounding."""
         return self.cross_section.area * self.si.length**2 / self.cross_section.second_moment
 
     @property
     def k2(self) -> float:
-        """k2 = kappa G A L^2/k3; the paper's effective G is kappa G (Sec. III and VI; Cowper 1966)."""
+        """Shear stiffness k2 = kappa G A L^2/k3; the paper's G is kappa G (Sec. III, VI; Cowper 1966)."""
         return self.cross_section.shear_coefficient(self.poisson) / (2 * (1 + self.poisson)) * self.k1
 
     @property
     def F(self) -> float:
-        """F = p A L^2/k3 (Sec. IV and VI); InputError without a load or with a load relative to flutter."""
+        """Force F = p A L^2/k3 (Sec. IV, VI); InputError without load or for a load relative to flutter."""
         return self.tip_force / self.force_scale
 
     @cached_property
@@ -211,7 +211,7 @@ class SlenderArm:
         return self.shape.drags(self.shape.base, self.si.viscosity)
 
     def drags_along(self, drag: Drag) -> tuple[Drag, ...]:
-        """The drag at every station of the shape; `drag` is the drag at the base, an element of `drags`."""
+        """Drag at every station of the shape, for the estimate whose drag at the base is `drag`."""
         place = self.drags.index(drag)
         return tuple(self.shape.drags(each, self.si.viscosity)[place] for each in self.shape.stations)
 
@@ -221,29 +221,29 @@ class SlenderArm:
         return self.drags[DRAGS.index(self.drag)]
 
     def gamma3_with(self, drag: Drag) -> float:
-        """Dimensionless gamma3/(gamma2 L^2) of the drag `drag` (Sec. VI)."""
+        """Dimensionless rotational drag gamma3/(gamma2 L^2) with the drag `drag` (Sec. VI)."""
         return drag.rotational / (drag.across * self.si.length**2)
 
     def tau2_with(self, drag: Drag) -> float:
-        """Unit of time gamma2 L^4/k3 with the drag `drag`, in s (Sec. VI)."""
+        """Unit of time tau2 = gamma2 L^4/k3 with the drag `drag`, in s (Sec. VI)."""
         return drag.gamma2 * self.si.length**4 / self.bending_stiffness
 
     @property
     def gamma3(self) -> float:
-        """Dimensionless gamma3/(gamma2 L^2) (Sec. VI)."""
+        """Dimensionless rotational drag gamma3/(gamma2 L^2) of `own_drag` (Sec. VI)."""
         return self.gamma3_with(self.own_drag)
 
     @property
     def gamma1(self) -> float:
-        """Dimensionless gamma1/gamma2 (Sec. VI)."""
+        """Ratio of axial to normal drag, gamma1/gamma2, of `own_drag` (Sec. VI)."""
         return self.own_drag.axial / self.own_drag.across
 
     @property
     def tau2(self) -> float:
-        """The longest time scale gamma2 L^4/k3, in s (Sec. VI)."""
+        """Longest time scale tau2 = gamma2 L^4/k3 of the arm, in s; the unit of time (Sec. VI)."""
         return self.tau2_with(self.own_drag)
 
     @property
     def tau1(self) -> float:
-        """The shortest time scale, dimensional gamma3/k2, in s (Sec. VI)."""
+        """Shortest time scale tau1 = gamma3/k2, with dimensional gamma3 and k2, in s (Sec. VI)."""
         return self.tau2 * self.gamma3 / self.k2

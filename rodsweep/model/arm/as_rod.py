@@ -1,4 +1,5 @@
-"""An arm in SI units as the keys of a rod: its dimensionless parameters, and its section `material`."""
+"""Converts an arm in SI units to config keys of a dimensionless rod: the sections `parameters` and
+`material`."""
 
 from typing import Any
 
@@ -9,7 +10,7 @@ from .arm import SlenderArm
 
 
 def parameters_of(arm: SlenderArm) -> dict[str, float]:
-    """Parameters of an arm as a rod, by name; without F for an arm without load.
+    """Dimensionless parameters of the rod that describes an arm, by name; without F if the arm has no load.
 
     Raises InputError for a load relative to flutter, which needs a solve.
     """
@@ -19,7 +20,7 @@ def parameters_of(arm: SlenderArm) -> dict[str, float]:
 
 
 def material_of(arm: SlenderArm) -> dict[str, Any]:
-    """The keys of `material`, law, section and profile, that differ from their defaults."""
+    """Keys law, section and profile of the config section `material`; omits keys with default values."""
     build = arm.build
     words = {"law": (build.law, STANDARD.law), "section": (build.section, STANDARD.section)}
     material: dict[str, Any] = {name: own for name, (own, default) in words.items() if own != default}

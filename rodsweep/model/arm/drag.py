@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from math import log, pi
 
 LEAST_SLENDERNESS = 10.0
-"""Smallest length over radius. The logarithms of slender-body theory are meaningless for shorter arms."""
+"""Minimum ratio of length to radius. Slender-body theory is meaningless for shorter arms, which are refused.
+"""
 
 
 DRAGS = ("likeliest", "least", "most_rotational", "most_translational", "most")
@@ -17,7 +18,7 @@ DRAGS = ("likeliest", "least", "most_rotational", "most_translational", "most")
 has the least translational and rotational drag, `most` the most; `most_rotational` combines the most
 rotational with the least translational drag, `most_translational` the reverse."""
 RANGE_OF_DRAG = "range"
-"""Word for all members of DRAGS."""
+"""Value of the config key `drag` that stands for all estimates in DRAGS."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,25 +51,25 @@ class Drag:
 
 
 def cox(viscosity: float, slenderness: float) -> tuple[float, float]:
-    """(gamma1, gamma2) of a straight rigid cylinder (Cox 1970; Batchelor 1970); slenderness is L/a."""
+    """Drags (gamma1, gamma2) of a straight rigid cylinder (Cox 1970; Batchelor 1970); slenderness is L/a."""
     logarithm = log(2 * slenderness)
     return 2 * pi * viscosity / (logarithm - 1.5), 4 * pi * viscosity / (logarithm - 0.5)
 
 
 def gray_hancock(viscosity: float, slenderness: float) -> tuple[float, float]:
-    """(gamma1, gamma2) for waves of length 4 L, the longest of a clamped rod (Gray and Hancock 1955)."""
+    """Drags (gamma1, gamma2) for waves of length 4 L, the longest of a clamped rod (Gray, Hancock 1955)."""
     logarithm = log(8 * slenderness)
     return 2 * pi * viscosity / (logarithm - 0.5), 4 * pi * viscosity / (logarithm + 0.5)
 
 
 def lighthill(viscosity: float, slenderness: float) -> tuple[float, float]:
-    """(gamma1, gamma2) for helical waves of length L, near the wavelength of flutter (Lighthill 1976)."""
+    """Drags (gamma1, gamma2) for helical waves of length L, about as in flutter (Lighthill 1976)."""
     logarithm = log(0.18 * slenderness)
     return 2 * pi * viscosity / logarithm, 4 * pi * viscosity / (logarithm + 0.5)
 
 
 def least_rotational(viscosity: float, half_height: float) -> float:
-    """gamma3 = pi eta a^2: each section of a long cylinder turns about a diameter.
+    """Lowest estimate of rotational drag: gamma3 = pi eta a^2 of sections turning about a diameter.
 
     The surface velocity -Omega x2 is axial; the flow outside is harmonic and decays like 1/r, and its
     traction eta Omega cos(phi) has the torque gamma3 Omega. For an ellipse, a is half the height.
@@ -77,12 +78,12 @@ def least_rotational(viscosity: float, half_height: float) -> float:
 
 
 def most_rotational(viscosity: float, half_height: float) -> float:
-    """gamma3 = 4 pi eta a^2: drag of rotation about the cylinder's axis (Powers 2010), for all rotations."""
+    """Highest estimate of rotational drag: gamma3 = 4 pi eta a^2 of rotation about the axis (Powers 2010)."""
     return 4 * pi * viscosity * half_height**2
 
 
 def range_of_drag(viscosity: float, length: float, radius: float, half_height: float) -> tuple[Drag, ...]:
-    """Estimates of the drag of one arm, in the order of DRAGS; the geometric mean gamma3 comes first."""
+    """Estimates of the drag of one arm, in the order of DRAGS; the first has the geometric mean gamma3."""
     slenderness = length / radius
     least = least_rotational(1.0, half_height)
     most = most_rotational(1.0, half_height)

@@ -24,7 +24,7 @@ from .unsteady_drag import frequency_of_phase, unsteady_phase
 GRAVITY = 9.81
 """Acceleration of gravity, in m/s^2."""
 DOUBTFUL_FROM = 0.1
-"""Fraction of its limit above which an effect makes results doubtful."""
+"""Ratio of an effect to its limit above which results are called doubtful."""
 INERTIA_LIMIT = 0.1
 """Limit of the phase lag of drag by inertia, in radians. Inertia lowers the flutter threshold of a filament
 by 6.5 % at a phase of 0.1, as much as the uncertainty of drag; by 0.7 % at 0.01; by 36 % at 1."""
@@ -37,7 +37,8 @@ WALL_LIMIT = 0.1
 """Limit of the fraction of bending stiffness that a tube loses in wide beating, as its section flattens. A
 tube of infinite length buckles after losing a third of its stiffness."""
 WIDE_CURVATURE = 6.0
-"""Largest curvature of a beating arm times its length, over the tip's amplitude in lengths. Cycles from 2 %
+"""Ratio of (largest curvature times length) of a beating arm to (amplitude of the tip over length). Cycles
+from 2 %
 to 50 % above flutter have 5.8 to 6.7."""
 REYNOLDS_LIMIT = 1.0
 """Reynolds number of wide beating at which inertia of the flow past the section equals viscous drag."""
@@ -46,11 +47,11 @@ SELF_BUCKLING = 7.837
 FLUTTER_WAVENUMBER = 4.694
 """Wavenumber times length of the second bending mode of a clamped rod, the approximate shape of flutter."""
 HALF_LENGTH = 0.5
-"""Amplitude of the tip in wide beating, over the length of the arm."""
+"""Amplitude of the tip in wide beating, in units of the length of the arm."""
 
 
 class Validity(IntEnum):
-    """Whether the model, which neglects an effect, applies. Result files store these integers."""
+    """Whether the model applies although it neglects an effect. Result files store the integers."""
 
     applies = 0
     doubtful = 1
@@ -59,20 +60,21 @@ class Validity(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Effect:
-    """One neglected effect; arrays have the common shape of the motion's rates, forces and amplitudes."""
+    """One neglected effect; arrays have the common shape of rate, F and amplitude in `effects_of`."""
 
     name: str
     value: Array
     """Ratio of the neglected effect to an effect of the model; nan for an arm at rest."""
     limit: float
     viscosity_factor: Array
-    """Viscosity at which `value` equals `limit`, over the fluid's; inf if no viscosity is enough."""
+    """Viscosity at which `value` equals `limit`, divided by the viscosity of the fluid; inf if no viscosity
+    suffices."""
     of_cycles_only: bool = False
     """Whether the effect changes cycles only, not thresholds."""
 
     @property
     def excess(self) -> Array:
-        """Value over limit, of the shape of `value`; the model does not apply above 1."""
+        """Ratio `value`/`limit`, of the shape of `value`; the model does not apply above 1."""
         return self.value / self.limit
 
     @property
@@ -115,7 +117,7 @@ def effects_of(
 
 
 def worst_validity(effects: Iterable[Effect], *, of_cycles: bool) -> NDArray[np.int8]:
-    """Worst `Validity`, integers of the effects' shape; `of_cycles` includes effects on cycles only."""
+    """Worst `Validity` of all effects, integers of their shape; of_cycles: include effects on cycles only."""
     counted = (effect.validity for effect in effects if of_cycles or not effect.of_cycles_only)
     return np.maximum.reduce(list(counted))
 
@@ -126,7 +128,7 @@ def least_drag(arm: SlenderArm) -> Drag:
 
 
 def fastest_rate(arm: SlenderArm, frequency: ArrayLike) -> Array:
-    """Converts a frequency, of any shape, from rad/tau2 to rad/s, with the least drag of the arm's range."""
+    """Converts a frequency, any shape, from rad/tau2 to rad/s; tau2 is that of the arm's least drag."""
     return np.asarray(frequency, float) / arm.tau2_with(least_drag(arm))
 
 

@@ -52,7 +52,8 @@ QUANTITIES = {
 UNITS = {name: (each.unit, each.example) for name, each in QUANTITIES.items() if each.example}
 """(SI unit, example) of each quantity with a unit."""
 RELATIVE = {f"{load}_over_flutter": load for load in LOADS}
-"""Relative load to load. A relative load is divided by the load of first flutter with the likeliest drag."""
+"""Name of the load by name of its relative load, the load divided by its value at first flutter with the
+likeliest drag."""
 SECTION_SIDES = ("radius", "inner_radius", "tip_radius"), ("width", "height")
 """Quantities that define a round section, and quantities that define a rectangular section."""
 ARM_UNITS = {
@@ -62,9 +63,9 @@ ARM_UNITS = {
 }
 """Units of time, force and pressure that an arm defines, by the property of `SlenderArm`."""
 SCALE_OF = {load: f"{load}_scale" for load in LOADS}
-"""Name of the arm's quantity that makes F = 1, for each load."""
+"""Name of the unit of each load: the value of the load at which F = 1."""
 ALL_QUANTITIES = QUANTITIES | ARM_UNITS
-"""All variables of an arm in a result file, apart from its parameters as a rod."""
+"""All variables of an arm in a result file, except its dimensionless parameters."""
 
 
 def number_in_si(name: str, given: Given | None) -> float:

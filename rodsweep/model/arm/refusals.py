@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from .arm import SlenderArm
 
 CRUSHED_FROM = 1 - 1e-14
-"""Fraction of the crushing force above which F counts as crushing: conversion of units rounds."""
+"""Ratio of F to the crushing force from which the arm counts as crushed; below 1 because unit conversion
+rounds."""
 SAME_LENGTH = 1e-9
 """Relative difference between a given length and the sum of the segments that counts as rounding error."""
 INCOMPRESSIBLE = 0.5
@@ -63,7 +64,7 @@ def refuse_words(arm: "SlenderArm") -> None:
 
 
 def refuse_other_sets(arm: "SlenderArm") -> None:
-    """Raises InputError unless length, material, fluid and one shape are given, and at most one load."""
+    """Raises InputError unless an arm has length, material, fluid, exactly one shape and at most one load."""
     if arm.segments is not None:
         _refuse_beside_segments(arm)
     else:

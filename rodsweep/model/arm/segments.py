@@ -15,13 +15,13 @@ SEGMENT_KEYS = ("length", "radius", "inner_radius", "young")
 EXAMPLE = "4 cm: radius 6 mm, young 80 kPa"
 """Text of a valid segment, for messages."""
 PART = re.compile(r"\s*([A-Za-z][A-Za-z_ -]*?)\s*=?\s*([+-]?[\d.].*?)\s*")
-"""Matches name and quantity of one part of a segment, like "radius 6 mm"."""
+"""Matches one quantity in the text of a segment, like "radius 6 mm": groups (name, value with unit)."""
 MAX_SEGMENTS = 100
 """Largest number of segments of an arm. Every segment needs at least one element of the mesh."""
 
 
 class ArmSegment(NamedTuple):
-    """A uniform piece of an arm, in SI units; young is None if the modulus of the arm applies."""
+    """A uniform segment of an arm, in SI units; young: None if the modulus of the arm applies."""
 
     length: float
     section: Circle | Tube
@@ -30,7 +30,7 @@ class ArmSegment(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class WrittenSegment:
-    """A segment's quantities by name, in the user's notation."""
+    """Quantities of one segment by name, in the user's notation, like {"radius": "6 mm"}."""
 
     given: Mapping[str, Given]
 
@@ -63,7 +63,7 @@ def segments_of(texts: Sequence[str]) -> tuple[ArmSegment, ...]:
 
 
 def written_segment(number: int, given: Any) -> WrittenSegment:
-    """A segment's quantities, from text or a mapping; InputError for an unknown or a missing key.
+    """Parses one segment from text or a mapping; InputError for an unknown or a missing key.
 
     number: position of the segment from the base, from 1, for messages.
     """

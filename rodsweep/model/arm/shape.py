@@ -17,14 +17,16 @@ from .drag import Drag, range_of_drag
 from .section import Circle, Section, Tube
 
 BUCKLING_POINTS = 400
-"""Midpoints in the integrals for the buckling weight. The relative error is 5e-5 for a uniform arm."""
+"""Number of midpoints of the quadrature for the buckling weight. The relative error is 5e-5 for a uniform
+arm."""
 RADIUS_STEP = 1.3
-"""Largest ratio of radii of a cone at neighbouring rows of its profile. The cubics between rows approximate
+"""Maximum ratio of the radii at neighbouring rows of the profile of a cone. The cubics between rows
+approximate
 the logarithms of the drag to 3e-4 for tapers from 0.01 to 100."""
 
 
 class Station(NamedTuple):
-    """A section of an arm. end: where its piece ends, from 0 at the base to 1 at the tip. young: in Pa."""
+    """Cross-section and modulus, in Pa, of a segment of an arm that ends at u = `end`."""
 
     end: float
     section: Section
@@ -106,7 +108,7 @@ class Shape:
         return Profile((0.0, *u[1:-1].tolist(), 1.0), tuple(rows))
 
     def _factors(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
-        """k1, k2, k3, gamma1, gamma2, gamma3 at a station, relative to the base."""
+        """Values of k1, k2, k3, gamma1, gamma2, gamma3 at a station, divided by the values at the base."""
         own, base = (np.array(self._of_station(each, poisson, drag)) for each in (station, self.base))
         with np.errstate(all="ignore"):
             return tuple((own / base).tolist())
@@ -126,7 +128,7 @@ class Shape:
         )
 
     def buckling_share(self, weight: float) -> float:
-        """The weight of the upright arm over its buckling weight. `weight`: weight per volume, in N/m^3.
+        """Ratio of the weight of the upright arm to its buckling weight; weight: per volume, in N/m^3.
 
         theta' = m/(E I) and m' = -W theta, with the weight W(u) beyond u, have a solution with theta(0) = 0
         and m(1) = 0 if 1 is an eigenvalue of theta -> int_0^u (1/(E I)) int_u^1 W theta.
@@ -144,7 +146,7 @@ class Shape:
         return float(np.abs(np.linalg.eigvals(turn @ moment)).max())
 
     def _at_midpoints(self) -> tuple[Array, Array, Array]:
-        """(h, A, E I) of short pieces of the arm, each (pieces,), in m, m^2, N m^2."""
+        """(length, A, E I) of the subintervals of the quadrature, each (subintervals,), in m, m^2, N m^2."""
         if self.taper != 1:
             u = (np.arange(BUCKLING_POINTS) + 0.5) / BUCKLING_POINTS
             radius = 1 - (1 - self.taper) * u
@@ -160,13 +162,13 @@ class Shape:
 
 
 def cone(length: float, radius: float, tip_radius: float, young: float) -> Shape:
-    """A solid cone; all lengths in m."""
+    """Shape of a solid circular cone; lengths in m, young in Pa."""
     ends = (Station(0.0, Circle(radius), young), Station(1.0, Circle(tip_radius), young))
     return Shape(length, ends, tip_radius / radius)
 
 
 def in_segments(pieces: Sequence[tuple[float, Circle | Tube, float]]) -> Shape:
-    """An arm made of pieces (length in m, section, young in Pa) from the base to the tip."""
+    """Shape of an arm in segments (length in m, section, young in Pa), from the base to the tip."""
     ends = np.cumsum([length for length, _, _ in pieces])
     shares = [*(ends[:-1] / ends[-1]).tolist(), 1.0]
     stations = [Station(u, section, young) for u, (_, section, young) in zip(shares, pieces, strict=True)]

@@ -7,12 +7,14 @@ from numpy.typing import ArrayLike
 
 from ...arrays import Array
 
-LEAST_S = 1e-6
-"""Smallest frequency of the flow, in eta k^2/rho: rounding error would hide the phase, 1e-6, of a smaller."""
-SECTIONS = 64
-"""Parts into which an interval of ln s is cut at once."""
-SECTIONINGS = 10
-"""Number of cuts: 2^60 parts of an interval 20 to 30 wide, down to rounding error, by few calls on arrays."""
+MIN_S = 1e-6
+"""Smallest frequency s, in eta k^2/rho; smaller values are raised to it, since rounding would hide their
+phase."""
+SUBINTERVAL_COUNT = 64
+"""Number of equal subintervals into which each refinement divides the interval of ln s."""
+REFINEMENT_COUNT = 10
+"""Number of refinements: 64^10 = 2^60 subintervals of an interval of width 20 to 30, down to rounding error.
+"""
 
 
 def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
@@ -27,18 +29,18 @@ def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
 
     and Lambda/(4 pi eta) in steady flow. The phase, of the shape of s, is 3 s/(4 Lambda) for small s.
     """
-    z = 1j * np.maximum(np.asarray(s, float), LEAST_S)
+    z = 1j * np.maximum(np.asarray(s, float), MIN_S)
     with np.errstate(invalid="ignore"):  # nan where nothing moves
         mobility = logarithm - 0.5 - (1 - 1 / z) * np.log1p(z) / 2
     return np.asarray(-np.angle(mobility))
 
 
 def frequency_of_phase(phase: float, logarithm: float) -> float:
-    """The s at which `unsteady_phase` equals `phase` < pi/2, by sections of ln s."""
-    low = log(LEAST_S)  # there the real part of the mobility is -1/2
+    """Frequency s at which `unsteady_phase` equals `phase` < pi/2, by repeated subdivision in ln s."""
+    low = log(MIN_S)  # there the real part of the mobility is -1/2
     high = 2 * logarithm
-    for _ in range(SECTIONINGS):
-        edges = np.linspace(low, high, SECTIONS + 1)
+    for _ in range(REFINEMENT_COUNT):
+        edges = np.linspace(low, high, SUBINTERVAL_COUNT + 1)
         below = np.count_nonzero(unsteady_phase(np.exp(edges[1:-1]), logarithm) < phase)  # the phase rises
         low = float(edges[below])
         high = float(edges[below + 1])

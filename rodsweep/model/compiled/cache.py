@@ -34,13 +34,13 @@ from .digest import FunctionText, digest, kernel_of, type_text
 VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__)
 """Versions that are part of the digest, because compiled code is valid for one combination only."""
 DIGEST_BYTES = 32
-"""Length of the SHA-256 checksum at the start of a file; it reveals a truncated file."""
+"""Length, in bytes, of the SHA-256 checksum at the start of a file; the checksum reveals a truncated file."""
 _first_parts: dict[FunctionType, FunctionText] = {}
 """Description of each function at first use: the state of the code that numba compiled."""
 
 
 class KernelCache(_Cache):
-    """The cache of one function, with the interface that numba's dispatchers and C callbacks expect."""
+    """Disk cache of the compiled code of one function, with the interface that numba expects of a cache."""
 
     def __init__(self, function: Any, options: Mapping[str, Any], directories: Sequence[Path]) -> None:
         """options: numba's compiler options. directories: all are read; the first writable one is written."""

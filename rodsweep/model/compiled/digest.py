@@ -21,9 +21,9 @@ from numba.core.dispatcher import Dispatcher
 from .settings import CompiledSettings
 
 VARIADIC = inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
-"""Flags of a code object that change the compiled code: *args and **kwargs."""
+"""Flags of a code object that enter the digest: whether the function takes *args or **kwargs."""
 READS = ("LOAD_GLOBAL", "LOAD_NAME")
-"""Instructions that read a global value."""
+"""Names of the bytecode instructions that read a global value."""
 PLAIN = (bool, int, float, complex, str, bytes, type(None), type(Ellipsis))
 """Types whose repr is equal in every process."""
 

@@ -21,24 +21,24 @@ class CompiledSettings:
 
     __slots__ = ()
     ranges: ClassVar[Mapping[str, tuple[float, float]]] = {}
-    """Limits between which a field must lie, for example for a proof to hold, by its name."""
+    """(smallest, largest) allowed value of a field, by name; a proof, for example, may need these bounds."""
 
     def __post_init__(self) -> None:
-        """Raises ValueError for a field that does not lie between its limits."""
+        """Raises ValueError for a field outside its bounds in `ranges`."""
         for name, (low, high) in self.ranges.items():
             if not low < getattr(self, name) < high:
                 raise ValueError(f"{name} = {getattr(self, name)} does not lie between {low} and {high}")
 
 
 class _SettingsType(types.Type):
-    """The numba type of one settings object, which the type holds."""
+    """Numba type of one settings object; the type stores the object, so that its fields are constants."""
 
     def __init__(self, settings: CompiledSettings) -> None:
         self.settings = settings
         super().__init__(name=repr(settings))
 
     def field(self, name: str) -> Any:
-        """(type, value) of a field; a whole number has its literal type, like a global number."""
+        """(numba type, value) of the field `name`; an integer has a literal type, as a global integer has."""
         value = getattr(self.settings, name)
         return maybe_literal(value) or typeof(value), value
 

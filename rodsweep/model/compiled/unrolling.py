@@ -25,7 +25,7 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 ALWAYS = {"range": range}
-"""Names, apart from the algebra, whose values are known when a loop is unrolled."""
+"""Names whose values are known when a loop is unrolled, in addition to the algebra."""
 
 
 class UnrolledOverAlgebra(Generic[P, R]):
@@ -151,7 +151,7 @@ class _Writer(ast.NodeVisitor):
         return made
 
     def _with(self, target: ast.expr, item: Any) -> "_Writer":
-        """The writer for one iteration of a loop, in which `target` has the value `item`."""
+        """Writer for the iteration of a loop in which the loop variable `target` has the value `item`."""
         return _Writer({**self.known, **_bound(target, item)}, self.shared)
 
     def _all(self, parts: Iterable[Any]) -> list[Any]:
@@ -182,7 +182,7 @@ class _Writer(ast.NodeVisitor):
 
 
 def _bound(target: ast.expr, item: Any) -> dict[str, Any]:
-    """Values that the loop target gets in the iteration for `item`, by name."""
+    """Values by name that the loop assigns to the names in `target` in the iteration with value `item`."""
     if isinstance(target, ast.Tuple):
         pairs = zip(target.elts, item, strict=True)
         return {name: value for part, inner in pairs for name, value in _bound(part, inner).items()}

@@ -13,7 +13,8 @@ from .laws import LAWS, LINEAR, Law, law_of
 from .profile import FACTORS, RADIUS_POWERS, Profile
 
 AREA_SAMPLES = 256
-"""Points between two rows of a profile at which the smallest factor is searched, in addition to the rows."""
+"""Number of points between two rows of a profile at which the smallest factor is searched, besides the rows.
+"""
 
 
 class LocalCoefficients(NamedTuple):
@@ -75,7 +76,7 @@ class Build:
 
     @classmethod
     def from_text(cls, text: str) -> "Build":
-        """The build whose `text` is given."""
+        """Parses the JSON text that the property `text` returns."""
         law, section, profile = json.loads(text)
         if profile is None:
             return cls(law, section)
@@ -84,7 +85,7 @@ class Build:
 
     @property
     def law_number(self) -> int:
-        """Number of the law in compiled code, see `response`."""
+        """Number of the constitutive law in compiled code: LINEAR_LAW and so on in `response`."""
         return list(LAWS).index((self.law, self.section))
 
     @cached_property
@@ -94,7 +95,7 @@ class Build:
 
     @cached_property
     def jumps(self) -> tuple[float, ...]:
-        """The u at which the profile has two rows."""
+        """Values of u with two rows of the profile, where coefficients jump."""
         u = () if self.profile is None else self.profile.u
         return tuple(a for a, b in zip(u[:-1], u[1:], strict=True) if a == b)
 

@@ -1,4 +1,4 @@
-"""Stress of a rod at a point where its material jumps, by its mean strain there, compiled, for every law.
+"""Compiled stress of a rod at a jump of its material, as a function of the mean strain, for every law.
 
 At the point stress is continuous and strain is not. With the unknowns a before and b behind the jump, see
 `response`, and shares w of both sides in the mean strain, w(a) + w(b) = 1 for each component,
@@ -20,17 +20,19 @@ from ..compiled.compilation import compiled
 from .response import LINEAR_LAW, LocalSection, Stress, Tangent, stress, stress_change, tangent
 
 COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature", "c2")
-"""Numbers of each side: the fields of `LocalSection`, the side's shares in the mean strain, and c2."""
+"""Columns of the array of the two sides of a jump: fields of `LocalSection`, weights in the mean strain, and
+c2."""
 SHEAR = COLUMNS.index("c2")
 MOST_ITERATIONS = 40
 CONVERGED = 1e-9
-"""Relative step of Newton's method after which the next one would be below rounding."""
+"""Tolerance for the relative Newton step; by quadratic convergence the next step would be below rounding."""
 LEAST_STRETCH_KEPT = 0.1
-"""Least ratio of h1 after a step of Newton's method to h1 before: the law is defined for h1 > 0 only."""
+"""Minimum ratio of the stretch h1 after a Newton step to h1 before; longer steps are damped, since h1 must
+stay positive."""
 
 
 class Unknowns(NamedTuple):
-    """The unknowns q1 (stretching) and q3 (bending) of a law at one point, as in `response`."""
+    """Unknowns q1 (stretching) and q3 (bending) of a constitutive law at one point, see `response`."""
 
     q1: float
     q3: float
@@ -50,7 +52,7 @@ def _solved(T: Tangent, N: float, M: float) -> Unknowns:
 
 @compiled
 def _allowed(at: LocalSection, q1: float, step: float) -> float:
-    """Largest fraction, up to 1, of a step of q1 that keeps h1 above LEAST_STRETCH_KEPT times its value."""
+    """Largest fraction, up to 1, of the step of q1 that leaves h1 at LEAST_STRETCH_KEPT times h1 or more."""
     h = at.nu + at.c1 * q1
     change = at.c1 * step
     if h + change >= LEAST_STRETCH_KEPT * h:
@@ -65,9 +67,7 @@ def _small(step: Unknowns, at: Unknowns) -> bool:
 
 @compiled
 def unknowns_before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
-    """The unknowns a before a jump, from the mean unknowns q, by Newton's method for equal stresses; sides:
-    (2, 7).
-    """
+    """Solves for the unknowns a before a jump at mean unknowns q, by Newton's method; sides: (2, 7)."""
     if law == LINEAR_LAW:
         return q
     one = _section(sides[0])
@@ -95,20 +95,20 @@ def unknowns_before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
 
 @compiled
 def unknowns_behind_jump(sides: Array, q: Unknowns, a: Unknowns) -> Unknowns:
-    """The unknowns b behind a jump, from the mean unknowns q and the unknowns a before it; sides: (2, 7)."""
+    """Unknowns b behind a jump, from the mean unknowns q and the unknowns a before; sides: (2, 7)."""
     return Unknowns((q.q1 - sides[0, 3] * a.q1) / sides[1, 3], (q.q3 - sides[0, 4] * a.q3) / sides[1, 4])
 
 
 @compiled
 def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
-    """The stresses beyond those at rest; sides: (2, 7)."""
+    """Stresses N, M at a jump, minus the stresses at rest, at mean unknowns q1, q3; sides: (2, 7)."""
     a = unknowns_before_jump(law, sides, Unknowns(q1, q3))
     return stress(law, _section(sides[0]), a.q1, a.q3)
 
 
 @compiled
 def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tangent:
-    """Derivatives of the mean unknowns q by the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM)."""
+    """Derivatives of the mean unknowns with respect to the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM)."""
     S = tangent(law, _section(sides[0]), a.q1, a.q3)
     T = tangent(law, _section(sides[1]), b.q1, b.q3)
     s = S.N1 * S.M3 - S.N3 * S.M1
@@ -124,9 +124,7 @@ def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tan
 
 @compiled
 def changes_beside_jump(law: int, sides: Array, q: Unknowns, change: Unknowns) -> tuple[Unknowns, Unknowns]:
-    """Changes of the unknowns a before and b behind a jump with a change of the mean unknowns q; sides: (2,
-    7).
-    """
+    """Changes of the unknowns (a, b) before and behind a jump for a change of q; sides: (2, 7)."""
     a = unknowns_before_jump(law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
     stresses = _solved(_compliance_at_jump(law, sides, a, b), change.q1, change.q3)
@@ -137,7 +135,7 @@ def changes_beside_jump(law: int, sides: Array, q: Unknowns, change: Unknowns) -
 
 @compiled
 def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
-    """Derivatives of the stresses by the mean unknowns; sides: (2, 7)."""
+    """Derivatives of the stresses N, M at a jump with respect to the mean unknowns q1, q3; sides: (2, 7)."""
     q = Unknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)
     Z = _compliance_at_jump(law, sides, a, unknowns_behind_jump(sides, q, a))
@@ -147,7 +145,7 @@ def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
 
 @compiled
 def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: float) -> Stress:
-    """Derivatives of the stresses along a change of nu, c1 and c3 of both sides, (2, 3), at fixed q.
+    """Derivatives of N, M at a jump for a change of nu, c1, c3 of both sides, (2, 3), at fixed q1, q3.
 
     The shares do not change: a parameter moves the compliances of both sides by one factor.
     """

@@ -19,8 +19,8 @@ Values = Any
 """A float, or an array of floats of any shape."""
 
 POLISHING_STEPS = 2
-"""Newton steps on e = 1 - nu, whose residual has no cancellation, while digits of e are lost in nu for small
-loads; each doubles the number of digits."""
+"""Number of Newton steps on e = 1 - nu after Cardano's formula, which loses digits of e for small loads. The
+residual has no cancellation; each step doubles the number of correct digits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,11 +119,11 @@ SWELLING = Law(
     shortening=_neo_hookean_shortening,
 )
 LAWS = {(law.law, law.section): law for law in (LINEAR, NEO_HOOKEAN, SWELLING)}
-"""All laws by (law, section)."""
+"""Constitutive laws by (name of the law, name of the section), as in the config."""
 
 
 def law_of(law: str, section: str) -> Law:
-    """The law for a name and a section; ValueError for an unknown pair."""
+    """Looks up the constitutive law (law, section) in LAWS; ValueError for an unknown pair."""
     if (law, section) not in LAWS:
         sections = [s for name, s in LAWS if name == law]
         if not sections:

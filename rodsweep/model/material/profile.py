@@ -57,7 +57,7 @@ class Profile:
 
     @cached_property
     def _pieces(self) -> Array:
-        """Coefficients of the cubics in t, from 0 to 1 along each piece, t^3 first, (4, factors, pieces)."""
+        """Cubic coefficients, t^3 first, t = 0 to 1 between two rows of u, (4, factors, intervals)."""
         u = np.array(self.u)
         rows = np.array(self.rows)
         jumps = np.flatnonzero(np.diff(u) == 0) + 1

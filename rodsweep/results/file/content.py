@@ -30,17 +30,17 @@ BOOKKEEPING = frozenset(
 )  # fmt: skip
 """Attributes by which HDF5 and netCDF link dimensions to variables; digests contain the dimensions."""
 NUMBERS = "iuf"
-"""Kinds of NumPy types that variables of a result have."""
+"""Kind characters of the NumPy types allowed for variables of a result: integer, unsigned, float."""
 BYTES_A_READ = 1 << 18
-"""Bytes read at once, to bound the memory."""
+"""Number of bytes of a variable that a digest reads at once, to bound the memory."""
 FILLED_WITH_NAN = ("_FillValue", "[nan]")
-"""Attribute added by xarray on writing, without effect."""
+"""(name, value as text) of an attribute that xarray adds on writing; digests omit it."""
 Digests = dict[str, dict[str, str]]
-"""Digests by name, under the keys `attributes` and `variables`."""
+"""Content of a seal: digests of a file by name, under the keys `attributes` and `variables`."""
 
 
 def is_users(name: str) -> bool:
-    """Whether a name belongs to the user."""
+    """Whether a variable or attribute belongs to the user: its name begins with USER_PREFIX."""
     return name.startswith(USER_PREFIX)
 
 
@@ -120,7 +120,7 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
 
 
 def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
-    """Dimensions of a variable: itself for a coordinate, else the dimensions named by attributes.
+    """Names of the dimensions of a variable: its own name for a coordinate, else read from attributes.
 
     HDF5's own functions for dimensions crash on damaged attributes, and are not used.
     """

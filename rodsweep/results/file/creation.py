@@ -21,7 +21,7 @@ from .validation import FORMAT, PROGRAM
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Plan of a file: the points, the layout, and the config to answer."""
+    """Content of a result file before the run: points, layout of the variables, config, attributes."""
 
     points: Points
     layout: Layout
@@ -108,7 +108,7 @@ def _write_parameters(file: h5py.File, plan: Plan) -> None:
 
 
 def is_axis(variable: Variable) -> bool:
-    """Whether a variable is the coordinate of the dimension of its own name."""
+    """Whether a variable is the coordinate of a dimension with the same name."""
     return variable.extra == (variable.name,)
 
 
@@ -120,7 +120,7 @@ def _write_scale(file: h5py.File, name: str, values: NDArray[Any], variable: Var
 
 
 def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> h5py.Dataset:
-    """Contiguous dataset, allocated and filled on creation, at a final place in the file."""
+    """Creates a contiguous dataset, allocated and filled at once, so that its offset in the file is final."""
     creation = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
     creation.set_layout(h5py.h5d.CONTIGUOUS)
     creation.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)

@@ -18,11 +18,13 @@ from .seal import seal
 LOCK_PATIENCE = 5.0
 """Seconds to wait for the lock. Ranks of a launcher that was killed live on for a moment."""
 Identity = tuple[int, ...]
-"""Numbers that change when a file is replaced or written to; empty without a file."""
+"""Device, inode, size and modification time of a file, which change when the file is replaced or written to;
+empty without a
+file."""
 
 
 def identity(path: Path) -> Identity:
-    """Identity of the file at a path."""
+    """Reads the identity of the file at `path`."""
     try:
         status = path.stat()
     except OSError:
@@ -32,7 +34,7 @@ def identity(path: Path) -> Identity:
 
 @contextmanager
 def disk_refusals(path: Path, kept: Callable[[], str] = str) -> Iterator[None]:
-    """Turns errors of the disk (RuntimeError from HDF5) into EnvironmentIncomplete; kept: saved work."""
+    """Converts disk errors (RuntimeError from HDF5) to EnvironmentIncomplete; kept: clause on saved work."""
     try:
         yield
     except (OSError, RuntimeError) as error:

@@ -9,9 +9,9 @@ import numpy as np
 from ...errors import EnvironmentIncomplete
 
 Table = dict[str, Sequence[str] | Sequence[float]]
-"""Columns of equal length, by name."""
+"""Measurements of one study: columns of equal length, by name."""
 UNITS = {"seconds": "s", "error": "1"}
-"""Units of columns."""
+"""Unit of the column, by name; other columns have no unit."""
 
 
 def write_measurements(path: Path, tables: Mapping[str, Table], attributes: Mapping[str, str]) -> None:

@@ -64,7 +64,7 @@ def stored_points(path: Path, layout: Layout) -> Iterator[np.ndarray]:
 
 
 def _at_once(layout: Layout) -> int:
-    """Number of points of a layout that are read at once."""
+    """Number of points that are read in one block, so that a block has about BYTES_AT_ONCE bytes at most."""
     return min(POINTS_AT_ONCE, BYTES_AT_ONCE // layout.record.itemsize + 1)
 
 
@@ -144,6 +144,6 @@ def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bo
 
 
 def _offsets(path: Path, layout: Layout) -> dict[str, int]:
-    """Offset of each variable in the file, in bytes."""
+    """Offset in the file, in bytes, of the first number of each variable of the layout, by name."""
     with h5py.File(path, "r") as file:
         return {variable.name: file[variable.name].id.get_offset() for variable in layout.variables}

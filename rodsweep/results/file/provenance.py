@@ -30,7 +30,7 @@ parameters, status and reason."""
 NUMBER = re.compile(r"\d[\d.]*(?:e[+-]?\d+)?")
 """A number in a message; messages that differ only in numbers state one reason."""
 MAX_FAILURE_REASONS = 20
-"""Largest number of reasons in a file."""
+"""Maximum number of distinct failure reasons in a file; further reasons are dropped."""
 KERNEL_NOT_RECORDED = "unknown"
 """Kernel of points from an earlier version, which did not record kernels."""
 
@@ -41,7 +41,7 @@ def now() -> str:
 
 
 def provenance() -> dict[str, str]:
-    """Versions of everything but the solver's libraries, and the commit of the source tree."""
+    """Attributes with the versions of Python and packages, except solver libraries, and the commit."""
     return {
         "rodsweep_version": __version__,
         "git_commit": git_commit(),
@@ -56,12 +56,12 @@ def provenance() -> dict[str, str]:
 
 
 def kernels_of(attributes: Mapping[str, Any]) -> list[str]:
-    """Kernels named by the attributes of a file."""
+    """Names of the BLAS kernels in the attributes of a file."""
     return str(attributes.get(KERNELS_ATTRIBUTE, KERNEL_NOT_RECORDED)).splitlines()
 
 
 def united_kernels(*several: Iterable[str]) -> str:
-    """Value of the attribute for a file with points of all these kernels."""
+    """Value of KERNELS_ATTRIBUTE for a file whose points were computed by any of the given kernels."""
     return "\n".join(sorted({kernel for kernels in several for kernel in kernels}))
 
 
@@ -71,9 +71,9 @@ def reason_of(line: str) -> str:
 
 
 def united_reasons(*several: str) -> dict[str, str]:
-    """The attribute FAILURE_REASONS of a file with the points of several, from their values; may be empty.
+    """Merges values of the attribute FAILURE_REASONS of several files; may be empty.
 
-    Of equal reasons the first is kept.
+    Of lines with equal reasons the first remains.
     """
     lines: dict[str, str] = {}
     for line in "\n".join(several).splitlines():

@@ -21,8 +21,8 @@ from .provenance import now, reasons_added
 from .validation import ResultHeader, is_ours, read_header, reading
 
 MAX_REREADS = 20
-"""Largest number of readings of a changing file. Replacements by a run are seconds apart; more replacements
-point to a fault."""
+"""Maximum number of attempts to read a file that changes meanwhile. Runs replace a file seconds apart; more
+attempts would point to a fault."""
 SNAPSHOT = "snapshot"
 """Attribute with the time of a snapshot, which marks a file as a snapshot."""
 Found = TypeVar("Found")
@@ -57,7 +57,7 @@ def journalled_points(header: ResultHeader, status: np.ndarray) -> np.ndarray:
 
 
 def journalled_reasons(header: ResultHeader) -> dict[str, str]:
-    """Attribute with the reasons of failed points, also of journalled ones; may be empty."""
+    """Value of FAILURE_REASONS for the file and its journals together; may be empty."""
     directory = journal_directory(header.path)
     lines = read_reasons(directory, header.layout, header.fingerprint) if directory.is_dir() else ()
     return reasons_added(lines, header.attributes)

@@ -12,9 +12,9 @@ from .points import parameters_of
 from .validation import IncompleteFile, ResultHeader, read_header
 
 SPACE_FACTOR = 3
-"""Room needed by a run, in units of the file: for the file, the journals, and the replacing copy."""
+"""Disk space needed by a run, in units of the file size: the file, the journals, and the replacing copy."""
 SPACE_FIXED = 300_000
-"""Further room needed by a run, in bytes, for attributes, coordinates and checkpoints."""
+"""Additional disk space needed by a run, in bytes: attributes, coordinates and checkpoints."""
 
 
 def require_room(path: Path, plan: Plan) -> None:
@@ -38,7 +38,7 @@ def header_in_the_way(path: Path, plan: Plan, journals: Path) -> ResultHeader:
 
 
 def refuse_other(header: ResultHeader, plan: Plan, journals: Path) -> None:
-    """Refuses a file made for a config different from the plan."""
+    """Raises InputError for an existing file whose config differs from the config of the plan."""
     change = change_between(header.config, plan.config)
     ways = _ways_out(plan, journals)
     try:
@@ -50,7 +50,7 @@ def refuse_other(header: ResultHeader, plan: Plan, journals: Path) -> None:
 
 
 def _ways_out(plan: Plan, journals: Path) -> str:
-    """What the user can do about a file in the way of a run."""
+    """Phrase with the options of a user whose run finds another file at its path."""
     if journals_of(journals, plan.fingerprint):
         return f"move it away, and the same command will use the points in {journals}"
     return "choose another file with -o, or replace it with --fresh"

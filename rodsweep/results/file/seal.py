@@ -28,11 +28,11 @@ END_AT = {0: 40, 1: 44, 2: 28, 3: 28}
 LONGEST_FRAME = 100_000
 """Largest size, in bytes, of the checksum with the places of the numbers left out."""
 BYTES_A_READ = 1 << 20
-"""Bytes read at once, to bound the memory."""
+"""Number of bytes of a file that the checksum reads at once, to bound the memory."""
 LARGEST_INCLUDED = 1 << 16
 """Largest size, in bytes, of a variable, such as an axis, whose numbers the checksum includes."""
 Piece = tuple[int, int]
-"""(offset, size) in bytes."""
+"""(offset, size), in bytes, of a part of a file."""
 
 
 class BrokenSeal(ValueError):

@@ -28,7 +28,7 @@ meaning; files of any other format are refused. Format 5 was the first with seal
 frequencies in Hz, counts from 1, the Hopf points of the lines of limit cycles, and grids over an arm's
 quantities."""
 CONFIGS = (".yaml", ".yml")
-"""Suffixes of configs."""
+"""File suffixes of configs, for a hint when the user passes a config as a result."""
 LONGEST_REASON = 150
 """Largest number of characters of a library's message in a sentence."""
 DAMAGES = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
@@ -160,7 +160,7 @@ def refuse_misfit(file: h5py.File, layout: Layout) -> None:
 
 
 def is_ours(path: Path) -> bool:
-    """Whether a file is a rodsweep result, or HDF5 too damaged to identify."""
+    """Whether a file is a rodsweep result, or an HDF5 file that is too damaged to tell."""
     if not path.is_file():
         return False
     with path.open("rb") as stream:

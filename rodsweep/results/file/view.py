@@ -54,7 +54,7 @@ class Variables(Mapping[str, np.ndarray]):
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """Attributes of a file and its variables as NumPy arrays."""
+    """Read-only view of a result file and its journals: attributes, and variables as NumPy arrays."""
 
     path: Path
     attributes: dict[str, Any]
@@ -62,7 +62,7 @@ class View:
     parameters: tuple[str, ...]
     """Names of the parameters of a point, which are the dimensions of a grid or columns along `point`."""
     flags: dict[int, str]
-    """Values of `status` and their words."""
+    """Words of the values of `status`, by value."""
     journalled: int
     """Number of points still in the journals of a running or interrupted run."""
     over: tuple[str, ...] = ()
@@ -125,13 +125,13 @@ class View:
         return np.array([self.flags.get(int(s), "missing") for s in self.variables["status"].ravel()])
 
     def with_status(self, *words: str) -> NDArray[np.bool_]:
-        """Mask of the points with one of these statuses, of the points' shape."""
+        """Whether each point has one of the given status words: a mask in the shape of the points."""
         values = [value for value, word in self.flags.items() if word in words]
         return np.isin(self.variables["status"], values)
 
     @property
     def sentences(self) -> dict[str, str]:
-        """Meaning of every status, by its word."""
+        """Sentence with the meaning of every status of the task, by the word of the status."""
         return sentences_in(self.attributes)
 
     def by_point(self, name: str) -> np.ndarray:
@@ -166,7 +166,7 @@ def read_view(path: Path) -> View:
 
 
 def _view(path: Path) -> View:
-    """Reads the file and the journals once."""
+    """Reads the file and its journals once, without a repetition if the file changes meanwhile."""
     refuse_absent(path)
     # Opened only once, because a run may replace the file at any instant.
     file, header = open_whole(path, values=path.stat().st_size <= LARGEST_CHECKED)

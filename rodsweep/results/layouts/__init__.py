@@ -24,7 +24,8 @@ LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
 }
 """Function of each task from a resolved config to the layout."""
 INCREASES: dict[str, dict[str, IncreaseRule]] = {task: module.INCREASES for task, module in MODULES.items()}
-"""Options of each task that ask for more of a point. A change of any other option makes another file."""
+"""Rule of each option whose increase extends a file, by task and option. A change of any other option
+requires another file."""
 BESIDE_POINTS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
     "spectrum": spectrum.beside_points,
     "modes": lambda config, is_grid: spectrum.FORCE_CHANGES,
@@ -44,14 +45,16 @@ def layout_of(config: dict[str, Any]) -> Layout:
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables of a file besides the points, by resolved config. `extra` has all dimensions of a
-    variable."""
+    """Variables in the file of a resolved config that do not belong to a single point.
+
+    `extra` names all dimensions of such a variable. is_grid: whether the points are a grid of parameters.
+    """
     found = BESIDE_POINTS.get(config["task"])
     return found(config, is_grid) if found else ()
 
 
 def lacks_curves(attributes: Mapping[str, Any]) -> bool:
-    """Whether the file with the given attributes still lacks curves computed from all points."""
+    """Whether a file with these attributes still lacks the curves of a phase diagram between its rows."""
     if "finished" in attributes or "config_resolved" not in attributes:
         return False
     return layout_of(json.loads(attributes["config_resolved"])).needs_all_points

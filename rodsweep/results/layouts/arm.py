@@ -51,7 +51,7 @@ class SIUnit(NamedTuple):
 
 
 NO_UNIT = SIUnit()
-"""Unit of variables without an SI unit."""
+"""Result of `si_unit_of` for variables without an SI unit."""
 SI_UNITS = {
     "tau2": SIUnit("s", ("tau2",)),
     "1/tau2": SIUnit("1/s", (), ("tau2",)),
@@ -62,9 +62,10 @@ SI_UNITS = {
 }
 """SI units of the dimensionless units of time, length, energy and power."""
 FORCE_UNITS = {load: SIUnit(UNITS[load][0], (SCALE_OF[load],)) for load in LOADS}
-"""SI unit of a follower force, by the kind of the arm's load; the unit of a pressure without a load."""
+"""SI unit in which F is stored, by name of the load of the arm; an arm without load uses that of a pressure.
+"""
 LOAD_OF_UNIT = {each.unit: load for load, each in FORCE_UNITS.items()}
-"""Kind of load by its SI unit."""
+"""Name of the load ("pressure" or "force") by its SI unit."""
 EVENT_FREQUENCIES = {f"{event}_frequency": f"frequency_{event}_hz" for event in ("hopf", "restabilization")}
 """Names in Hz of the frequencies at thresholds, in the pattern of `pressure_hopf` for F_hopf."""
 BRANCH_FORCES = ("special_at", "special_error")
@@ -81,7 +82,7 @@ EFFECTS = (
 )
 """Effects that the model neglects, named as in `rodsweep.model.arm.neglected` with underscores for blanks."""
 NOT_KNOWN = -1
-"""Value of model_applies where a motion may have been missed."""
+"""Value of the variable `model_applies` at points where the solver may have missed a motion of the arm."""
 VALIDITY = (
     word(
         "model_applies",
@@ -206,7 +207,7 @@ def _filled(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]
 
 
 def at_points(quantities: Iterable[Filled], points: Points) -> dict[str, NDArray[Any]]:
-    """Quantities by name; in a grid over quantities each has its value at every point, (points,)."""
+    """Values of an arm's quantities by name; in a grid over quantities, values at every point, (points,)."""
     if not points.over:
         return {variable.name: values for variable, values in quantities}
     dimensions = tuple(points.over)

@@ -43,7 +43,7 @@ ERRORS = (
     ("extrema_error", "the error of the tip's other extrema, in units of tip_y_max"),
     ("multiplier_error", "the absolute error of multiplier"),
 )
-"""(name of the error of a cycle, its meaning); errors are at the stored value of the parameter."""
+"""(variable, meaning) of each error estimate of a cycle, at the stored parameter value."""
 
 
 def followed_variables(parameter: str) -> tuple[Variable, ...]:
@@ -112,8 +112,9 @@ def special_variables(parameter: str) -> tuple[Variable, ...]:
 
 
 def _has(name: str) -> IncreaseRule:
-    """Rule for the length of a list: a stored list with room left holds all items, however long it may be
-    now.
+    """Rule for an option that limits the length of a list; name: variable with the number of all items.
+
+    A stored list that is not full already contains all items.
     """
     return IncreaseRule(lambda records, before: records[name] < before)
 

@@ -17,7 +17,8 @@ ALONG = "crossing"
 ABSENT_FROM_HOPF_SEARCH = ("crossing_growth_rate", "solves")
 """Variables of a search for crossings that a search for Hopf points lacks: its growth rate is 0."""
 CRITICALITY_WORDS = ((-1, "supercritical"), (0, "undecided"), (1, "subcritical"))
-"""Stored numbers and words of the criticality: the sign of Re c; NaN if c is not known."""
+"""(stored number, word) of each criticality; the number is the sign of the real part of the Landau
+coefficient c."""
 
 
 def criticality_variable(name: str, decided_by: str) -> Variable:

@@ -22,7 +22,7 @@ from .variables import (
 )
 
 CLASSES = ((-1, "missing"), *enumerate(("monotone", "oscillatory", "flutter", "undecided", "crushed")))
-"""Behaviour of the rod at a point of a phase diagram."""
+"""(stored number, word) of each behaviour of the straight rod at a point of a phase diagram."""
 BAUTIN_ENDS = ("none", "range_end", "plane_edge", "not_found", "list_full", "closed")
 """Reasons for the end of a curve of generalised Hopf points; the file stores the index in this list."""
 CURVE_ENDS = {
@@ -35,10 +35,11 @@ CURVE_ENDS = {
 }
 """Reasons for the end of a boundary curve; the file stores the index in this list."""
 CURVE_KINDS = ((0, "double"), (1, "hopf"))
-"""Kinds of boundary curves: double real eigenvalues, where oscillations set in or end, or Hopf points."""
+"""(stored number, word) of each kind of boundary curve: double real eigenvalues, where oscillations set in or
+end, or Hopf points."""
 STATES = ("neither_known", "straight", "cycle", "both", "undecided", "crushed")
 STABLE_STATES = ((-1, "missing"), *enumerate(STATES))
-"""Stable states of the rod at a point of a phase diagram with cycles."""
+"""(stored number, word) of each set of stable states at a point of a phase diagram with cycles."""
 CYCLE_SPECIAL = "cycle_special"
 """Dimension of the special points of the branches of a row."""
 MAX_CYCLE_SPECIAL = 64

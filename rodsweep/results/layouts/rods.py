@@ -32,7 +32,7 @@ def has_covering(config: Mapping[str, Any]) -> bool:
 
 
 def is_linear(config: Mapping[str, Any]) -> bool:
-    """Whether the material of a resolved config is linear."""
+    """Whether all rods of a resolved config have the linear constitutive law."""
     stated = (config.get("material", {}), config.get("parameters", {}).get("arm", {}))
     return all(each.get("law", "linear") == "linear" for each in stated)
 

@@ -47,7 +47,7 @@ EACH_MODE = (
     ),
 )
 CERTIFIED = boolean("certified", "whether the winding number of D proves the list of leading modes complete")
-ESTIMATED = (
+ESTIMATED_MEANING = (
     "whether D right of the spectrum, or its winding number, says that the list of leading modes is "
     "complete; for arms that vary along their length it is estimated in part"
 )
@@ -111,7 +111,7 @@ INCREASES = dict.fromkeys(SOLVED_ANEW, NEEDS_NEW_SOLVE) | {"longitudinal": NEEDS
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables of the file besides the variables of its points."""
+    """Variables in the file of a spectrum that do not belong to a single point."""
     gamma1 = config["parameters"].get("gamma1")
     if gamma1 is None:
         return FORCE_CHANGES
@@ -127,7 +127,7 @@ def layout(config: dict[str, Any]) -> Layout:
     each_point: tuple[Variable, ...] = EACH_FOLLOWED_POINT
     extents = {"mode": options["modes"]}
     if estimates_counts(config):
-        each_point = with_meaning(each_point, CERTIFIED.name, ESTIMATED)
+        each_point = with_meaning(each_point, CERTIFIED.name, ESTIMATED_MEANING)
     if not options["vectors"]:
         return Layout(EACH_MODE + each_point, extents)
     return Layout(EACH_MODE + VECTORS + each_point, extents | {"u": options["nodes"]})

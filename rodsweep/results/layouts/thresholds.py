@@ -39,7 +39,7 @@ CROSSING_MEANINGS = {
     "real_leads": "a real eigenvalue overtakes the leading pair in growth rate",
     "pair_leads": "a complex pair overtakes the leading real eigenvalue in growth rate",
 }
-"""Kinds of crossings and their meanings, as the parameter grows."""
+"""Meaning of each kind of crossing as the parameter grows, by word."""
 CROSSING_KINDS = tuple(CROSSING_MEANINGS)
 """Kinds of crossings; the file stores the index in this list."""
 

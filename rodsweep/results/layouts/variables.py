@@ -44,7 +44,7 @@ DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "shape": ("1", "time in periods, from the instant at which y of the tip rises through its mean"),
     "transient": ("1", "time since the start, in units of the last stored time of the motion"),
 }
-"""Units and long names of all dimensions."""
+"""(unit, long name) of every dimension of result files, by name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,12 +185,12 @@ NEEDS_NEW_SOLVE = IncreaseRule(lambda records, before: np.zeros(len(records), bo
 NEEDS_NO_SOLVE = IncreaseRule(lambda records, before: np.ones(len(records), bool))
 """Increase for which no point must be solved again, because the addition is computed besides the points."""
 Filled = tuple[Variable, NDArray[Any]]
-"""A complete variable with values; `extra` names all dimensions."""
+"""A variable and its values at all points; `extra` names all dimensions of the values."""
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Variables of a file, with dimensions."""
+    """Layout of a result file: its variables, extra dimensions and parameters."""
 
     variables: tuple[Variable, ...]
     extents: dict[str, int]
@@ -208,7 +208,7 @@ class Layout:
 
     @property
     def record(self) -> np.dtype:
-        """Type of a single point as a flat record: the index, then every variable."""
+        """NumPy type of the record of one point: the flat index, then every variable."""
         fields: list[Any] = [(v.name, v.dtype, self.inner(v)) for v in self.variables]
         return np.dtype([("index", "<i8"), *fields])
 
@@ -223,5 +223,5 @@ class Layout:
         return {v.name: np.full(self.inner(v), v.fill, v.dtype) for v in self.variables}
 
     def inner(self, variable: Variable) -> tuple[int, ...]:
-        """Shape of a variable at a point."""
+        """Shape of a variable at a single point: the lengths of its extra dimensions."""
         return tuple(self.extents[d] for d in variable.extra)

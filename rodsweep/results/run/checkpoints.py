@@ -28,18 +28,18 @@ CHECKSUM_BYTES = 4
 """Length of the checksum at the end of a file, in bytes."""
 Arrays = dict[str, np.ndarray]
 STATE = "state_"
-"""Prefix of the names of a state's arrays."""
+"""Prefix of the names of the arrays of a state in a checkpoint file."""
 
 
 class HasArrays(Protocol):
-    """State of a chain."""
+    """Interface of the state of a chain, which is converted to named arrays."""
 
     def arrays(self) -> Arrays:
         """The whole state as named arrays of any shape."""
 
 
 class KeptArrays:
-    """Numbered sets of arrays of one kind in the journal directory of a run."""
+    """Base class of small files of named arrays, one file per number, in the journal directory of a run."""
 
     pattern: ClassVar[str]
 
@@ -123,7 +123,7 @@ class UnitResults(KeptArrays):
         return {unit: arrays for unit, arrays in found.items() if arrays is not None}
 
     def drop(self) -> None:
-        """Deletes all results."""
+        """Deletes the result files of all units."""
         drop_files(self.directory, UNIT_RESULTS)
 
 

@@ -20,7 +20,7 @@ JOURNALS = "rank-*"
 JOURNAL_HEAD = b"rodsweep journal 1\n"
 """First line of a journal; the second line is its fingerprint."""
 BYTES_A_BLOCK = 1 << 18
-"""Bytes read at once, to bound the memory."""
+"""Number of bytes of a journal that are read at once, to bound the memory."""
 TEXT_GOES_ON, TEXT_ENDS = -2, -1
 """Indices of records with a piece of a line of text, and with its last piece."""
 CHECKSUM_BYTES = 4
@@ -94,14 +94,14 @@ class Journal:
             self.path.unlink(missing_ok=True)
 
     def _is_in_place(self) -> bool:
-        """Whether the path of the journal still is the file that is open."""
+        """Whether the journal's path still leads to the open file, which a user may have moved."""
         try:
             return os.path.samestat(os.stat(self.path), os.fstat(self.handle))
         except OSError:
             return False
 
     def _create(self) -> None:
-        """Creates the file, under a new name."""
+        """Creates the file of the journal under a name that no journal has."""
         self.directory.mkdir(parents=True, exist_ok=True)
         self.path = self.directory / f"{self.name}-{os.urandom(4).hex()}"
         self.handle = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_APPEND, 0o644)
@@ -171,7 +171,7 @@ def _points_of(path: Path) -> bytes:
 
 
 def _sealed(record: bytes) -> bytes:
-    """A record with its checksum."""
+    """Bytes of a record followed by the checksum of the record."""
     return record + zlib.crc32(record).to_bytes(CHECKSUM_BYTES, "little")
 
 
@@ -187,7 +187,7 @@ def read_journals(
 
 
 def read_reasons(directory: Path, layout: Layout, fingerprint: str) -> list[str]:
-    """Lines on why points of a run failed, from all of its journals in a directory."""
+    """Reads the reasons of failed points, one per line, from all journals of a run in a directory."""
     return [
         line
         for path in journals_of(directory, fingerprint)

@@ -1,4 +1,5 @@
-"""Grid over the quantities of an arm: each point has a separate rod, or a status but no rod."""
+"""Grid over the SI quantities of an arm: each point has its own rod, or a status that says why there is no
+rod."""
 
 from collections.abc import Callable, Mapping, Sequence
 from operator import attrgetter, methodcaller
@@ -19,11 +20,12 @@ from .flutter_forces import FlutterForce
 from .points import Points
 
 FlutterOf = Callable[[SlenderArm, float | None], FlutterForce]
-"""Function from an arm, and a taper in place of its own, to its first flutter with the likeliest drag."""
+"""Function from (arm, taper) to the first flutter with the likeliest drag; a taper of None means that of the
+arm."""
 Forces = NDArray[np.object_]
-"""Objects `FlutterForce` over (arms, 1, replaced parameters)."""
+"""Array of `FlutterForce` objects, (arms, 1, combinations of parameters given beside the arm)."""
 UNCOVERED = FlutterForce(np.nan)
-"""Stands for the force of an arm without a rod."""
+"""Placeholder for the flutter force of an arm that the rod model does not cover."""
 
 
 def grid_of_arms(
@@ -33,7 +35,7 @@ def grid_of_arms(
     flutter: FlutterOf,
     build: Build = STANDARD,
 ) -> Points:
-    """Grid over the arm's quantities, and over parameters of `beside` with several values.
+    """Points of the grid over an arm's quantities and over the parameters of `beside` with several values.
 
     beside: values of parameters, (n,), in place of the arm's. names: the parameters of the task. flutter:
     force of flutter, for relative loads. Raises ValueError if no rod covers any point.
@@ -74,7 +76,7 @@ def grid_of_arms(
 
 
 def _of_each(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:
-    """A quantity of arms along the dimension of arms; NaN for arms without a valid rod."""
+    """A quantity of all arms, along the dimension of arms; NaN for arms without a rod."""
     return _along(0, [quantity(arm) if arm else np.nan for arm in arms])
 
 
@@ -89,8 +91,7 @@ def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[Sl
 def _forces(
     section: ArmSection, arms: Sequence[SlenderArm | None], tapers: Array | None, flutter: FlutterOf
 ) -> Forces:
-    """F of a load of 1 on each arm. tapers: values that replace the arms' own taper, None for no
-    replacement."""
+    """F of a load of 1 on each arm. tapers: values in place of the taper of the arms, or None."""
     beside = [None] if tapers is None or section.load_axis not in RELATIVE else tapers.ravel().tolist()
     forces = np.empty((len(arms), 1, len(beside)), object)
     for i, arm in enumerate(arms):
@@ -102,7 +103,7 @@ def _forces(
 def _force_of(
     section: ArmSection, arm: SlenderArm | None, taper: float | None, flutter: FlutterOf
 ) -> FlutterForce:
-    """F of a load of 1 on an arm; the load is in SI units or relative to flutter, or there is none."""
+    """Force F of a load of 1 N, 1 Pa or 1 flutter load on an arm; UNCOVERED for no arm or no load."""
     if arm is None or not section.load:
         return UNCOVERED
     if section.load_axis in RELATIVE:
@@ -111,21 +112,20 @@ def _force_of(
 
 
 def _with_flutter(coverage: Array, flutter: Array) -> Array:
-    """Codes of points, with the codes for a load relative to flutter. flutter: F at flutter, equal for all
-    loads."""
+    """Status codes of points, with a failure code where no flutter gives a relative load its value."""
     found = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
     codes: Array = np.where(coverage == SLENDER, found, coverage)
     return codes
 
 
 def _failures(coverage: Array, forces: Forces) -> dict[int, str]:
-    """Why no flutter is found, by flat index; coverage: codes over (arms, loads, replaced parameters)."""
+    """Reason of each failed flutter search, by flat index; coverage: codes over the grid of arms."""
     each = np.broadcast_to(forces, coverage.shape).ravel()
     return {int(index): each[index].failure for index in np.flatnonzero(coverage == FLUTTER_UNKNOWN)}
 
 
 def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bool, forces: Forces) -> None:
-    """Raises ValueError with the cause at the first point; no_flutter: whether some arm does not flutter."""
+    """Raises ValueError with the reason why no point has a rod; no_flutter: whether an arm has no flutter."""
     section.made(section.firsts, loaded=True)
     for force in forces.ravel():
         if force.failure:
@@ -140,5 +140,5 @@ def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bo
 
 
 def _along(dimension: int, values: Any) -> Array:
-    """Values, (n,), as an array along one of the three dimensions: arms, loads, replaced parameters."""
+    """Reshapes values, (n,), along a dimension: 0 arms, 1 loads, 2 combinations of parameters."""
     return np.asarray(values).reshape([-1 if i == dimension else 1 for i in range(3)])

@@ -29,11 +29,11 @@ class ChainState(Protocol):
 State = ChainState | None
 """State of the previous point of the chain; None for a cold start."""
 ChainStep = Callable[[int, Any], tuple[Any, Any]]
-"""Function from a point's index and start state to the outcome and the neighbour's start state."""
+"""Function from (flat index, start state) of a point to (outcome, start state of the next point)."""
 
 
 class ChainStates(Protocol):
-    """Checkpoints: for each unfinished chain, the index of the last point and the state after that point."""
+    """Interface of checkpoints: last solved point of each unfinished chain, and the state after it."""
 
     def write(self, chain: int, index: int, state: State) -> None: ...
 
@@ -44,7 +44,7 @@ class ChainStates(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Chains:
-    """Chains of a grid of the given shape along one axis, solved upward or downward."""
+    """Chains of a grid of `shape` points along `axis`, solved in increasing order if `upward`."""
 
     shape: tuple[int, ...]
     axis: int
@@ -66,13 +66,13 @@ class Chains:
         return indices_along(self.shape, self.axis, chain, along if self.upward else along[::-1])
 
     def todo(self, missing: IndexSet) -> list[IndexRange]:
-        """Ranges of the chains with missing points."""
+        """Ranges of the numbers of chains with missing points; missing: ranges of flat indices of points."""
         return merged_ranges((n, n + 1) for n in range(self.count) if missing[self.indices(n)].any())
 
 
 @dataclass(frozen=True, slots=True)
 class ChainedWork:
-    """Solver of the points of chains. state_of: inverse of `ChainState.arrays`."""
+    """Chains, and the functions that solve one point and that restore a state from its arrays."""
 
     chains: Chains
     solve_from: ChainStep
@@ -81,7 +81,7 @@ class ChainedWork:
 
 @dataclass(frozen=True, slots=True)
 class ChainSolver:
-    """Solves the chains of a run; only `missing` points are stored."""
+    """Function that solves a chain of a run; yields only `missing` points, for storage."""
 
     work: ChainedWork
     missing: IndexSet
@@ -89,10 +89,12 @@ class ChainSolver:
     stop: StopRequest
 
     def __call__(self, chain: int) -> Iterator[tuple[int, Any]]:
-        """Yields the missing points of a chain, each with an outcome; fewer after a stop request.
+        """Yields (flat index, outcome) of the missing points of a chain, until a stop request.
 
-        The state is stored after the point. A kill in between then costs a point, which is solved again; in
-        the reverse order a kill could lose the point for good.
+        The caller stores the point before the checkpoint of the chain is written. A kill between the two
+        writes
+        therefore makes a later run solve the point again; in reverse order a kill would lose the point for
+        good.
         """
         order = list(map(int, self.work.chains.indices(chain)))
         first, state = self._resume(chain, order)
@@ -107,9 +109,10 @@ class ChainSolver:
         self.checkpoints.remove(chain)
 
     def _resume(self, chain: int, order: list[int]) -> tuple[int, State]:
-        """(place in the chain, state) from which to resume.
+        """(position in `order` of the first point to solve, its start state).
 
-        A checkpoint is valid if no earlier point is missing; otherwise the chain starts again.
+        The checkpoint is used if no point before it is missing; otherwise the chain starts again from a cold
+        start.
         """
         found = self.checkpoints.read(chain)
         if found is None or found[0] not in order:

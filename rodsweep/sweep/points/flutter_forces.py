@@ -1,4 +1,4 @@
-"""First flutter of arms whose load is relative to it: known before the points are made, once for each rod.
+"""First flutter force of arms whose load is given relative to flutter, solved once per rod before the sweep.
 
 The search takes most of the time in which points are made, so the ranks of a run may share it. A search that
 fails gives its points a status. The solver is imported on demand.
@@ -20,25 +20,29 @@ from ...model.rod import Rod
 
 @dataclass(frozen=True, slots=True)
 class FlutterForce:
-    """F of first flutter at the likeliest drag: inf without flutter, NaN if the search fails, and why."""
+    """Force F of first flutter with the likeliest drag: inf without flutter, NaN after a failed search.
+
+    failure: why the search failed; empty otherwise."""
 
     F: float
     failure: str = ""
 
 
 FlutterForces: TypeAlias = Mapping[Rod, FlutterForce]
-"""Flutter of rods that move in one plane, without load."""
+"""Flutter force by rod; the rods have no load and move in one plane."""
 Tapers: TypeAlias = Sequence[float | None]
-"""Tip radius over base radius beside a section, None where the arm has its own."""
+"""Values of the parameter `taper` (tip radius over base radius) given beside an arm; None keeps the taper of
+the arm."""
 OWN_TAPER: Tapers = (None,)
 
 
 def rods_of_flutter(
     section: ArmSection | None, build: Build | None = None, tapers: Tapers = OWN_TAPER
 ) -> list[Rod]:
-    """The different rods whose flutter the points of a section need; none unless its load is relative.
+    """Distinct rods whose flutter force the points of `section` need; empty unless its load is relative.
 
-    build: law and profile beside the section. Raises InputError for an arm that is refused.
+    build: law and profile given beside the section, None for those of the arm. Raises InputError for an
+    invalid arm.
     """
     if section is None or section.load_axis not in RELATIVE:
         return []
@@ -49,7 +53,7 @@ def rods_of_flutter(
 
 
 def _arms(section: ArmSection) -> Iterable[SlenderArm]:
-    """Arms of a section that a rod covers, without load."""
+    """Yields the arms of a section to which the rod model applies, without their load."""
     for values in section.sections():
         try:
             yield section.made(values)
@@ -60,7 +64,7 @@ def _arms(section: ArmSection) -> Iterable[SlenderArm]:
 
 
 def flutter_of_rod(rod: Rod) -> FlutterForce:
-    """Flutter of one rod; a failure is an outcome, not an exception."""
+    """Flutter force of one rod; a failed search is returned as a `FlutterForce`, not raised."""
     from ...verdict.relative import FlutterSearchFailed, first_hopf_force
 
     try:
@@ -72,9 +76,10 @@ def flutter_of_rod(rod: Rod) -> FlutterForce:
 def flutter_of_arm(
     arm: SlenderArm, taper: float | None, known: FlutterForces, build: Build | None = None
 ) -> FlutterForce:
-    """Flutter of an arm, in its k3/L^2: the smallest over its planes, a failure if one of them fails.
+    """Smallest flutter force of an arm over its planes of motion; a failure if any plane fails.
 
-    taper: in place of the arm's. build: as in `rods_of_flutter`.
+    taper: replaces the taper of the arm, unless None. known: flutter forces of the arm's rods. build: as in
+    `rods_of_flutter`.
     """
     from ...verdict.relative import plane_rods
 

@@ -23,7 +23,7 @@ from .points import Points
 
 
 def grid_size(config: Config) -> int:
-    """Number of points of a grid of parameters, without making its axes; 0 for a list or an arm's grid."""
+    """Number of points of a grid of parameters, without making the axes; 0 for other points."""
     if config.parameters.is_list or config.parameters.over:
         return 0
     return math.prod(config.parameters.axes[name].size for name in config.names)
@@ -32,7 +32,7 @@ def grid_size(config: Config) -> int:
 def points_of(config: Config, directory: Path, flutter: FlutterForces | None = None) -> Points:
     """Points of the sweep of a config; raises InputError for any value outside the model.
 
-    flutter: flutter forces of all rods of `flutter_rods`, if known; else they are searched for here.
+    flutter: flutter forces of all rods of `flutter_rods`; if None, this function computes the forces.
     """
     parameters = config.parameters
     for name, value in parameters.numbers.items():
@@ -74,7 +74,7 @@ def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | 
 
 
 def flutter_rods(config: Config) -> list[Rod]:
-    """The different rods whose flutter the points of a config need; InputError for a refused arm or taper."""
+    """Distinct rods whose flutter force the points of a config need; InputError for an invalid arm."""
     given = config.parameters.given_axes.get("taper")
     if given is None:
         return rods_of_flutter(config.parameters.arm, config.stated_build)
@@ -85,7 +85,7 @@ def flutter_rods(config: Config) -> list[Rod]:
 def refuse_outside(
     allowed: Range, name: str, values: Iterable[float], where: str = "", why: str = ""
 ) -> None:
-    """Raises InputError for the first forbidden value; where, why: continue the sentence."""
+    """Raises InputError for the first of `values` outside `allowed`; where, why: phrases of the message."""
     bad = allowed.first_outside(values)
     if bad is not None:
         raise InputError(
@@ -94,7 +94,7 @@ def refuse_outside(
 
 
 def refuse_axes(axes: dict[str, Array], into_crushed: bool = False, build: Build = STANDARD) -> None:
-    """Raises InputError for a forbidden value on an axis, each (n,), and for crushed rods.
+    """Raises InputError for a value out of range on any axis, (n,), and for crushed rods.
 
     into_crushed: whether the grid may contain crushed rods, as long as not all are crushed.
     """

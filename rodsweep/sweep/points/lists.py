@@ -22,7 +22,7 @@ LONGEST_LINE = 10_000
 
 
 def read_points(path: Path, names: tuple[str, ...], build: Build = STANDARD) -> tuple[Array, ...]:
-    """Columns `names`, each (n,), of a CSV file with the names as header, in any order.
+    """Reads the columns `names`, each (n,), from a CSV file whose header has these names in any order.
 
     Raises InputError for an unreadable file, a wrong header, no point, or an impossible rod.
     """
@@ -51,7 +51,7 @@ def read_points(path: Path, names: tuple[str, ...], build: Build = STANDARD) -> 
 
 
 def _header_fault(header: list[str]) -> str:
-    """Fault of a header as a phrase. A line without names is not quoted: the file may be of any kind."""
+    """Phrase that says what is wrong with a header; quotes the header only if it contains names."""
     if set(header) & set(PARAMETERS) and all(cell.isidentifier() for cell in header):
         return f"the header is {short(','.join(header))}"
     return "the first line names no parameter"
@@ -66,7 +66,7 @@ def _lines(file: TextIO, path: Path) -> Iterator[str]:
 
 
 def _row(row: list[str], header: list[str], where: str, build: Build) -> list[float]:
-    """Numbers of a line of the file; InputError for a cell without a number, or an impossible rod."""
+    """Numbers in a line of the file; InputError for a cell that is no number, or an invalid rod."""
     if len(row) != len(header):
         raise InputError(f"{where} has {len(row)} values, but the header names {len(header)}")
     numbers = []

@@ -18,14 +18,15 @@ from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 
 NEUTRAL = {name: parameter.neutral for name, parameter in PARAMETERS.items()}
-"""Values of parameters without a column. What is impossible with neutral values is so with any."""
+"""Values of parameters without a column. A rod that is invalid with neutral values is invalid with any
+values."""
 
 
 @dataclass(frozen=True, slots=True)
 class Points:
     """Values of parameters: axes of a grid (row-major, the last axis fastest), or columns of equal length.
 
-    Columns belong to the points of a list, or to a grid over the quantities of an arm.
+    Columns describe the points of a list, or of a grid over the quantities of an arm.
     """
 
     names: tuple[str, ...]
@@ -37,17 +38,18 @@ class Points:
     over: dict[str, Array] = field(default_factory=dict)
     """Axes of a grid over an arm's quantities, in SI units."""
     units: dict[str, Array] = field(default_factory=dict)
-    """Units of length, time and so on of the arm at every point of a grid over quantities, (points,)."""
+    """Units of time, force and pressure that the arm defines, by name, at every point of a grid over
+    quantities, (points,)."""
     build: Build = STANDARD
     """Law and profile of all rods."""
     builds: tuple[Build, ...] = ()
-    """Law and profile of each arm of a grid over quantities, in the order of the points; each serves equally
-    many points. Empty if `build` serves all."""
+    """Law and profile of each arm of a grid over quantities, in the order of the points; every arm has
+    equally many points. Empty if all rods have the same `build`."""
     coverage: NDArray[np.int8] | None = None
-    """Whether the rod model covers each point of an arm, (points,): SLENDER, or the reason why not, from
-    `rodsweep.config.arm.axes`."""
+    """Code of each point of an arm, (points,): SLENDER if the rod model applies, else a code of
+    `rodsweep.config.arm.axes` for the reason. None for other points."""
     failures: dict[int, str] = field(default_factory=dict)
-    """Why the flutter of a relative load is not found, by the flat index of the point."""
+    """Reason of a failed search for the flutter force of a relative load, by flat index of the point."""
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -56,7 +58,7 @@ class Points:
 
     @property
     def axes(self) -> dict[str, Array]:
-        """Axes of a grid of either kind, by name; empty for a list."""
+        """Axes by name, of a grid of parameters or of a grid over quantities; empty for a list."""
         return self.by_name if self.is_grid else self.over
 
     @property
@@ -66,23 +68,23 @@ class Points:
 
     @property
     def identity(self) -> list[Array]:
-        """Values of axes and columns, each (n,), by which the points of two sweeps are compared."""
+        """All axes and columns by name, each (n,); two sweeps with equal identity have the same points."""
         return [*self.over.values(), *self.columns]
 
     @property
     def of_rods(self) -> dict[str, Array]:
-        """Columns by parameter, without points that no rod covers."""
+        """Values of each parameter at the points that have a rod, (rods,), by name."""
         if self.coverage is None:
             return self.by_name
         return self.values_of(np.flatnonzero(self.coverage == SLENDER))
 
     def has_rod(self, index: int) -> bool:
-        """Whether a rod covers a point."""
+        """Whether the point at a flat index has a rod."""
         return self.coverage is None or self.coverage[index] == SLENDER
 
     @property
     def by_name(self) -> dict[str, Array]:
-        """Columns by parameter."""
+        """Axes or columns, each (n,), by name of the parameter."""
         return dict(zip(self.names, self.columns, strict=True))
 
     @property
@@ -91,7 +93,7 @@ class Points:
         return math.prod(self.shape)
 
     def values(self, index: int) -> dict[str, float]:
-        """Parameters at a flat index, by name."""
+        """Value of each parameter at the point with flat index `index`, by name."""
         values = {}
         for name, column in zip(reversed(self.names), reversed(self.columns), strict=True):
             place = index
@@ -101,13 +103,15 @@ class Points:
         return {name: values[name] for name in self.names}
 
     def values_of(self, indices: NDArray[np.int64]) -> dict[str, Array]:
-        """Parameters at flat indices, (n,), by name, each (n,)."""
+        """Values of each parameter at the points with the flat indices `indices`, both (n,), by name."""
         places = np.unravel_index(indices, self.shape) if self.is_grid else [indices] * len(self.names)
         each = zip(self.names, self.columns, places, strict=True)
         return {name: column[place] for name, column, place in each}
 
     def rod(self, index: int, **beside: float) -> Rod:
-        """Rod at a flat index, other parameters from `beside`, or NEUTRAL. Raises Crushed."""
+        """Rod at a flat index; parameters without a column have the value in `beside`, or else in NEUTRAL.
+
+        Raises Crushed for a force that crushes the rod."""
         parameters: dict[str, Any] = {**NEUTRAL, **self.values(index), **beside}
         return Rod(**parameters, build=self.build_of(index))
 
@@ -126,7 +130,7 @@ class Points:
 
 @dataclass(frozen=True, slots=True)
 class ParameterLine:
-    """Points that differ in one parameter only, in the order of the sweep."""
+    """Points of a sweep that differ only in the parameter `name`, in the order of the sweep."""
 
     name: str
     """The parameter that varies."""
@@ -139,7 +143,7 @@ class ParameterLine:
 
 
 def lines_over(columns: Mapping[str, Array], name: str) -> Iterator[ParameterLine]:
-    """Lines over a parameter in the order of their first points, without points where the parameter is inf.
+    """Splits points into lines along the parameter `name`, ordered by first point; skips infinite values.
 
     columns: every parameter at every point, (points,).
     """

@@ -10,19 +10,19 @@ import numpy as np
 from ...errors import InputError
 
 BLOCKS_A_SHARD = 64
-"""Number of blocks of neighbouring units in a shard. Many blocks make shards equal in cost; more blocks would
-separate neighbours in the file of the shard."""
+"""Number of blocks of neighbouring units in a shard. Many blocks make shards nearly equal in cost; too many
+would separate neighbouring points in the file of a shard."""
 IndexRange = tuple[int, int]
-"""(first index, index after the last)."""
+"""Range of indices: (first index, last index + 1)."""
 
 
 def index_count(ranges: Iterable[IndexRange]) -> int:
-    """Number of indices in the ranges."""
+    """Total number of indices in `ranges`."""
     return sum(end - first for first, end in ranges)
 
 
 def merged_ranges(ranges: Iterable[IndexRange]) -> list[IndexRange]:
-    """Sorted ranges with adjacent ranges merged."""
+    """Merges adjacent ranges; `ranges` must be sorted."""
     result: list[IndexRange] = []
     for first, end in ranges:
         touches = bool(result) and result[-1][1] == first
@@ -31,7 +31,7 @@ def merged_ranges(ranges: Iterable[IndexRange]) -> list[IndexRange]:
 
 
 def indices_along(shape: tuple[int, ...], axis: int, line: Any, along: Any) -> Any:
-    """Flat indices of the places `along` an axis of a grid, on a line in its direction.
+    """Flat indices of grid points on the line number `line` parallel to `axis`, at the axis indices `along`.
 
     Lines are numbered in row-major order of the remaining axes. line, along: numbers or arrays, which
     broadcast to the shape of the result.
@@ -49,14 +49,14 @@ class IndexSet:
         self.firsts, self.ends = np.array([(-1, -1), *ranges]).T
 
     def __getitem__(self, indices: Any) -> Any:
-        """Whether an index is in the set; for an array of indices, a boolean array."""
+        """Whether each of `indices` is in the set: a boolean, or a boolean array of the same shape."""
         place = np.searchsorted(self.firsts, indices, side="right") - 1
         return indices < self.ends[place]
 
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """Part `number` of `of` parts; 1/1 is the whole sweep."""
+    """Part of a sweep that one job solves: part `number` of `of` parts. 1/1 is the whole sweep."""
 
     number: int = 1
     of: int = 1
@@ -65,7 +65,7 @@ class Shard:
         return f"{self.number}/{self.of}"
 
     def part(self, todo: Sequence[IndexRange], units: int) -> list[IndexRange]:
-        """Ranges of this shard within the ranges `todo`: all `units` are dealt to the shards in turn."""
+        """Ranges of units of `todo` in this shard; blocks of the `units` units go to the shards in turn."""
         if self.of == 1:
             return list(todo)
         block = max(1, units // (self.of * BLOCKS_A_SHARD))
@@ -80,7 +80,7 @@ class Shard:
 
 
 def shard_of(text: str) -> Shard:
-    """Shard of a text such as "2/8"; raises InputError for any wrong form."""
+    """Parses a text such as "2/8" to a shard; raises InputError for any other form."""
     number, _, of = text.partition("/")
     if number.isdecimal() and of.isdecimal() and len(text) < 20 and 1 <= int(number) <= int(of):
         return Shard(int(number), int(of))

@@ -17,17 +17,18 @@ from .ranges import IndexRange, IndexSet, index_count, indices_along, merged_ran
 STRETCH_POINTS = 64
 """Largest number of points in a stretch."""
 SHORTEST_AXIS = 8
-"""Least number of values on an axis; on a shorter axis neighbours are too far apart to help."""
+"""Minimum number of values on the axis of stretches. On shorter axes neighbours are too far apart for
+following eigenvalues from point to point."""
 STRETCHES_PER_BLOCK = 1 << 12
-"""Number of stretches tested in a single array operation, to bound the memory."""
+"""Number of stretches tested for missing points in one array operation, to bound the memory."""
 
 
 @dataclass(frozen=True, slots=True)
 class StretchResult:
-    """Result of points solved at once.
+    """Result of the n points of a stretch.
 
     values: every variable of the file, shape (n, ...). succeeded: whether each point succeeded, (n,).
-    message: status name and message of a failed point, by place.
+    message: function from the position of a failed point in the stretch to its status and message.
     """
 
     values: dict[str, NDArray]
@@ -35,31 +36,31 @@ class StretchResult:
     message: Callable[[int], str]
 
     def at(self, places: NDArray[np.int64]) -> dict[str, NDArray]:
-        """Variables of selected points, by place, (places,)."""
+        """Values of every variable at the points with positions `places` in the stretch, (places,)."""
         return {name: column[places] for name, column in self.values.items()}
 
 
 SolveStretch = Callable[[NDArray[np.int64]], StretchResult]
-"""Function from the flat indices of neighbouring points, (n,), to their result."""
+"""Function that solves the points with flat indices (n,) of one stretch and returns their `StretchResult`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stretches:
-    """Stretches of a grid of the given shape along one axis."""
+    """Stretches that cut a grid of `shape` points along `axis`."""
 
     shape: tuple[int, ...]
     axis: int
 
     @property
     def lines(self) -> int:
-        """Number of lines along the axis."""
+        """Number of grid lines parallel to the axis."""
         return math.prod(self.shape) // self.shape[self.axis]
 
     @property
     def count(self) -> int:
         """Number of stretches.
 
-        Stretches are numbered first by place on the line, then in row-major order of the remaining axes.
+        Stretches are numbered first by position on the grid line, then in row-major order of the other axes.
         Consecutive stretches are therefore neighbours in the file.
         """
         return self.lines * -(-self.shape[self.axis] // STRETCH_POINTS)
@@ -78,7 +79,7 @@ class Stretches:
         return (missing[index] & (along < self.shape[self.axis])).sum(axis=1)
 
     def todo(self, missing: Sequence[IndexRange]) -> list[IndexRange]:
-        """Stretches with missing points, as ranges of stretch numbers."""
+        """Ranges of the numbers of stretches with missing points; missing: ranges of flat indices."""
         if index_count(missing) == math.prod(self.shape):
             return [(0, self.count)]
         missing_points = IndexSet(missing)
@@ -91,7 +92,7 @@ class Stretches:
         return merged_ranges(ranges)
 
     def missing_in(self, stretches: Sequence[IndexRange], missing: Sequence[IndexRange]) -> int:
-        """Number of missing points in ranges of stretches."""
+        """Total number of missing points in `stretches`, ranges of stretch numbers."""
         missing_points = IndexSet(missing)
         number = 0
         for first, end in stretches:
@@ -102,7 +103,7 @@ class Stretches:
 
 
 def stretches_along_longest_axis(shape: tuple[int, ...], moved: Sequence[str]) -> Stretches | None:
-    """Stretches of a grid along the first of the longest axes; None if every usable axis is too short.
+    """Stretches along the longest usable axis of a grid; None if shorter than SHORTEST_AXIS.
 
     moved: the parameter that varies along each axis; empty for an axis of several parameters, which is not
     usable.
@@ -114,14 +115,14 @@ def stretches_along_longest_axis(shape: tuple[int, ...], moved: Sequence[str]) -
 
 @dataclass(frozen=True, slots=True)
 class StretchSolver:
-    """Solves the stretches of a run; only `missing` points are stored."""
+    """Function that solves a stretch of a run; yields only `missing` points, for storage."""
 
     stretches: Stretches
     solve_stretch: SolveStretch
     missing: IndexSet
 
     def __call__(self, stretch: int) -> Iterator[tuple[NDArray[np.int64], Any]]:
-        """Yields (flat indices of the missing points, `StretchResult` of the missing points), once."""
+        """Yields (flat indices, `StretchResult`) of the missing points of a stretch, once."""
         indices = self.stretches.indices(stretch)
         result = self.solve_stretch(indices)
         places = np.flatnonzero(self.missing[indices])

@@ -29,21 +29,22 @@ from .identity import config_difference
 SAME_VALUE = 4 * np.finfo(float).eps
 """Largest relative difference of two values on an axis that counts as rounding."""
 Indices = NDArray[np.int64]
-"""Flat indices of points, or places on an axis, (n,); -1 for no place."""
+"""Flat indices of points, or indices of values on an axis, (n,); -1 for a missing point or value."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoredPlaces:
-    """Places of the stored points among the new points: on each axis of a grid, or in a list."""
+    """Map from flat indices of stored points to flat indices of new points, axis by axis."""
 
     shape: tuple[int, ...]
     """Shape of the stored points."""
     new_shape: tuple[int, ...]
     places: tuple[Indices, ...]
-    """New place of every stored value on an axis, -1 if its points are computed again."""
+    """For each axis or the list: new index of every stored value, (n,); -1 if its points are computed again.
+    """
 
     def __call__(self, index: Indices) -> Indices:
-        """New flat indices of stored flat indices, both (n,); -1 for points computed again."""
+        """Maps stored flat indices to new flat indices, both (n,); -1 for points computed again."""
         each = [place[i] for place, i in zip(self.places, np.unravel_index(index, self.shape), strict=True)]
         stays = np.min(each, axis=0) >= 0
         new = np.ravel_multi_index([np.maximum(place, 0) for place in each], self.new_shape)
@@ -52,19 +53,19 @@ class StoredPlaces:
 
 @dataclass(frozen=True, slots=True)
 class Extension:
-    """Points of a stored file that stay in the file of a larger config."""
+    """Which points of a stored file remain valid in the file of a larger config."""
 
     path: Path
     old: Layout
     new: Layout
     places: StoredPlaces
     grown: tuple[tuple[IncreaseRule, Any], ...]
-    """(option, former value) for every increased option."""
+    """(rule, stored value) of every option whose value the larger config increases."""
     nothing_stays: bool
     """Whether every stored point is computed again."""
 
     def kept(self) -> Iterator[np.ndarray]:
-        """Yields records, (n,) in the new layout, of the points that stay."""
+        """Yields records, (n,) in the new layout, of the stored points that need no new solve."""
         if self.nothing_stays:
             return
         for records in stored_points(self.path, self.old):
@@ -122,7 +123,7 @@ def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
 
 
 def _refuse(header: ResultHeader, difference: str) -> None:
-    """Raises InputError for a difference, which no extension can bridge."""
+    """Raises InputError: the stored file cannot be extended because of `difference`, a phrase."""
     if difference:
         raise InputError(
             f"{header.path} cannot be extended to this config ({difference}); choose another file with -o, "
@@ -131,7 +132,7 @@ def _refuse(header: ResultHeader, difference: str) -> None:
 
 
 def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPlaces:
-    """Places of the stored points in the plan; raises InputError if a stored point is not in the plan."""
+    """Finds the stored points among the points of the plan; raises InputError for a missing point."""
     new = plan.points
     if tuple(old.axes) != tuple(new.axes) or old.names != new.names:
         kinds = [
@@ -154,7 +155,7 @@ def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPlaces:
 
 
 def _places_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> Indices:
-    """New place of every old value on an axis, (n,), or -1 where rounding has changed the value.
+    """New index of every old value on the axis `name`, (n,); -1 where rounding has changed the value.
 
     Raises InputError for an old value that is not on the new axis.
     """
@@ -170,7 +171,7 @@ def _places_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> 
 
 
 def _same_from_the_start(places: Indices, count: int, upward: bool) -> Indices:
-    """Places of the points of a chain, (n,), up to the first changed point; -1 from there on."""
+    """Indices of the points of a chain, (n,), with -1 from the first changed point of the chain on."""
     ahead = places if upward else np.where(places < 0, -1, count - 1 - places)[::-1]
     stays = np.logical_and.accumulate(ahead == np.arange(len(ahead)))
     return np.where(stays if upward else stays[::-1], places, -1)
@@ -186,7 +187,7 @@ def _same_stretches(places: Indices, count: int) -> NDArray[np.bool_]:
 
 
 def _places_in_list(header: ResultHeader, old: Points, new: Points) -> Indices:
-    """New place of every old point in the list, (n,); raises InputError for a point not listed."""
+    """Index in the new list of every old point, (n,); raises InputError for a point that is not listed."""
     # Adding 0.0 turns -0.0 into 0.0, so that equal rows have equal bytes.
     rows = [np.column_stack(points.columns) + 0.0 for points in (new, old)]
     known: dict[bytes, int] = {}

@@ -17,7 +17,7 @@ from ....config.axes import Axes
 from ....config.document.reading import config_of
 
 LONGEST_VALUE = 80
-"""Largest number of characters of a value in a sentence."""
+"""Maximum number of characters of a value in a message; a longer value is shortened."""
 
 
 def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
@@ -68,7 +68,7 @@ def _kind(parameters: Axes) -> str:
 def config_difference(
     theirs: Any, ours: Any, key: str = "", places: tuple[str, str] = ("the file", "the config")
 ) -> str:
-    """First key in which configs of two named places differ, with both values; empty for equal configs."""
+    """Phrase with the first key in which two configs differ and both values; places: names of the configs."""
     if isinstance(theirs, dict) and isinstance(ours, dict):
         for name in [*ours, *(n for n in theirs if n not in ours)]:
             inner = f"{key}.{name}" if key else name

@@ -31,16 +31,17 @@ OF_ONE_FILE = (
     "program", "format", "fingerprint", "config_resolved", "coordinates", "finished", "snapshot",
     SEAL_ATTRIBUTE,
 )  # fmt: skip
-"""Attributes that a joined file does not inherit."""
+"""Attributes that describe one file only; a joined file does not copy them from its sources."""
 ROUNDING_FACTOR = 1e3
-"""Largest difference that counts as rounding, in units of the accuracy asked for."""
+"""Maximum relative difference of two values that counts as rounding, in units of the accuracy of the config.
+"""
 Planner = Callable[[Config, Points], Plan]
 """Function that makes the plan of a config for given points, without attributes and flags."""
 
 
 @dataclass(frozen=True, slots=True)
 class JoinedFile:
-    """Plan of the joined file, and the places of the points of each source."""
+    """Plan of the joined file, and for each source the map from its points to the joined points."""
 
     plan: Plan
     sources: Sequence[ResultHeader]
@@ -97,7 +98,7 @@ class JoinedFile:
 
 
 def _place(points: Points, index: int) -> str:
-    """Parameters of a point, in words."""
+    """Phrase with the parameter values of the point at a flat index."""
     return ", ".join(f"{name} = {value:.15g}" for name, value in points.values(index).items())
 
 
@@ -131,7 +132,7 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: Planner) -> JoinedF
 
 
 def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPlaces]]:
-    """(grid of all values on every axis, places of each grid in it)."""
+    """(grid with the union of the values on every axis, map from the points of each grid to this grid)."""
     axes = []
     for name in grids[0].names:
         axis = np.unique(np.concatenate([grid.by_name[name] for grid in grids]))
@@ -210,7 +211,7 @@ def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Point
 
 
 def _with_attributes(plan: Plan, first: ResultHeader, config: Config) -> Plan:
-    """The plan with the attributes and status flags of the first file, and the text of the joined config."""
+    """Copy of the plan with the attributes and status flags of the first file, and the joined config text."""
     text = text_of(config)
     resolved = canonical(config)
     if max(len(text), len(str(resolved))) > LONGEST_ATTRIBUTE:

@@ -68,7 +68,7 @@ def _merge(exchange: FileReplacement, sources: Sequence[ResultHeader], planner: 
 
 
 def _join(exchange: FileReplacement, joint: JoinedFile) -> MergeResult:
-    """Replaces the output by a joined file with the points of all sources."""
+    """Replaces the output by the planned joined file and writes the points of all sources into it."""
     with exchange.replacing(None) as copy:
         create_file(copy, joint.plan)
         gave = joint.write(copy)
@@ -92,7 +92,7 @@ def _finished(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResu
 
 
 def _opened(paths: Sequence[Path]) -> list[ResultHeader]:
-    """Headers of the sources; raises InputError for a file with points in its journal."""
+    """Reads the headers of the files to merge; raises InputError for a file with points in its journal."""
     files = []
     for path in paths:
         files.append(read_header(path))
