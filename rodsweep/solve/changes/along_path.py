@@ -28,8 +28,8 @@ class TransitionSettings:
     """Settings for the list of the changes along a path."""
 
     anchor_distance: float = 1e-4
-    """Distance of additional anchors from the crossing of a pair that must lead, as a fraction of the path's
-    length."""
+    """Distance of additional anchors from the crossing of a pair that must lead, as a fraction of the
+    path."""
     merge_distance: float = 1e-5
     """Relative distance below which undecided boxes of the covering are merged into one interval."""
 
@@ -46,18 +46,16 @@ class Transitions:
     searched: tuple[float, float] = (math.nan, math.nan)
     """Interval of the parameter that was searched; all other fields refer to it."""
     ended_early: bool = False
-    """Whether `searched` is shorter than requested, because the eigenvalues of a rod beyond its end could not
-    be computed or the list is full."""
+    """Whether `searched` is shorter than requested; `why_not` says why."""
     open_range: tuple[float, float] = (math.nan, math.nan)
-    """Smallest interval of the parameter that contains all undecided intervals, where two further crossings
-    are possible; nan if none is undecided."""
+    """Smallest interval around all rods at which two further crossings are possible; nan if there is none."""
     unstable_at_start: int = -1
     unstable_at_end: int = -1
     oscillates_at_start: bool = False
     """Whether a complex pair leads at the start of the path."""
     proved: bool
-    """Whether the list is proved complete: the covering is complete, every count of unstable modes agrees,
-    and no eigenvalue lies right of a leading eigenvalue."""
+    """Whether the covering is complete, all counts agree, and no eigenvalue lies right of a leading
+    eigenvalue."""
     boxes: int = 0
     """Number of evaluations of D by the covering."""
     solves: int = 0
@@ -162,10 +160,7 @@ def pair_crossings(
 
 
 def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...], at_end: int) -> Transitions:
-    """`Transitions` of `crossings` whose unstable modes are counted, without range and leading eigenvalue.
-
-    unstable, at_end: number of unstable modes at the two ends of the searched interval.
-    """
+    """`Transitions` of counted crossings. unstable, at_end: number of unstable modes at the two ends."""
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
     return Transitions(
         crossings=crossings,
@@ -178,8 +173,7 @@ def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...]
 
 
 def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, float]) -> Transitions:
-    """`counted` with the searched subinterval of the requested interval `asked`, and the reason for an early
-    end."""
+    """`counted` with the searched subinterval of the interval `asked`, and why the search ended early."""
     searched = found.searched(*asked)
     reason = found.reach.reason
     end = found.path.parameter.value(found.reach.p)
