@@ -1,5 +1,5 @@
-"""All changes along a path of rods, on which one parameter varies: crossings of the imaginary axis by a pair,
-and changes of the leading eigenvalue.
+"""All changes along a path of rods: pairs that cross the imaginary axis, and changes of the leading
+eigenvalue.
 
 The crossings come from `rodsweep.determinant.certificate.covering`, which proves that the list is complete,
 the changes of the leading eigenvalue from `leading_eigenvalue`. They are merged into one list in increasing
@@ -105,9 +105,8 @@ def transitions(
 ) -> Transitions:
     """All changes along `path` for parameter values from `start` to `stop`, proved complete if `certify`.
 
-    The search ends early at a rod whose eigenvalues cannot be computed, and for a nonuniform arm once more
-    than `most` crossings are found. Raises Unsolvable if nothing can be searched, or if no a-priori bound of
-    the eigenvalues applies.
+    The search ends early at a rod whose eigenvalues cannot be computed, and for a nonuniform arm after more
+    than `most` crossings. Raises Unsolvable if nothing can be searched or no a-priori bound applies.
     """
     low, high = sorted((path.variable(start), path.variable(stop)))
     problem = path_problem(path)

@@ -48,8 +48,7 @@ END_OTHERWISE = {
 class BautinCurvePoint:
     """A generalised Hopf point in the space of three parameters.
 
-    values, errors: the plane's two parameters, then the third, (3,). frequency: eta, in 1/tau2. landau_imag:
-    Im c, in 1/(tau2 L^2).
+    values, errors: the plane's two parameters, then the third, (3,). landau_imag: Im c, in 1/(tau2 L^2).
     """
 
     values: Array
@@ -60,8 +59,8 @@ class BautinCurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class BautinCurve:
-    """A curve of generalised Hopf points: its points in order, and why it ends before the first and after the
-    last."""
+    """Generalised Hopf points of a curve, in order, and why the curve ends at the first and at the last
+    point."""
 
     points: tuple[BautinCurvePoint, ...]
     ends: tuple[BautinEnd, BautinEnd]
@@ -69,8 +68,7 @@ class BautinCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvePoint:
-    """Generalised Hopf point with its coordinates v for continuation, (4,): the three scaled parameters and
-    log eta."""
+    """Generalised Hopf point. v: coordinates for continuation, (4,): three scaled parameters and log eta."""
 
     v: Array
     point: BautinCurvePoint
@@ -91,14 +89,14 @@ class BautinSpace:
     side: float = 1.0
 
     def scaled(self, values: Array, frequency: float) -> Array:
-        """Coordinates v, (4,): the three parameter `values`, (3,), scaled to [0, 1], and the logarithm of
+        """Coordinates v, (4,), of parameter `values`, (3,): the values scaled to [0, 1], and log
         `frequency`."""
         places = [axis.scaled(float(value)) for axis, value in zip(self.axes, values, strict=True)]
         return np.array([*places, np.log(frequency)])
 
     def solved(self, guess: Array, held: int) -> _CurvePoint:
-        """The generalised Hopf point near the coordinates `guess`, (4,), with the parameter of index `held`
-        fixed; raises Unsolvable."""
+        """The generalised Hopf point near `guess`, (4,), with parameter number `held` fixed; raises
+        Unsolvable."""
         free = [i for i in range(3) if i != held]
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
         plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
@@ -119,8 +117,7 @@ class BautinSpace:
         return _CurvePoint(self.scaled(found_values, point.frequency), found)
 
     def step(self, behind: Sequence[_CurvePoint], length: float) -> StepResult[_CurvePoint]:
-        """The next point of the curve after the points `behind`, at a step of `length` along the chord of the
-        last two; raises Unsolvable."""
+        """The next point after the points `behind`, predicted along their last chord; raises Unsolvable."""
         here = behind[-1].v
         tangent = np.array([0.0, 0.0, self.side, 0.0])
         if len(behind) > 1:
@@ -136,8 +133,8 @@ class BautinSpace:
         return StepResult(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
 
     def _within(self, here: Array, change: Array) -> tuple[_CurvePoint, bool]:
-        """(point at the coordinates here + change, (4,), or at the end of a range that the change crosses;
-        whether it crosses one).
+        """(point near here + change, (4,), or at the end of a range before it; whether at the end of a
+        range).
 
         No point outside the ranges is solved: its parameters may describe no rod. Raises Unsolvable.
         """
@@ -171,8 +168,8 @@ class BautinSpace:
 
     @staticmethod
     def _zero(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
-        """The zero of Re c on the Hopf curve near the line start + s way, both (3,), by the secant method for
-        s; raises Unsolvable."""
+        """The zero of Re c on a Hopf curve near start + s way, (3,) each; secants for s; raises
+        Unsolvable."""
         # Secants, because the normal form does not give the derivatives of Re c.
         before = 0.0
         s = BAUTIN.first_secant
@@ -224,8 +221,8 @@ def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> 
 
 
 def _followed(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
-    """(points from `start` in direction `space.side`, those at requested third values included; why the curve
-    ends)."""
+    """(points from `start`, also those at requested third values; why the curve ends), towards
+    `space.side`."""
     if not 0 < start.v[2] + space.side * BAUTIN_STEPS.shortest < 1:
         return [start], BautinEnd.range_end
     curve = follow(space, start, BAUTIN_STEPS, _report)
@@ -246,8 +243,7 @@ def _report(places: Sequence[_CurvePoint]) -> None:
 
 
 def _asked_between(space: BautinSpace, here: _CurvePoint, there: _CurvePoint) -> list[_CurvePoint]:
-    """Points at requested values of the third parameter between two points; raises Unsolvable or
-    ValueError."""
+    """Points at requested third values between two points; raises Unsolvable or ValueError."""
     a = here.v[2]
     b = there.v[2]
     inner = [z for z in map(space.axes[2].scaled, space.asked) if min(a, b) < z < max(a, b)]
