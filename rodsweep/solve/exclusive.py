@@ -2,9 +2,8 @@
 progress.
 
 PETSc, the pooled solvers, HDF5 and matplotlib may be used by one thread at a time. A handler that raises, as
-the handler of Ctrl-C does, does harm anywhere else: while compiled code calls Python to make a
-NamedTuple of results, the process ends with a segmentation fault, and pydantic replaces the exception by a
-different one.
+the handler of Ctrl-C does, does harm anywhere else: while compiled code calls Python to make a NamedTuple of
+results, the process ends with a segmentation fault, and pydantic replaces the exception by a different one.
 """
 
 import inspect

@@ -35,6 +35,6 @@ def is_found(module: str) -> bool:
 
 
 def _version(directory: Path) -> list[int]:
-    """Version numbers, [3, 18], of a path such
-    as petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages."""
+    """Version numbers, [3, 18], of a path such as
+    petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages."""
     return [int(number) for number in re.findall(r"\d+", directory.parents[3].name)]

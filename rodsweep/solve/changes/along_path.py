@@ -44,7 +44,7 @@ class Transitions:
 
     crossings: tuple[Crossing, ...] = ()
     searched: tuple[float, float] = (math.nan, math.nan)
-    """Interval of the parameter that was searched; all other fields refer to it."""
+    """Searched interval of the parameter; all other fields refer to it."""
     ended_early: bool = False
     """Whether `searched` is shorter than requested; `why_not` says why."""
     open_range: tuple[float, float] = (math.nan, math.nan)
@@ -187,8 +187,7 @@ def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, 
 
 
 def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, most: float) -> AxisCrossings:
-    """Crossings along a path, by the covering; for nonuniform arms by bisection between counts, up to
-    `most`."""
+    """Crossings by the covering; for nonuniform arms by bisection between counts, up to `most`."""
     if not isinstance(problem, ArmPath):
         return _covered(problem.path, *ends)
     search = CrossingSearch(problem, certify)
@@ -216,8 +215,7 @@ def _range_of(gaps: list[tuple[float, float]]) -> tuple[float, float]:
 def _pairs_missed_as_leaders(
     path: Path, crossings: tuple[Crossing, ...], oscillates: bool, unstable: int
 ) -> list[float]:
-    """Path variables of the crossings whose pair must be the leading eigenvalue, while the list has
-    another."""
+    """Path variables of crossings whose pair must lead, while another eigenvalue leads in the list."""
     missed = []
     for crossing in crossings:
         if crossing.kind.changes_leader:

@@ -1,14 +1,12 @@
 """Changes of the leading eigenvalue along a path of rods from real to a complex pair, or back.
 
-Such a change happens in two
-ways. At a double eigenvalue, D = D_w = 0, two real eigenvalues become a pair or a
-pair becomes two real eigenvalues. In an overtaking, a real eigenvalue and a pair exchange the lead without
+Such a change happens in two ways. At a double eigenvalue, D = D_w = 0, two real eigenvalues become a pair or
+a pair becomes two real eigenvalues. In an overtaking, a real eigenvalue and a pair exchange the lead without
 meeting. Anchors are rods whose leading eigenvalues come from the spectrum solver, certified on request.
 Between two anchors, cubic interpolation must explain two smooth quantities: the squared difference of the two
 leading eigenvalues, and the difference in real part between the leading eigenvalue and the next of the other
-kind. Otherwise an anchor is added between the
-two. Newton's method on D finds the changes, and the winding number proves that no eigenvalue lies right
-of them.
+kind. Otherwise an anchor is added between the two. Newton's method on D finds the changes, and the winding
+number proves that no eigenvalue lies right of them.
 """
 
 import math

@@ -2,9 +2,8 @@
 
 Generalised Hopf points, D(i eta) = 0 and Re c = 0, are isolated in a plane of two parameters and form a curve
 over three. Each step prescribes the parameter that changes fastest along the curve, so that folds in all
-parameters are possible. The line through the last two points is the
-predictor; the secant method then moves along the
-Hopf curve in the plane of the two free parameters, to Re c = 0.
+parameters are possible. The line through the last two points is the predictor; the secant method then moves
+along the Hopf curve in the plane of the two free parameters, to Re c = 0.
 """
 
 from collections.abc import Sequence
@@ -59,8 +58,7 @@ class BautinCurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class BautinCurve:
-    """Generalised Hopf points of a curve, in order, and why the curve ends at the first and at the last
-    point."""
+    """Points of a curve in order, and why the curve ends at the first and at the last of them."""
 
     points: tuple[BautinCurvePoint, ...]
     ends: tuple[BautinEnd, BautinEnd]
@@ -89,8 +87,7 @@ class BautinSpace:
     side: float = 1.0
 
     def scaled(self, values: Array, frequency: float) -> Array:
-        """Coordinates v, (4,), of parameter `values`, (3,): the values scaled to [0, 1], and log
-        `frequency`."""
+        """Coordinates v, (4,): parameter `values`, (3,), scaled to [0, 1], and log `frequency`."""
         places = [axis.scaled(float(value)) for axis, value in zip(self.axes, values, strict=True)]
         return np.array([*places, np.log(frequency)])
 
@@ -133,8 +130,7 @@ class BautinSpace:
         return StepResult(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
 
     def _within(self, here: Array, change: Array) -> tuple[_CurvePoint, bool]:
-        """(point near here + change, (4,), or at the end of a range before it; whether at the end of a
-        range).
+        """(point near here + change, (4,), or on the end of a range before it; whether on an end).
 
         No point outside the ranges is solved: its parameters may describe no rod. Raises Unsolvable.
         """
@@ -158,8 +154,7 @@ class BautinSpace:
         return outer
 
     def closes(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
-        """Whether the curve is closed: its first point lies between its last point and the next point
-        `there`."""
+        """Whether the curve is closed: its first point lies between its last point and `there`."""
         first = behind[0].v
         last = behind[-1].v
         step = float(np.linalg.norm(there.v - behind[-1].v))
@@ -168,8 +163,7 @@ class BautinSpace:
 
     @staticmethod
     def _zero(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
-        """The zero of Re c on a Hopf curve near start + s way, (3,) each; secants for s; raises
-        Unsolvable."""
+        """The zero of Re c near start + s way, (3,) each, by secant steps of s; raises Unsolvable."""
         # Secants, because the normal form does not give the derivatives of Re c.
         before = 0.0
         s = BAUTIN.first_secant
@@ -221,8 +215,7 @@ def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> 
 
 
 def _followed(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
-    """(points from `start`, also those at requested third values; why the curve ends), towards
-    `space.side`."""
+    """(points from `start` towards `space.side`, why the curve ends), with requested third values."""
     if not 0 < start.v[2] + space.side * BAUTIN_STEPS.shortest < 1:
         return [start], BautinEnd.range_end
     curve = follow(space, start, BAUTIN_STEPS, _report)

@@ -52,8 +52,7 @@ class HopfCoefficients:
 
     growth_slope in L^2/(k3 tau2), landau in 1/(tau2 L^2), their errors relative to their moduli;
     amplitude_coefficient a in L, frequency_slope b in L^2/(k3 tau2), their errors relative to their own
-    values. All are NaN where the computation failed; `message` then has
-    the cause.
+    values. All are NaN where the computation failed; `message` then has the cause.
     """
 
     growth_slope: complex = complex(math.nan, math.nan)

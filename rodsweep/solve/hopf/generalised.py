@@ -2,9 +2,8 @@
 
 The normal form gives the sign of Re c at every stored point of a Hopf curve. Between two neighbours of
 opposite sign D(i eta) = 0 and Re c = 0 have a common solution: Newton's method on D computes the Hopf point
-at a position between the neighbours; Brent's method finds the position at which Re c
-vanishes. Two sign changes
-between the same neighbours are missed.
+at a position between the neighbours; Brent's method finds the position at which Re c vanishes. Two sign
+changes between the same neighbours are missed.
 """
 
 import math
@@ -49,9 +48,8 @@ GENERALISED_HOPF = GeneralisedHopfSettings()
 class GeneralisedHopfPoint:
     """Generalised Hopf point: the point of a Hopf curve with Re c = 0.
 
-    values, errors: both parameters of the plane. frequency in 1/tau2, growth_slope = dw/dF in
-    L^2/(k3 tau2), landau_imag = Im c in 1/(tau2 L^2). after: index of the last stored point of the curve
-    before this point.
+    values, errors: both parameters of the plane. frequency in 1/tau2, growth_slope = dw/dF in L^2/(k3 tau2),
+    landau_imag = Im c in 1/(tau2 L^2). after: index of the last stored point of the curve before this point.
     """
 
     after: int

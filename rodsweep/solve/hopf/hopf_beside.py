@@ -46,8 +46,8 @@ def subcritical_hopf_beside(rod: Rod) -> SubcriticalHopf | None:
     """The subcritical Hopf point nearest to the force of `rod`; None if no candidate is subcritical.
 
     The candidates are the first Hopf point above and the first below the force, where the tip y of their
-    unstable cycle is at most `HOPF_BESIDE.largest_y`. The straight rod must be stable. Raises
-    Unsolvable if the search for Hopf points or a coefficient fails.
+    unstable cycle is at most `HOPF_BESIDE.largest_y`. The straight rod must be stable. Raises Unsolvable if
+    the search for Hopf points or a coefficient fails.
     """
     low = rod.F / HOPF_BESIDE.farthest_force
     high = end_below_crushing(rod, rod.F * HOPF_BESIDE.farthest_force)

@@ -1,8 +1,8 @@
 """Right and left modes of given eigenvalues on a sufficiently fine mesh, with error estimates.
 
 The result is that of the finer of two meshes; the difference of the two meshes is the error estimate. Near a
-double eigenvalue, where condition numbers grow like the inverse distance of the two
-eigenvalues, two meshes may agree by chance; an estimate of the rounding error is added there.
+double eigenvalue, where condition numbers grow like the inverse distance of the two eigenvalues, two meshes
+may agree by chance; an estimate of the rounding error is added there.
 """
 
 from dataclasses import dataclass, replace

@@ -29,11 +29,10 @@ ROD = (*(name for name in NodalRod._fields if name not in ("kept", "law")), "roo
 """Fields of `CONTEXT` with the addresses of the integrated rod's arrays. `roots`: square roots of the
 compliances. `crushed`: value of z1 with h1 = 0 at each node but the tip, (nodes,)."""
 ARRAYS = ("jacobian", "base", "times", "states", "points", "constant", "rates")
-"""Fields of `CONTEXT` with the addresses of a `Workspace`'s arrays: the last
-Jacobian, (unknowns, unknowns); the state at
-which a step's matrix is made, (unknowns,); times, (2 MAX_STAGES,), and states, (2 MAX_STAGES, unknowns), of
-the stages of this step and the last; extrapolation points of each stage, (MAX_STAGES, MAX_STAGE_POINTS); the
-constant of a stage's equation and the rates f, (unknowns,) each."""
+"""Fields of `CONTEXT` with the addresses of a `Workspace`'s arrays: the last Jacobian, (unknowns, unknowns);
+the state at which a step's matrix is made, (unknowns,); times, (2 MAX_STAGES,), and states, (2 MAX_STAGES,
+unknowns), of the stages of this step and the last; extrapolation points of each stage, (MAX_STAGES,
+MAX_STAGE_POINTS); the constant of a stage's equation and the rates f, (unknowns,) each."""
 HANDLES = ("ts", "matrix", "ksp", "residual", "correction")
 """Fields of `CONTEXT` with the handles of PETSc objects."""
 CONTEXT = np.dtype(

@@ -1,12 +1,12 @@
 """The rod bent until its tip is at a given point (x, y): the start of a motion that a user chooses.
 
-Of all curvatures Pi that put the tip at (x, y) the bent rod has those with the least integral of
-Pi^2. A force at the tip,
-without moment, bends a rod of constant bending stiffness so (an elastica). Stretch and shear are those of the
-straight rod under its follower force. Pi vanishes at the tip, so the state satisfies the rod's own conditions
-there. Newton's method solves for the curvatures and the force f, with W the weights of the quadrature,
+Of all curvatures Pi that put the tip at (x, y) the bent rod has those with the least integral of Pi^2. A
+force at the tip, without moment, bends a rod of constant bending stiffness so (an elastica). Stretch and
+shear are those of the straight rod under its follower force. Pi vanishes at the tip, so the state satisfies
+the rod's own conditions there. Newton's method solves for the curvatures and the force f, with W the weights
+of the quadrature,
 
-    W Pi - f . d(x, y)/dPi = 0, (x, y)(Pi) = target,
+    W Pi - f . d(x, y)/dPi = 0,    (x, y)(Pi) = target,
 
 for targets along a path that starts at the tip of a slightly bent rod.
 """

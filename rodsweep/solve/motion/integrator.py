@@ -2,8 +2,8 @@
 
 The default is fully implicit ARKIMEX of order 5, the fastest scheme in measurements. Three measures make it
 fast. Stages are extrapolated from the stages of this step and the last. Newton's method is compiled, and its
-tolerance is a fraction of the step's tolerance. Each step has a single Jacobian, at the state
-predicted for the middle of the step; a Jacobian at the start costs a quarter more iterations.
+tolerance is a fraction of the step's tolerance. Each step has a single Jacobian, at the state predicted for
+the middle of the step; a Jacobian at the start costs a quarter more iterations.
 """
 
 from collections.abc import Callable
@@ -140,9 +140,9 @@ class Integrator:
         """Integrates from the state z, (unknowns,), over `duration`, in tau2, or to the limit. A failure is a
         `RunEnding`, not an exception.
 
-        step: the first time step, or every time step of a scheme with equal steps; 0 for the
-        default. Tolerances are relative to the largest
-        component of z, so that small motions are integrated as accurately as large ones.
+        step: the first time step, or every time step of a scheme with equal steps; 0 for the default.
+        Tolerances are relative to the largest component of z, so that small motions are integrated as
+        accurately as large ones.
         """
         ts = self.ts
         scheme = self.scheme

@@ -142,9 +142,8 @@ def state_equation(c: Any, at: int, snes: int, X: int) -> None:
     """Gets the equation of a stage, shift x + constant - f(x) = 0, and its time from PETSc into the context
     `c`.
 
-    In every time scheme the slope dx/dt is affine in
-    x. The residual without f at any x, and the shift, which comes with
-    the matrix, therefore determine the equation.
+    In every time scheme the slope dx/dt is affine in x. The residual without f at any x, and the shift, which
+    comes with the matrix, therefore determine the equation.
     """
     n = c.unknowns
     outputs = integers(at, 3)

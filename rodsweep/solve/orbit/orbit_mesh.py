@@ -22,9 +22,9 @@ class OrbitMeshSettings:
     """Settings for the choice of the mesh of an orbit in space and time."""
 
     space_factor: float = 5.0
-    """Predicted error of period and extrema due to the mesh in space, in units of the squared tail in
-    space. With `space_factor` and `time_factor` the first mesh is fine enough for five rods in six, and
-    costs a fifth more than necessary."""
+    """Predicted error of period and extrema due to the mesh in space, in units of the squared tail in space.
+    With `space_factor` and `time_factor` the first mesh is fine enough for five rods in six, and costs a
+    fifth more than necessary."""
     time_factor: float = 1.5
     """Predicted error of period and extrema due to the intervals in time, in units of the squared tail in
     time."""
