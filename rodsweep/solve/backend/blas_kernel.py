@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_info
 
 from . import petsc  # noqa: F401 - libraries are visible only once loaded
 
-NAMELESS = "unknown"
+UNKNOWN_LIBRARY = "unknown"
 """Name reported for a BLAS library that states no name, for example the reference BLAS."""
 
 
@@ -24,8 +24,8 @@ def blas() -> str:
             found[_owner(library["filepath"])].add(" ".join(str(word) for word in words if word))
     petscs, numpys = (" and ".join(sorted(found[name])) for name in ("PETSc", "NumPy"))
     if numpys in ("", petscs):
-        return petscs or NAMELESS
-    return f"PETSc {petscs or NAMELESS}, NumPy {numpys}"
+        return petscs or UNKNOWN_LIBRARY
+    return f"PETSc {petscs or UNKNOWN_LIBRARY}, NumPy {numpys}"
 
 
 def _owner(path: str) -> str:

@@ -19,7 +19,7 @@ from numba.extending import intrinsic
 from ...model.compiled.compilation import c_callback, compiled
 from .petsc import PETSc
 
-CALLED = (
+PETSC_FUNCTIONS = (
     "VecGetArrayRead",
     "VecRestoreArrayRead",
     "VecGetArray",
@@ -30,7 +30,7 @@ CALLED = (
 )
 """Names of the PETSc functions that compiled code calls."""
 LIBRARY = ctypes.CDLL(PETSc.__file__)  # a module's symbols include those of the libraries it is linked to
-for _name in CALLED:
+for _name in PETSC_FUNCTIONS:
     binding.add_symbol(_name, ctypes.cast(getattr(LIBRARY, _name), ctypes.c_void_p).value)
 
 POINTER = types.intp

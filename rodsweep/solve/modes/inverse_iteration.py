@@ -77,7 +77,7 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
     pairing = (B * Z * X).sum(axis=0)
     norms = [np.sqrt((B * np.abs(V) ** 2).sum(axis=0)) for V in (X, Z)]
     return replace(
-        no_vectors(Resolution(form.mesh.elements, form.mesh.order), len(eigenvalues), len(points)),
+        unknown_vectors(Resolution(form.mesh.elements, form.mesh.order), len(eigenvalues), len(points)),
         right=np.stack([(evaluation @ field).T for field in form.fields(X)]),
         deformation=form.strains(X, points),
         left=np.stack([(evaluation @ field).T for field in form.fields(Z.conj())]),
@@ -87,7 +87,7 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
     )
 
 
-def no_vectors(resolution: Resolution, modes: int, points: int) -> ModeVectors:
+def unknown_vectors(resolution: Resolution, modes: int, points: int) -> ModeVectors:
     """Placeholder for modes that were not computed: all entries NaN. modes, points: numbers of both."""
     shape = np.full((2, modes, points), np.nan + 0j)
     numbers = np.full(modes, np.nan)

@@ -24,7 +24,7 @@ from ..point import solved
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus
 from .convergence import converged_vectors
-from .inverse_iteration import ModeVectors, no_vectors
+from .inverse_iteration import ModeVectors, unknown_vectors
 from .transient_growth import Growth, growth_of
 
 
@@ -76,7 +76,7 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
     if rod.uniform and not rod.standard:
         return _from_equivalent(rod, request)
     spectrum = solve_spectrum(rod, SpectrumRequest(request.modes, request.accuracy, request.certify))
-    vectors = no_vectors(Resolution(spectrum.elements, spectrum.order), request.modes, request.nodes)
+    vectors = unknown_vectors(Resolution(spectrum.elements, spectrum.order), request.modes, request.nodes)
     outcome = Modes(
         status=spectrum.status,
         spectrum=spectrum,

@@ -14,7 +14,7 @@ from ...model.material.jump import COLUMNS
 from ..backend.c_functions import floats, floats_in, integers
 from .time_scheme import EXTRAPOLATION_POINTS
 
-NUMBERS_PER_SIDE = len(COLUMNS)
+CONSTANTS_PER_JUMP_SIDE = len(COLUMNS)
 """Number of material constants that are stored for each side of a jump of the material."""
 MAX_STAGES = 1 + max(max(stages) for stages in EXTRAPOLATION_POINTS.values())
 """Maximum number of stages of a time step that are stored for extrapolation, the state at the start
@@ -96,7 +96,7 @@ def rod_of(c: Any) -> NodalRod:
     second = floats_in(c.second, (d, m, m))
     none = integers(c.rest, 0)
     jumps = integers(c.jumps, c.jump_count)
-    sides = floats_in(c.sides, (c.jump_count, 2, NUMBERS_PER_SIDE))
+    sides = floats_in(c.sides, (c.jump_count, 2, CONSTANTS_PER_JUMP_SIDE))
     tip_stress = floats(c.tip_stress, d)
     return NodalRod(tip_stress, rest, compliance, drag, mobility, second, none, c.law, jumps, sides)
 

@@ -128,7 +128,7 @@ def predict(c: Any, guess: Array) -> None:
 
 
 @compiled
-def remember(c: Any, stage: Array) -> None:
+def store_stage(c: Any, stage: Array) -> None:
     """Stores the solved `stage`, (unknowns,), and its time `c.time`, for later extrapolation."""
     if c.stages < MAX_STAGES:
         at = c.current * MAX_STAGES + c.stages

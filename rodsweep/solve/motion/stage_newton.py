@@ -44,7 +44,7 @@ from .petsc_calls import (
     step_of,
     write_array,
 )
-from .predictor import predict, remember
+from .predictor import predict, store_stage
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -231,7 +231,7 @@ def solve_stage(snes: int, X: int) -> int:
             linearise_at_start(c)
             reason = NOT_CONTRACTING
     read_array(X, at)
-    remember(c, floats(integers(at, 1)[0], c.unknowns))
+    store_stage(c, floats(integers(at, 1)[0], c.unknowns))
     release_read(X, at)
     set_iterations(snes, iteration)
     set_reason(snes, reason)

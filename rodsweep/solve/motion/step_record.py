@@ -36,11 +36,12 @@ STEP_RECORD = StepRecordSettings()
 
 OUT_OF_MEMORY = 55
 """PETSc's error code PETSC_ERR_MEM."""
-STOPPED = int(PETSc.TS.ConvergedReason.CONVERGED_USER)
+CONVERGED_USER = int(PETSc.TS.ConvergedReason.CONVERGED_USER)
+"""PETSc's TSConvergedReason with which a run is stopped before its end."""
 
 
 @compiled
-def keep_step(c: Any, at: int, ts: int) -> int:
+def store_step(c: Any, at: int, ts: int) -> int:
     """Stores the time and the state of the `ts` as a row; ends the run if h1 <= 0 at a node, where the model
     does not hold."""
     n = c.unknowns
@@ -67,7 +68,7 @@ def keep_step(c: Any, at: int, ts: int) -> int:
     for i in range(nodes):
         if row[1 + i] <= crushed[i] and not c.left:
             c.left = 1
-            set_ts_reason(ts, STOPPED)
+            set_ts_reason(ts, CONVERGED_USER)
     return 0
 
 
@@ -77,7 +78,7 @@ def end_step(ts: int) -> int:
     address = np.empty(1, np.int64)
     context_of_ts(ts, address.ctypes.data)
     context = address[0]
-    return keep_step(record_at(context, CONTEXT), context + OUTPUTS, ts)
+    return store_step(record_at(context, CONTEXT), context + OUTPUTS, ts)
 
 
 @compiled
