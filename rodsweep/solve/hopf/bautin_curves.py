@@ -150,7 +150,7 @@ class BautinSpace:
         return np.ravel([place.v[:3], 1 - place.v[:3]], order="F") - BAUTIN.on_edge
 
     def landed(self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int) -> _CurvePoint | None:
-        """The outer point itself: `_within` has already shortened the step to end on the edge."""
+        """Point of the curve on the end of a range: `outer`, because `step` never goes beyond the end."""
         return outer
 
     def closes(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:

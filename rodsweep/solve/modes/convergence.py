@@ -29,7 +29,7 @@ class ModeMeshSettings:
     """Increase of the element order from the first mesh to the second, which reduces the error of the modes
     by a factor of 100."""
     max_meshes: int = 4
-    """Maximum number of meshes after the first."""
+    """Maximum number of meshes after the first, each finer than the one before."""
     max_unknowns: int = 1500
     """Largest number of unknowns of a mesh; dense linear algebra on a larger mesh takes seconds."""
     finest_accuracy: float = 1e-24

@@ -87,7 +87,8 @@ def largest_norm(
 
 
 def _squares(propagator: Propagator, times: Array) -> tuple[Array, Array]:
-    """`Propagator.squares` in batches; each result (times,)."""
+    """(|exp(L t)|^2, curvature bound c) at `times`, (times,) each, evaluated in batches to limit the
+    memory."""
     parts = [propagator.squares(part) for part in np.array_split(times, len(times) // NORM_MAXIMUM.batch + 1)]
     return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
 

@@ -43,7 +43,7 @@ class GrowthSettings:
     """Ratio of the element orders of a further mesh and the mesh before: boundary layers at the tip need high
     orders."""
     max_meshes: int = 5
-    """Maximum number of meshes after the first."""
+    """Maximum number of meshes after the first, each finer than the one before."""
     max_unknowns: int = 400
     """Largest number of unknowns of a further mesh; all modes of a larger mesh take more than a second."""
 

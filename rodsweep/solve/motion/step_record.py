@@ -35,7 +35,7 @@ class StepRecordSettings(CompiledSettings):
 STEP_RECORD = StepRecordSettings()
 
 OUT_OF_MEMORY = 55
-"""PETSc's error code PETSC_ERR_MEM."""
+"""PETSc's error code for failed memory allocation, PETSC_ERR_MEM."""
 CONVERGED_USER = int(PETSc.TS.ConvergedReason.CONVERGED_USER)
 """PETSc's TSConvergedReason with which a run is stopped before its end."""
 

@@ -67,8 +67,9 @@ def newton(
     """The periodic orbit near the start `orbit`, by Newton's method; raises Unsolvable if it does not
     converge.
 
-    tolerance: relative, of states and period. workspace: memory of the matrices. parameter: parameter of the
-    matrix's tangent. A matrix is reused while the Newton steps decrease fast.
+    tolerance: relative, of states and period. workspace: memory of the matrices. parameter: name of the
+    parameter by which the matrix gives the orbit's derivative, or
+    None. A matrix is reused while the Newton steps decrease fast.
     """
     matrix = Linearisation(orbit, workspace, parameter)
     distance = 0.0
