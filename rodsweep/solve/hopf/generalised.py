@@ -36,7 +36,7 @@ class GeneralisedHopfSettings:
     """Tolerance of Brent's method, as a fraction of the distance between two neighbours."""
     slope_step: float = 1e-3
     """Difference step for the slope of Re c, as a fraction of the distance between two neighbours."""
-    vanishes: float = 1e-6
+    max_zero_ratio: float = 1e-6
     """Largest |Re c|/|c| accepted as a zero of Re c; a larger value means that Re c jumps from one sign to
     the other."""
 
@@ -164,7 +164,7 @@ class HopfCurve:
         except (*FAILURES, ValueError):
             return None
         slope = (beyond.share - before.share) / (2 * GENERALISED_HOPF.slope_step)
-        if abs(here.share) > GENERALISED_HOPF.vanishes or slope == 0:
+        if abs(here.share) > GENERALISED_HOPF.max_zero_ratio or slope == 0:
             return None
         # Points of undecided sign may lie between the two, before or behind the zero.
         passed = (self.scaled[first + 1 : last] - start) @ chord <= s * (chord @ chord)
