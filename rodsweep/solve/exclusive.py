@@ -1,9 +1,9 @@
-"""Lets one thread of this process solve at a time, and runs signal handlers only at safe places of a solve.
+"""Lets one thread of this process solve at a time, and runs signal handlers only where a solver reports
+progress.
 
-PETSc, the solvers kept from point to point, HDF5 and matplotlib may be used by one thread at a time.
-Elsewhere a handler that raises, as that of Ctrl-C, does harm: while compiled code calls Python to make a
-NamedTuple of results, the process ends with a segmentation fault, and pydantic replaces the exception by a
-different one.
+PETSc, the pooled solvers, HDF5 and matplotlib may be used by one thread at a time. A handler that raises, as
+the handler of Ctrl-C does, does harm anywhere else: while compiled code calls Python to make a NamedTuple of
+results, the process ends with a segmentation fault, and pydantic replaces the exception by a different one.
 """
 
 import inspect
@@ -25,11 +25,11 @@ R = TypeVar("R")
 
 _one = RLock()
 _signals = tuple(map(int, signal.valid_signals()))
-"""Numbers of all signals. Listing them takes longer than holding them."""
+"""Numbers of all signals, listed once because listing takes longer than replacing the handlers."""
 
 
 def one_at_a_time(function: Callable[P, R]) -> Callable[P, R]:
-    """`function`, which waits until no other thread executes a decorated function."""
+    """Decorator: `function` waits until no other thread executes a function with this decorator."""
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
@@ -40,7 +40,7 @@ def one_at_a_time(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def signals_held(function: Callable[P, R]) -> Callable[P, R]:
-    """`function` with signal handlers deferred to the safe places that solvers report, or to its end."""
+    """Decorator: signal handlers run only at the solvers' progress reports, or when `function` ends."""
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
@@ -51,9 +51,9 @@ def signals_held(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def solving(function: Callable[P, R]) -> Callable[P, R]:
-    """`function` for one thread at a time and with signals held.
+    """Decorator for a solve: `one_at_a_time` and `signals_held`.
 
-    Kept solvers are dropped after an exception, which may have interrupted their work.
+    An exception destroys all pooled solvers, because it may have interrupted a solver at work.
     """
 
     @wraps(function)
@@ -68,9 +68,9 @@ def solving(function: Callable[P, R]) -> Callable[P, R]:
 
 
 class HeldSignals:
-    """Defers the Python handlers of signals to the next report, or to the end.
+    """Context in which Python's signal handlers wait for the next progress report or the end of the context.
 
-    Python runs handlers in the main thread only; in other threads this does nothing.
+    Python runs signal handlers in the main thread only; in other threads the context does nothing.
     """
 
     def __init__(self) -> None:
@@ -96,7 +96,8 @@ class HeldSignals:
         self._call_handlers()
 
     def call_due(self, _: MakePosition) -> None:
-        """Calls the handlers of signals that arrived, at a safe place, and raises their exceptions."""
+        """Calls the handlers of the signals that arrived since the last call; a handler's exception is
+        raised."""
         if self._due and current_thread() is main_thread():
             self._call_handlers()
 

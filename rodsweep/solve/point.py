@@ -1,4 +1,4 @@
-"""Solution of one point: its duration, and a failure as an outcome instead of an exception."""
+"""Runs the solver of one point of a sweep: measures the time and turns exceptions into outcomes."""
 
 import time
 from collections.abc import Callable
@@ -11,15 +11,15 @@ from ..watch import report
 from .backend.petsc import PETSC_ERRORS
 
 Outcome = TypeVar("Outcome", bound=Any)
-"""A dataclass with the field `seconds`."""
+"""Result of a solver: a dataclass with the field `seconds`."""
 
 
 class Unsolvable(Exception):
-    """The model or the method has no solution for this point; the message says why."""
+    """The model or the numerical method has no solution for a rod; the message says why."""
 
 
 FAILURES = (*PETSC_ERRORS, Unsolvable, ArithmeticError, MemoryError, np.linalg.LinAlgError)
-"""Exceptions by which a solve may fail; any other exception is a bug and ends the run."""
+"""Exceptions that count as a failed solve; any other exception is a bug and ends the run."""
 
 
 def solved(
@@ -27,8 +27,8 @@ def solved(
     failed: Callable[[str], Outcome],
     more_failures: tuple[type[Exception], ...] = (),
 ) -> Outcome:
-    """Result of `solve`, or `failed(cause)`, with its duration. more_failures: further exceptions to
-    catch."""
+    """Result of `solve()`, or `failed(cause)` after an exception in `FAILURES` or `more_failures`. `seconds`
+    is set to the duration."""
     started = time.perf_counter()
     try:
         with np.errstate(all="ignore"):
@@ -40,6 +40,6 @@ def solved(
 
 
 def cause_of(error: BaseException) -> str:
-    """The last line of an error's message, which in PETSc's messages is the cause."""
+    """Last line of the message of `error`; PETSc writes the cause there."""
     cause = error.__cause__ or error
     return (str(cause) or type(cause).__name__).splitlines()[-1]

@@ -1,17 +1,17 @@
-"""Status of the outcomes of all tasks, with a sentence for the user."""
+"""Base class of the status codes of all tasks. Each code has a sentence for the user."""
 
 from enum import IntEnum
 from typing import Self
 
 
 class PointStatus(IntEnum):
-    """Outcome of a point; the value is what the result file stores, the name its flag meaning.
+    """Status of one point of a sweep. The result file stores the integer, and the names as flag meanings.
 
-    A member is (value, sentence) or, where the point ended as it should, (value, sentence, True).
+    A member is defined as (value, sentence), or as (value, sentence, True) if the status means success.
     """
 
     sentence: str
-    """Cause and remedy."""
+    """Cause of the status and remedy, for the user."""
     succeeded: bool
 
     def __new__(cls, value: int, sentence: str, succeeded: bool = False) -> Self:

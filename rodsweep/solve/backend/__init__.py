@@ -1,1 +1,1 @@
-"""PETSc, SLEPc and the BLAS, without knowledge of the rod."""
+"""Interfaces to PETSc, SLEPc, BLAS and LAPACK, without knowledge of the rod."""

@@ -1,5 +1,4 @@
-"""Check that PETSc can solve in this process, without starting PETSc: the start is collective over all
-ranks."""
+"""Checks that PETSc can start in this process, without starting PETSc, which is collective over all ranks."""
 
 import os
 
@@ -19,7 +18,7 @@ def require_directory() -> None:
 
 
 def require_solvers() -> None:
-    """EnvironmentIncomplete if PETSc cannot start, InputError if the formulas may not be compiled."""
+    """Raises EnvironmentIncomplete if PETSc cannot start, InputError if numba's compiler is switched off."""
     import numba
 
     if numba.config.DISABLE_JIT:

@@ -11,12 +11,12 @@ from threadpoolctl import threadpool_info
 
 from . import petsc  # noqa: F401 - libraries are visible only once loaded
 
-NAMELESS = "unknown"
-"""Name reported for a library without a name, for example the reference BLAS."""
+UNKNOWN_LIBRARY = "unknown"
+"""Name reported for a BLAS library that states no name, for example the reference BLAS."""
 
 
 def blas() -> str:
-    """Name, version and kernel of PETSc's BLAS, and of NumPy's BLAS if different, in a line."""
+    """One line with name, version and kernel of PETSc's BLAS, and of NumPy's BLAS if the two differ."""
     found: dict[str, set[str]] = {"PETSc": set(), "NumPy": set(), "SciPy": set()}
     for library in threadpool_info():
         if library["user_api"] == "blas":
@@ -24,12 +24,12 @@ def blas() -> str:
             found[_owner(library["filepath"])].add(" ".join(str(word) for word in words if word))
     petscs, numpys = (" and ".join(sorted(found[name])) for name in ("PETSc", "NumPy"))
     if numpys in ("", petscs):
-        return petscs or NAMELESS
-    return f"PETSc {petscs or NAMELESS}, NumPy {numpys}"
+        return petscs or UNKNOWN_LIBRARY
+    return f"PETSc {petscs or UNKNOWN_LIBRARY}, NumPy {numpys}"
 
 
 def _owner(path: str) -> str:
-    """Owner of a library: NumPy's or SciPy's wheel, or else the system or PETSc."""
+    """Package that brought the library at `path`: NumPy, SciPy, or else PETSc (the system's library)."""
     names = {part.removesuffix(".libs") for part in Path(path).parts}
     wheels = (owner for owner in ("NumPy", "SciPy") if owner.lower() in names)
     return next(wheels, "PETSc")

@@ -1,5 +1,5 @@
-"""Compiled code and libpetsc: C functions made by numba, C functions of PETSc for compiled code, memory by
-address.
+"""Links compiled code and libpetsc: callbacks made by numba, PETSc's functions for compiled code, arrays at
+memory addresses.
 
 The module has no knowledge of the rod.
 """
@@ -19,7 +19,7 @@ from numba.extending import intrinsic
 from ...model.compiled.compilation import c_callback, compiled
 from .petsc import PETSc
 
-CALLED = (
+PETSC_FUNCTIONS = (
     "VecGetArrayRead",
     "VecRestoreArrayRead",
     "VecGetArray",
@@ -28,9 +28,9 @@ CALLED = (
     "MatDenseRestoreArray",
     "PetscObjectStateGet",
 )
-"""Functions of PETSc that compiled code calls."""
+"""Names of the PETSc functions that compiled code calls."""
 LIBRARY = ctypes.CDLL(PETSc.__file__)  # a module's symbols include those of the libraries it is linked to
-for _name in CALLED:
+for _name in PETSC_FUNCTIONS:
     binding.add_symbol(_name, ctypes.cast(getattr(LIBRARY, _name), ctypes.c_void_p).value)
 
 POINTER = types.intp
@@ -38,21 +38,21 @@ INT = types.int32 if PETSc.IntType == np.int32 else types.int64
 
 
 def c_function(*arguments: Any) -> Callable[[Callable], Any]:
-    """Compiles a function with these argument types for calls from C; the C function returns an error
-    code."""
+    """Decorator that compiles a function with argument types `arguments` for calls from C. The function
+    returns PETSc's error code, 0 for success."""
     return partial(c_callback, signature=types.int32(*arguments))
 
 
 def petsc_function(name: str) -> Any:
-    """The function int name(object, array*) of libpetsc for compiled code; unlike a ctypes function it can be
-    cached.
+    """The libpetsc function `int name(object, array*)` for compiled code. Code with this function can be
+    cached on disk, code with a ctypes function cannot.
     """
     return types.ExternalFunction(name, typing.signature(types.int32, POINTER, POINTER))
 
 
 @intrinsic
 def pointer(context: Any, address: Any) -> Any:
-    """An integer converted into a pointer."""
+    """The integer `address` as a void pointer, in compiled code."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.inttoptr(arguments[0], context.get_value_type(types.voidptr))
@@ -67,8 +67,8 @@ def floats(address: int, size: int) -> Any:
 
 @compiled
 def floats_in(address: int, shape: Any) -> Any:
-    """`floats` with the shape of a tuple; a separate `reshape` takes as long as the rate of a rod with ten
-    nodes."""
+    """Array of doubles at `address`, of the given `shape`. `floats(...).reshape` would take as long as the
+    evaluation of f for a rod with ten nodes."""
     return numba.carray(pointer(address), shape, np.float64)
 
 
@@ -79,12 +79,12 @@ def integers(address: int, size: int) -> Any:
 
 @compiled
 def record_at(address: int, dtype: Any) -> Any:
-    """The record with fields `dtype` at an address; an assignment to a field writes to the memory at this
-    address."""
+    """The record of type `dtype` at `address`; an assignment to a field writes to the memory there."""
     return numba.carray(pointer(address), (1,), dtype)[0]
 
 
 def call(name: str, *arguments: int) -> None:
-    """Calls a function of libpetsc that takes only pointers; raises RuntimeError on failure."""
+    """Calls the libpetsc function `name`, which takes only pointers; raises RuntimeError if its error code is
+    not 0."""
     if getattr(LIBRARY, name)(*map(ctypes.c_void_p, arguments)):
         raise RuntimeError(f"the PETSc function {name} failed")

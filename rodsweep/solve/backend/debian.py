@@ -1,7 +1,8 @@
-"""Debian's PETSc and SLEPc on Python's search path.
+"""Puts Debian's petsc4py and slepc4py on Python's search path.
 
-Debian keeps petsc4py and slepc4py beside each build of PETSc. Its own `.pth` files name /usr/lib/petsc, a
-link that only the packages for compiling make. This module finds the directories without the link.
+Debian installs petsc4py and slepc4py in the directory of each build of PETSc. Debian's `.pth` files name
+/usr/lib/petsc, a link that only the development packages create. This module finds the directories without
+the link.
 """
 
 import os
@@ -14,9 +15,9 @@ LIBRARIES = Path("/usr/lib")
 
 
 def add_debian_modules(libraries: Path = LIBRARIES) -> None:
-    """Appends Debian's newest real petsc4py and slepc4py to `sys.path`.
+    """Appends the directories of Debian's newest petsc4py and slepc4py for real numbers to `sys.path`.
 
-    A module that Python already finds stays, and so does the choice of PETSC_DIR and SLEPC_DIR.
+    Nothing is appended for a module that Python already finds, or where PETSC_DIR or SLEPC_DIR is set.
     """
     for name in ("petsc", "slepc"):
         if f"{name.upper()}_DIR" in os.environ or is_found(f"{name}4py"):
@@ -26,7 +27,7 @@ def add_debian_modules(libraries: Path = LIBRARIES) -> None:
 
 
 def is_found(module: str) -> bool:
-    """Whether Python finds a module; the module is not loaded."""
+    """Whether Python finds the module named `module`; the module is not imported."""
     try:
         return find_spec(module) is not None
     except (ImportError, ValueError):  # a module that was set to None, as the tests do
@@ -34,5 +35,6 @@ def is_found(module: str) -> bool:
 
 
 def _version(directory: Path) -> list[int]:
-    """Version in a path such as petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages."""
+    """Version numbers, [3, 18], of a path such as
+    petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages."""
     return [int(number) for number in re.findall(r"\d+", directory.parents[3].name)]

@@ -1,6 +1,6 @@
-"""Pool of PETSc and SLEPc objects that are kept from point to point and destroyed when replaced.
+"""Pools of PETSc and SLEPc solvers that are reused from point to point and destroyed when replaced.
 
-Python's garbage collection would not destroy them: petsc4py only sets the collected objects aside.
+Python's garbage collection would not free PETSc objects: petsc4py only sets collected objects aside.
 """
 
 from collections import OrderedDict
@@ -12,22 +12,22 @@ from weakref import WeakSet
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KeptSettings:
-    """Settings for the memory of a pool."""
+    """Memory limit of a pool."""
 
     max_bytes: int = 100_000_000
-    """Memory of the objects of a full pool: dozens of solvers for a few modes, or three for 300 modes, which
-    take seconds a solve and milliseconds to create."""
+    """Memory, in bytes, above which a pool destroys objects before it creates another: dozens of solvers for
+    a few modes, or three solvers for 300 modes."""
 
 
 KEPT = KeptSettings()
 
 
 class Destroyable(Protocol):
-    """An object with a `destroy` method that frees memory, and an estimate of this memory."""
+    """An object for an `LruPool`: `destroy` frees its memory, `kept_bytes` estimates this memory."""
 
     @property
     def kept_bytes(self) -> int:
-        """Memory that the object takes at present, in bytes, approximately."""
+        """Estimate of the object's present memory, in bytes."""
 
     def destroy(self) -> None: ...
 
@@ -37,10 +37,10 @@ Object = TypeVar("Object", bound=Destroyable)
 
 
 class LruPool(Generic[Key, Object]):
-    """A pool of objects made by `create` from keys; a full pool drops the least recently used objects.
+    """Cache of objects made by `create(key)`; a full pool destroys the least recently used objects.
 
-    A pool is full with `limit` objects, or with `KEPT.max_bytes`. Objects grow with what they solve, so a
-    pool may exceed the memory until the next object is created.
+    A pool is full with `limit` objects, or above `KEPT.max_bytes`. Objects may grow while they solve, so a
+    pool may exceed the memory limit until the next object is created.
     """
 
     def __init__(self, create: Callable[[Key], Object], limit: int) -> None:
@@ -54,11 +54,12 @@ class LruPool(Generic[Key, Object]):
 
     @property
     def kept_bytes(self) -> int:
-        """Memory of all objects, in bytes, approximately."""
+        """Estimate of the memory of all objects in the pool, in bytes."""
         return sum(kept.kept_bytes for kept in self._objects.values())
 
     def get(self, key: Key) -> Object:
-        """The object of a key, kept or new; a later call with a different key may destroy the object."""
+        """The object for `key`, created if the pool has none; a later call with a different key may destroy
+        it."""
         if key not in self._objects:
             while len(self._objects) >= self._limit or self.kept_bytes > KEPT.max_bytes:
                 self._objects.popitem(last=False)[1].destroy()
@@ -67,12 +68,12 @@ class LruPool(Generic[Key, Object]):
         return self._objects[key]
 
     def drop(self, key: Key) -> None:
-        """Destroys the object of a key, if kept."""
+        """Destroys the object for `key`, if the pool has one."""
         if key in self._objects:
             self._objects.pop(key).destroy()
 
     def clear(self) -> None:
-        """Destroys all objects."""
+        """Destroys all objects of the pool."""
         while self._objects:
             self._objects.popitem()[1].destroy()
 
@@ -81,6 +82,6 @@ _pools: WeakSet[LruPool[Any, Any]] = WeakSet()
 
 
 def forget_all() -> None:
-    """Destroys every kept object: an exception in the middle of a solve may leave any of them unusable."""
+    """Destroys the objects of all pools, after an exception in a solve, which may leave objects unusable."""
     for pool in list(_pools):
         pool.clear()

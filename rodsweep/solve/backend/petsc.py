@@ -1,4 +1,4 @@
-"""Start of PETSc and SLEPc, and the capabilities of this installation."""
+"""Starts PETSc and SLEPc on import; reports the versions, options and sparse solvers of this installation."""
 
 from functools import cache
 
@@ -21,15 +21,17 @@ except (ImportError, ValueError) as error:  # ValueError: compiled for another N
 __all__ = ["PETSC_ERRORS", "PETSc", "SLEPc", "options", "sparse_package", "versions"]
 
 PETSC_ERRORS = (PETSc.Error, SystemError)
-"""Errors of PETSc; some releases of petsc4py wrap a PETSc.Error into a SystemError."""
+"""Exceptions that a failure inside PETSc raises; some releases of petsc4py wrap a PETSc.Error into a
+SystemError."""
 
 SPARSE_PACKAGES = ("superlu", "umfpack", "klu", "mumps")
-"""Sparse factorisations with pivoting, the fastest on these matrices first; PETSc's own has no pivoting."""
+"""Names of PETSc's sparse LU packages with pivoting, the fastest first, as measured on the rod's matrices.
+PETSc's own LU has no pivoting."""
 
 
 @cache
 def sparse_package() -> str | None:
-    """First of SPARSE_PACKAGES in this PETSc; None for a PETSc without sparse direct solvers."""
+    """First package in SPARSE_PACKAGES with which PETSc was built; None if PETSc has no such package."""
     for name in SPARSE_PACKAGES:
         if PETSc.Sys.hasExternalPackage({"umfpack": "suitesparse", "klu": "suitesparse"}.get(name, name)):
             return name
@@ -37,7 +39,7 @@ def sparse_package() -> str | None:
 
 
 def versions() -> dict[str, str]:
-    """Versions of PETSc, SLEPc and their Python bindings."""
+    """Versions of PETSc, SLEPc, petsc4py and slepc4py, by lower-case name."""
     return {
         "petsc": ".".join(map(str, PETSc.Sys.getVersion())),
         "slepc": ".".join(map(str, SLEPc.Sys.getVersion())),
@@ -47,6 +49,7 @@ def versions() -> dict[str, str]:
 
 
 def options(prefix: str = "") -> str:
-    """PETSc options with this prefix from PETSC_OPTIONS or a resource file, as one line."""
+    """One line with the user's PETSc options whose names begin with `prefix`, from PETSC_OPTIONS or a
+    resource file."""
     given = sorted((k, v) for k, v in PETSc.Options().getAll().items() if k != "no_signal_handler")
     return " ".join(f"-{k} {v or ''}".strip() for k, v in given if k.startswith(prefix))

@@ -23,7 +23,7 @@ _dgemm = types.ExternalFunction("rodsweep_dgemm", typing.signature(types.void, *
 
 @compiled
 def product(a: Any, b: Any, c: Any, extents: Any, factors: Array) -> None:
-    """C = factors[0] A B + factors[1] C, for matrices stored by rows.
+    """Matrix product C = factors[0] A B + factors[1] C by dgemm, in place, for matrices stored by rows.
 
     a, b, c: addresses of the first entries. extents: int32 (m, n, k, lda, ldb, ldc) for A (m, k) and B (k,
     n), with the row lengths of A, B and C.
@@ -38,7 +38,7 @@ def product(a: Any, b: Any, c: Any, extents: Any, factors: Array) -> None:
 
 @compiled
 def square_product(A: Array, B: Array, C: Array, factor: float, keep: float) -> None:
-    """C = factor A B + keep C, all of shape (n, n) and contiguous."""
+    """Matrix product C = factor A B + keep C, in place; A, B and C have shape (n, n) and are contiguous."""
     n = len(A)
     extents = np.full(6, n, np.int32)
     factors = np.array([factor, keep])

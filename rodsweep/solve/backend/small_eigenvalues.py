@@ -22,10 +22,11 @@ _dgeev = types.ExternalFunction("rodsweep_dgeev", typing.signature(types.void, *
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SmallEigenvalueSettings(CompiledSettings):
-    """Settings for LAPACK."""
+    """Size of the work array of LAPACK's dgeev."""
 
     work: int = 12
-    """Work memory in units of the order; LAPACK needs at least 3, and uses more for blocked algorithms."""
+    """Length of the work array in units of n, for a matrix (n, n): dgeev needs 3 at least, and is faster with
+    more."""
     ranges: ClassVar = {"work": (2, math.inf)}
 
 
@@ -34,7 +35,8 @@ SMALL_EIGENVALUES = SmallEigenvalueSettings()
 
 @compiled
 def eigenvalues(A: Array) -> Complex:
-    """Eigenvalues, (n,), of a finite matrix (n, n); nan if LAPACK does not converge."""
+    """Eigenvalues, (n,), of a matrix A, (n, n), with finite entries; all nan if LAPACK's iteration does not
+    converge."""
     n = len(A)
     a = A.copy()
     parts = np.empty((2, n))

@@ -1,1 +1,2 @@
-"""Changes of the spectrum along a parameter: thresholds of a rod, rows and boundaries of a diagram."""
+"""Changes of the leading eigenvalues of the straight rod along a parameter, and diagrams in two
+parameters."""

@@ -1,9 +1,10 @@
-"""All stability changes along a path of rods: crossings of the imaginary axis, changes of the leading
+"""All changes along a path of rods: pairs that cross the imaginary axis, and changes of the leading
 eigenvalue.
 
 The crossings come from `rodsweep.determinant.certificate.covering`, which proves that the list is complete,
 the changes of the leading eigenvalue from `leading_eigenvalue`. They are merged into one list in increasing
-order of the parameter. The winding number confirms the number of unstable modes at both ends and between.
+order of the parameter. The winding number confirms the number of unstable modes at both ends and between the
+crossings.
 """
 
 import math
@@ -24,13 +25,13 @@ from .unstable_modes import ChangeKind, Crossing, ModeCounter
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TransitionSettings:
-    """Merging of the changes along a path."""
+    """Settings for the list of the changes along a path."""
 
     anchor_distance: float = 1e-4
-    """Distance, in units of the path, between the crossing of a pair that must lead and additional
-    anchors."""
+    """Distance of additional anchors from the crossing of a pair that must lead, as a fraction of the
+    path."""
     merge_distance: float = 1e-5
-    """Relative distance below which open boxes are merged into one range."""
+    """Relative distance below which undecided boxes of the covering are merged into one interval."""
 
 
 TRANSITIONS = TransitionSettings()
@@ -38,26 +39,27 @@ TRANSITIONS = TransitionSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Transitions:
-    """All changes along a path, in increasing order of its parameter."""
+    """Result of a search along a path: all changes, in increasing order of the parameter, with what is
+    proved."""
 
     crossings: tuple[Crossing, ...] = ()
     searched: tuple[float, float] = (math.nan, math.nan)
-    """Interval of the parameter to which all other fields refer."""
+    """Searched interval of the parameter; all other fields refer to it."""
     ended_early: bool = False
-    """Whether `searched` is smaller than requested, because a place beyond its end could not be solved."""
+    """Whether `searched` is shorter than requested; `why_not` says why."""
     open_range: tuple[float, float] = (math.nan, math.nan)
-    """Smallest interval around all places where two further crossings are possible; nan without a place."""
+    """Smallest interval around all rods at which two further crossings are possible; nan if there is none."""
     unstable_at_start: int = -1
     unstable_at_end: int = -1
     oscillates_at_start: bool = False
     """Whether a complex pair leads at the start of the path."""
     proved: bool
-    """Whether the covering is complete, every count agrees, and no eigenvalue lies right of a leading
+    """Whether the covering is complete, all counts agree, and no eigenvalue lies right of a leading
     eigenvalue."""
     boxes: int = 0
-    """Evaluations of D by the covering."""
+    """Number of evaluations of D by the covering."""
     solves: int = 0
-    """Number of eigenproblems."""
+    """Number of solved eigenvalue problems."""
     why_not: str = ""
     """Reasons why the list is not proved or the search ended early."""
 
@@ -69,9 +71,10 @@ class Transitions:
 
 @dataclass(frozen=True, slots=True)
 class AxisCrossings:
-    """Crossings of the imaginary axis, intervals that may contain further ones, and the reach of the search.
+    """Crossings of the imaginary axis along `path`. gaps: intervals of the parameter that may contain further
+    crossings. reach: where the search ended.
 
-    boxes: evaluations of D by the covering.
+    boxes: number of evaluations of D by the covering.
     """
 
     path: Path
@@ -81,7 +84,8 @@ class AxisCrossings:
     boxes: int = 0
 
     def up_to(self, reach: SearchEnd) -> "AxisCrossings":
-        """The crossings and gaps up to an earlier end of the search; self if `reach` is the present end."""
+        """The crossings and gaps up to an earlier end `reach` of the search; self if `reach` is the present
+        end."""
         if reach.p == self.reach.p:
             return self
         crossings = [c for c in self.crossings if self.path.variable(c.at) <= reach.p]
@@ -89,7 +93,7 @@ class AxisCrossings:
         return replace(self, crossings=crossings, gaps=gaps, reach=reach)
 
     def searched(self, start: float, stop: float) -> tuple[float, float]:
-        """The searched part of the interval of the parameter from `start` to `stop`."""
+        """The searched subinterval of the parameter interval from `start` to `stop`."""
         if not self.reach.reason:
             return start, stop
         end = self.path.parameter.value(self.reach.p)
@@ -99,11 +103,10 @@ class AxisCrossings:
 def transitions(
     path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
 ) -> Transitions:
-    """All changes from the value `start` of the path's parameter up to `stop`.
+    """All changes along `path` for parameter values from `start` to `stop`, proved complete if `certify`.
 
-    The search ends early before a place that cannot be solved, and of an arm that varies along its length
-    once more than `most` crossings are found. Raises Unsolvable if it has no part without such a place, or if
-    no a-priori bound applies.
+    The search ends early at a rod whose eigenvalues cannot be computed, and for a nonuniform arm after more
+    than `most` crossings. Raises Unsolvable if nothing can be searched or no a-priori bound applies.
     """
     low, high = sorted((path.variable(start), path.variable(stop)))
     problem = path_problem(path)
@@ -138,10 +141,11 @@ def transitions(
 def pair_crossings(
     path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
 ) -> Transitions:
-    """Crossings of the axis by pairs only, without any spectrum: this takes half the time.
+    """Crossings of the imaginary axis by pairs, without the leading eigenvalue: takes half the time of
+    `transitions`.
 
-    proved: the covering is complete and every count agrees. Ends early and raises Unsolvable as `transitions`
-    does.
+    `proved` then means that the covering is complete and every count agrees. The search ends early, and
+    Unsolvable is raised, as in `transitions`.
     """
     low, high = sorted((path.variable(start), path.variable(stop)))
     problem = path_problem(path)
@@ -155,10 +159,7 @@ def pair_crossings(
 
 
 def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...], at_end: int) -> Transitions:
-    """The counted crossings as `Transitions`, without the leading eigenvalue at the start.
-
-    unstable, at_end: number of unstable modes at the two ends of the searched interval.
-    """
+    """`Transitions` of counted crossings. unstable, at_end: number of unstable modes at the two ends."""
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
     return Transitions(
         crossings=crossings,
@@ -171,7 +172,7 @@ def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...]
 
 
 def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, float]) -> Transitions:
-    """The changes with the searched part of the interval `asked`, and the reason for an early end."""
+    """`counted` with the searched subinterval of the interval `asked`, and why the search ended early."""
     searched = found.searched(*asked)
     reason = found.reach.reason
     end = found.path.parameter.value(found.reach.p)
@@ -186,7 +187,7 @@ def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, 
 
 
 def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, most: float) -> AxisCrossings:
-    """Crossings of a path: by the covering, or between counts for nonuniform arms, there up to `most`."""
+    """Crossings by the covering; for nonuniform arms by bisection between counts, up to `most`."""
     if not isinstance(problem, ArmPath):
         return _covered(problem.path, *ends)
     search = CrossingSearch(problem, certify)
@@ -197,7 +198,7 @@ def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, m
 
 
 def _covered(path: Path, low: float, high: float) -> AxisCrossings:
-    """Crossings, open intervals and number of evaluations, from the covering."""
+    """Crossings for path variables `low` to `high`, by the covering; Unsolvable without an a-priori bound."""
     boxes = first_boxes(path, low, high)
     if boxes is None:
         raise Unsolvable("no a-priori bound on the eigenvalues applies to this rod")
@@ -207,14 +208,14 @@ def _covered(path: Path, low: float, high: float) -> AxisCrossings:
 
 
 def _range_of(gaps: list[tuple[float, float]]) -> tuple[float, float]:
-    """The smallest interval that contains all gaps."""
+    """The smallest interval that contains all `gaps`; (nan, nan) without gaps."""
     return (min(a for a, _ in gaps), max(b for _, b in gaps)) if gaps else (math.nan, math.nan)
 
 
 def _pairs_missed_as_leaders(
     path: Path, crossings: tuple[Crossing, ...], oscillates: bool, unstable: int
 ) -> list[float]:
-    """Path variables of crossings whose pair must lead, but another eigenvalue leads in the list."""
+    """Path variables of crossings whose pair must lead, while another eigenvalue leads in the list."""
     missed = []
     for crossing in crossings:
         if crossing.kind.changes_leader:
@@ -227,7 +228,7 @@ def _pairs_missed_as_leaders(
 
 
 def _hopf(path: Path, zero: LocatedZero) -> Crossing:
-    """A crossing; the direction in which the pair moves decides between hopf and hopf_reverse."""
+    """The crossing at a zero of D on the imaginary axis; dRe w/dp decides between hopf and hopf_reverse."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
     there = determinant_along(complex(0.0, zero.eta_or_x), coefficients, path.direction)
     # dw/dp = -D_p/D_w; along a stiffness p = 1/k falls as the parameter rises.
@@ -238,7 +239,7 @@ def _hopf(path: Path, zero: LocatedZero) -> Crossing:
 
 
 def _gaps(path: Path, left: list[Box]) -> list[tuple[float, float]]:
-    """Disjoint intervals of the parameter covered by the open boxes."""
+    """Disjoint intervals of the parameter that the undecided boxes `left` of the covering span."""
     gaps: list[tuple[float, float]] = []
     for a, b in sorted(sorted((path.variable(box.p_from), path.variable(box.p_to))) for box in left):
         if gaps and a <= gaps[-1][1] * (1 + TRANSITIONS.merge_distance):

@@ -1,4 +1,4 @@
-"""Interpolation of the leading eigenvalues between two rods of a path."""
+"""Interpolation of the leading eigenvalues between two rods of a path, the anchors."""
 
 import math
 from dataclasses import dataclass
@@ -9,15 +9,18 @@ from ...arrays import Complex
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AnchorSettings:
-    """Interpolation between two places of a path."""
+    """Settings for the anchors of a path of rods and the interpolation between two of them."""
 
     min_known_modes: int = 4
-    """Leading eigenvalues known at a place on a path of arms, at least; two more than are unstable."""
+    """Minimum number of leading eigenvalues computed at an anchor of a path of arms; at least two more than
+    are unstable."""
     place_accuracy: float = 1e-6
-    """Relative accuracy of these eigenvalues; Newton's method on D does the rest."""
+    """Relative accuracy of the eigenvalues at an anchor of a path of arms, before Newton's method on D
+    refines them."""
     explained: float = 0.25
-    """Tolerance of the interpolation between two places: the interpolant stays above this fraction of the
-    smaller end value, so that no zero hides, and the slopes explain the change but for this fraction."""
+    """Tolerance of the interpolation between two anchors. The cubic must stay above this fraction of the
+    smaller end value, so that no zero hides. The trapezoidal rule for the slopes must give the change within
+    this fraction."""
 
 
 ANCHORS = AnchorSettings()
@@ -25,10 +28,11 @@ ANCHORS = AnchorSettings()
 
 @dataclass(frozen=True)
 class Anchor:
-    """A rod of the path with its leading eigenvalues w and their slopes dw/dp, (ANCHOR_MODES,).
+    """A rod of a path, at path variable p, with its leading eigenvalues w and their slopes dw/dp,
+    (ANCHOR_MODES,).
 
-    time, lengthening: a relaxation time of the rod, smooth along the path, and its slope. w times time is of
-    order one; without shear and rotational drag, w grows like nu^-2 for a nearly crushed rod.
+    time: a relaxation time of the rod, smooth in p. lengthening: slope of `time`. w times `time` is of order
+    one; without shear and rotational drag, w grows like nu^-2 for a nearly crushed rod.
     """
 
     p: float
@@ -43,8 +47,8 @@ class Anchor:
         return bool(self.w[0].imag != 0)
 
     def partner(self) -> tuple[float, float] | None:
-        """((w1 - w2)^2 time^2, slope of this value) of the two leading eigenvalues if both are real or a
-        pair; else None."""
+        """((w1 - w2)^2 time^2, its slope by p) of the two leading eigenvalues w1, w2; None if w1 is real and
+        w2 not."""
         if self.oscillates:
             gap, slope = self._times_time(2 * self.w[0].imag, 2 * self.slope[0].imag)
             # (w1 - w2)^2 is negative for a pair, positive for two real eigenvalues, and smooth through 0.
@@ -55,20 +59,22 @@ class Anchor:
         return gap**2, 2 * gap * slope
 
     def rival(self) -> tuple[float, float] | None:
-        """(lead in the real part over the first eigenvalue of the opposite kind, real or complex, times time;
-        slope of this lead), or None."""
+        """(Re(w1 - w) time, its slope by p), with w the first eigenvalue that is complex if w1 is real, or
+        real if w1 is complex; None if no such w is among the leading eigenvalues."""
         for w, slope in zip(self.w[1:], self.slope[1:], strict=True):
             if (w.imag != 0) != self.oscillates:
                 return self._times_time((self.w[0] - w).real, (self.slope[0] - slope).real)
         return None
 
     def _times_time(self, value: float, slope: float) -> tuple[float, float]:
-        """(value times time, its slope); the factor time preserves zeros and signs."""
+        """(value times `time`, its slope by p) from a value and its slope; the factor preserves zeros and
+        signs."""
         return float(value * self.time), float(slope * self.time + value * self.lengthening)
 
 
 def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
-    """(least value on [0, 1], its place) of the cubic with values a, b and slopes at the ends."""
+    """(minimum on [0, 1], its argument) of the cubic with values `a`, `b` and slopes `slope_a`, `slope_b` at
+    0 and 1; the argument is 0.5 if the minimum is at an end."""
     # The cubic a + slope_a t + square t^2 + cube t^3 of Hermite interpolation.
     square = 3 * (b - a) - 2 * slope_a - slope_b
     cube = slope_a + slope_b - 2 * (b - a)
@@ -91,9 +97,10 @@ def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tupl
 
 
 def next_anchor(left: Anchor, right: Anchor) -> tuple[float, bool]:
-    """(place for an anchor between two of equal character, whether two changes may hide between them).
+    """(where to add an anchor between `left` and `right`, whether two changes may hide between them).
 
-    The place is a fraction of the interval; 0 if the slopes explain the values and exclude a change.
+    Where: a fraction of the interval; 0 if the slopes explain the values and exclude a change. Both anchors
+    must have a real leading eigenvalue or both a pair.
     """
     h = right.p - left.p
     for a, b in ((left.partner(), right.partner()), (left.rival(), right.rival())):

@@ -1,12 +1,12 @@
-"""The kind of the leading eigenvalue along a path of rods, real or a pair, and its changes.
+"""Changes of the leading eigenvalue along a path of rods from real to a complex pair, or back.
 
-The kind changes in two ways. At a double eigenvalue, D = D_w = 0, two real eigenvalues become a pair or a
-pair becomes two real eigenvalues. In an overtaking, a real eigenvalue and a pair exchange the lead without
+Such a change happens in two ways. At a double eigenvalue, D = D_w = 0, two real eigenvalues become a pair or
+a pair becomes two real eigenvalues. In an overtaking, a real eigenvalue and a pair exchange the lead without
 meeting. Anchors are rods whose leading eigenvalues come from the spectrum solver, certified on request.
 Between two anchors, cubic interpolation must explain two smooth quantities: the squared difference of the two
-leading eigenvalues, and the lead over the next eigenvalue of the other kind; otherwise an anchor is added
-between. Newton's method on D finds the changes, and the winding number proves that no eigenvalue lies right
-of them.
+leading eigenvalues, and the difference in real part between the leading eigenvalue and the next of the other
+kind. Otherwise an anchor is added between the two. Newton's method on D finds the changes, and the winding
+number proves that no eigenvalue lies right of them.
 """
 
 import math
@@ -23,42 +23,46 @@ from .search_range import SearchedIntervals, SearchEnd
 from .unstable_modes import ChangeKind, Crossing
 
 ANCHOR_MODES = 4
-"""Number of leading eigenvalues at an anchor: the two that lead, and two that may overtake them. Fewer would
-not tell which eigenvalues meet, so the number is no setting."""
+"""Number of leading eigenvalues computed at an anchor: the first two, and two that may overtake them. The
+number is no setting, because with fewer it would be unknown which eigenvalues meet."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeaderSettings:
-    """Anchors of the leading eigenvalue, and Newton steps between them."""
+    """Settings for the search for changes of the leading eigenvalue: anchors, and Newton's method between
+    them."""
 
     accuracy: float = 1e-6
-    """Accuracy requested from the spectrum solver; Newton's method on D refines the eigenvalues."""
+    """Relative accuracy of the eigenvalues at an anchor, before Newton's method on D refines them."""
     smallest_interval: float = 2e-4
-    """Distance of two anchors, in units of the path, below which no anchor is added between."""
+    """Smallest distance of two anchors, as a fraction of the path, between which an anchor is added."""
     smallest_hiding_interval: float = 1e-9
-    """The same if two changes may hide between the anchors."""
+    """Smallest distance of two anchors between which an anchor is added if two changes may hide there, as a
+    fraction of the path."""
     max_overtaking_steps: int = 60
-    """Maximum number of Newton steps to an overtaking."""
+    """Maximum number of Newton steps to the parameter value of an overtaking."""
     carrying_steps: int = 8
     """Number of steps in which an eigenvalue is followed from an anchor to the middle of an interval."""
     same_errors: float = 10.0
-    """Largest distance of a refined eigenvalue from its first value, in units of the error estimate, that is
-    no jump to another one."""
+    """Newton's result is rejected as a different eigenvalue if it is farther from the start, in units of the
+    start's error estimate."""
     same: float = 1e-12
-    """The same relative to the eigenvalue, where its error estimate is smaller: some thousand roundings."""
+    """Distance of Newton's result from the start, relative to the eigenvalue, that is always accepted: some
+    thousand rounding errors."""
     smallest_step: float = 1e-12
-    """Relative length of an interval without a place between its ends, up to some thousand roundings."""
+    """Relative length below which an interval is not divided: some thousand rounding errors of its ends."""
     rounding: float = 4e-16
     """Relative rounding error of the path variable: two units in the last place."""
     converged: float = 4.0
-    """Newton step, in units of the error, at which an overtaking has converged."""
+    """Newton's method for an overtaking stops at a step below this multiple of the error estimate."""
 
 
 LEADER = LeaderSettings()
 
 
 class LeaderExchange(NamedTuple):
-    """A double real eigenvalue (frequency 0), or a real eigenvalue and a pair with equal real parts."""
+    """Change of the leading eigenvalue at path variable p: a double real eigenvalue (frequency 0), or a real
+    eigenvalue and a pair with equal real parts. frequency: Im w of the pair, in 1/tau2."""
 
     p: float
     error: float
@@ -67,7 +71,8 @@ class LeaderExchange(NamedTuple):
 
 
 class Tracer:
-    """Follows the leading eigenvalue along a path; solved anchors are kept."""
+    """Finds the changes of the leading eigenvalue along a path. anchors: the solved anchors, by path
+    variable."""
 
     def __init__(self, problem: PathProblem, certify: bool):
         self.problem = problem
@@ -75,10 +80,11 @@ class Tracer:
         self.certify = certify
         self.anchors: dict[float, Anchor] = {}
         self.proved = certify
-        """Whether every anchor is certified and no eigenvalue lies right of any change."""
+        """Whether all anchors are certified, and counts prove that no eigenvalue lies right of any change."""
 
     def anchor(self, p: float) -> Anchor:
-        """The anchor at p; raises Unsolvable if its eigenvalues cannot be computed."""
+        """The anchor at path variable p, solved once; raises Unsolvable if its eigenvalues cannot be
+        computed."""
         if p not in self.anchors:
             self.anchors[p] = self._solve(p)
         return self.anchors[p]
@@ -102,7 +108,7 @@ class Tracer:
         return Anchor(p, w, slope, *self.problem.relaxation(p))
 
     def changes(self, edges: list[float]) -> tuple[list[Crossing], SearchEnd]:
-        """All changes from the first of `edges` up to the reach of the search, in increasing order of p.
+        """(all changes by increasing p, end of the search), for p from the first to the last of `edges`.
 
         Raises Unsolvable if the search does not reach beyond the first edge.
         """
@@ -117,7 +123,8 @@ class Tracer:
         return found, intervals.reach
 
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> list[Crossing]:
-        """The change between two anchors; None if the interval has no change, or is divided."""
+        """The change between the anchors at a and b; an empty list if there is none. Divides the interval in
+        `intervals` if that is undecided."""
         left = self.anchor(a)
         right = self.anchor(b)
         share = 0.5
@@ -142,8 +149,8 @@ class Tracer:
         return []
 
     def _between(self, left: Anchor, right: Anchor) -> Crossing | None:
-        """The only change between two anchors of different kind; None unless found and proved to be of the
-        leading eigenvalue."""
+        """The change between an anchor with a leading pair and an anchor with a real leading eigenvalue. None
+        if it is not found, or if a count shows that other eigenvalues lead there."""
         pair, real = (left, right) if left.oscillates else (right, left)
         # Kinds are named in the direction of the parameter, which along a stiffness is that of falling p.
         if right.oscillates != self.path.inverse:
@@ -168,8 +175,8 @@ class Tracer:
         return None
 
     def _double(self, pair: Anchor, real: Anchor) -> LeaderExchange | None:
-        """The double eigenvalue between an anchor with a leading pair and an anchor with two real
-        eigenvalues; None if not found.
+        """The double eigenvalue between an anchor `pair` with a leading pair and an anchor `real` with two
+        real leading eigenvalues; None if Newton's method does not find it.
         """
         below = pair.partner()
         above = real.partner()
@@ -184,8 +191,8 @@ class Tracer:
         return None if math.isnan(p) else LeaderExchange(p, error, x, 0.0)
 
     def _overtaking(self, pair: Anchor, real: Anchor) -> LeaderExchange | None:
-        """The place between two anchors where a real eigenvalue and a pair have equal real parts, by Newton's
-        method; or None.
+        """The point between two anchors where a real eigenvalue and a pair have equal real parts, by Newton's
+        method; None if Newton's method does not find it.
         """
         if all(w.imag != 0 for w in pair.w) or all(w.imag == 0 for w in real.w):
             return None  # no eigenvalue of the other kind is known
@@ -215,7 +222,7 @@ class Tracer:
         return None
 
     def _carried(self, w: complex, start: float, stop: float) -> complex:
-        """Eigenvalue w followed from p = start to p = stop in small steps."""
+        """The eigenvalue w at p = `start`, followed to p = `stop` in small steps by Newton's method on D."""
         p = start
         for i in range(1, LEADER.carrying_steps + 1):
             w, slope, _ = self.problem.eigenvalue(w, p)

@@ -1,4 +1,4 @@
-"""The transverse eigenvalue problem along a path of one parameter, for uniform rods."""
+"""Eigenvalue problem of the straight rods along a path of one parameter: the interface, and uniform rods."""
 
 from abc import ABC, abstractmethod
 
@@ -10,16 +10,16 @@ from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 
 
 class PathProblem(ABC):
-    """Eigenvalues of the rods along a path; p is the path variable."""
+    """Eigenvalues of the straight rods along a path, as functions of the path variable p."""
 
     def __init__(self, path: Path):
         self.path = path
         self.solves = 0
-        """Number of solved eigenproblems."""
+        """Number of eigenvalue problems solved so far."""
         self._spectra: dict[tuple[float, SpectrumRequest], Spectrum] = {}
 
     def spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
-        """The leading eigenvalues at p; each request is solved once."""
+        """The leading eigenvalues of the rod at p, as `request` says; equal requests are solved once."""
         key = p, request
         if key not in self._spectra:
             self._spectra[key] = solve_spectrum(self.path.at(p), request)
@@ -28,33 +28,34 @@ class PathProblem(ABC):
 
     @abstractmethod
     def edges(self, low: float, high: float) -> list[float]:
-        """Places from low to high, with little change of the rods between neighbours."""
+        """Path variables from `low` to `high`, dense enough that neighbouring rods differ little."""
 
     @abstractmethod
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
-        """(eigenvalue near the guess, its slope by p, its error) at p."""
+        """(eigenvalue w near `guess`, dw/dp, error of w) of the rod at p."""
 
     @abstractmethod
     def double(self, x: float, p: float, reach: float) -> LocatedZero:
-        """The double real eigenvalue near (x, p) with p at most `reach` away; nan if not found."""
+        """The double real eigenvalue near w = x and path variable p, whose path variable differs from p by at
+        most `reach`; nan if not found."""
 
     @abstractmethod
     def count(self, line: float, p: float) -> EigenvalueCount:
-        """Number of eigenvalues with Re w > line at p."""
+        """Number of eigenvalues with Re w > `line` of the rod at p."""
 
     def counted_amid(self, low: float, high: float) -> int | None:
-        """Number of unstable modes already proved at some place between low and high; None without such a
-        place.
+        """Number of unstable modes already proved for some path variable between `low` and `high`; None if it
+        is not.
         """
         return None
 
     @abstractmethod
     def relaxation(self, p: float) -> tuple[float, float]:
-        """(a relaxation time of the rod, smooth along the path, its slope by p)."""
+        """(a relaxation time of the rod at p that is smooth in p, the derivative of the time by p)."""
 
 
 class UniformPath(PathProblem):
-    """Path of uniform rods of linear material, with D in closed form."""
+    """Eigenvalue problem along a path of uniform rods of linear material, whose D has a closed form."""
 
     def edges(self, low: float, high: float) -> list[float]:
         return [a for a, _ in path_intervals(self.path, low, high)] + [high]

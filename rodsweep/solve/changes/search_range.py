@@ -1,7 +1,7 @@
-"""Intervals of a path that are searched from left to right, and how far the search reaches.
+"""Intervals of a path variable, searched from left to right, and the end of the search.
 
-A place whose eigenvalues cannot be computed or proved ends the search before this place, not the whole
-search: what lies left of it is complete.
+If the eigenvalues of a rod cannot be computed or proved, the search ends before this rod; the results up to
+there are complete.
 """
 
 from collections.abc import Iterator
@@ -16,24 +16,25 @@ class SearchRangeSettings:
     """Settings for the end of a search along a path."""
 
     last_halvings: int = 4
-    """Number of halvings of the interval in which a search ends early, to come closer to its end."""
+    """Number of halvings of the interval in which a search failed; its left halves are searched, too."""
 
 
 SEARCH_RANGE = SearchRangeSettings()
 
 
 class SearchEnd(NamedTuple):
-    """The last path variable of a search, and why the search ended there; the reason is empty at the
-    requested end."""
+    """The largest path variable p that was searched, and why the search ended there; the reason is empty at
+    the requested end."""
 
     p: float
     reason: str = ""
 
 
 class SearchedIntervals:
-    """Intervals of the path variable still to be searched, leftmost first.
+    """Queue of the intervals of the path variable that are still to be searched, leftmost first.
 
-    reach: everything from the first edge to `reach.p` is searched once no interval is left.
+    reach: end of the search. Everything from the first of `edges` to `reach.p` is searched once the queue is
+    empty.
     """
 
     def __init__(self, edges: list[float]):
@@ -45,7 +46,8 @@ class SearchedIntervals:
         self._halvings = 0
 
     def __iter__(self) -> Iterator[tuple[float, float]]:
-        """Yields each interval once; raises Unsolvable if nothing beyond the first edge can be searched."""
+        """Yields the intervals of the queue; raises Unsolvable if not even a first subinterval can be
+        searched."""
         while True:
             # The first part of an interval that cannot be searched to its end often can.
             if not self._left and self.reach.reason and self._halvings < SEARCH_RANGE.last_halvings:
@@ -60,17 +62,18 @@ class SearchedIntervals:
             raise Unsolvable(self.reach.reason)
 
     def divide(self, *intervals: tuple[float, float]) -> None:
-        """Adds the parts of the present interval that are still to be searched, in increasing order."""
+        """Adds subintervals of the present interval to the queue; `intervals` is in increasing order."""
         self._left += intervals[::-1]
 
     def stop_at(self, p: float, reason: str) -> None:
-        """Ends the search at a place up to which everything is searched."""
+        """Ends the search at path variable `p`, up to which everything is searched; `reason` says why."""
         self._left.clear()
         self._halvings = SEARCH_RANGE.last_halvings
         self.reach = SearchEnd(p, reason)
 
     def end_within(self, interval: tuple[float, float], reason: str) -> None:
-        """Ends the search in the present interval, which cannot be searched to its end."""
+        """Ends the search at the start of the present `interval`, whose search failed; its left half may be
+        tried later."""
         self._left.clear()
         self._unsolvable = interval[1]
         self.reach = SearchEnd(interval[0], reason)

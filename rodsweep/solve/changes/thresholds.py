@@ -1,4 +1,5 @@
-"""All stability changes of one straight rod as the follower force grows from 0 (paper, Sec. VI)."""
+"""Task `thresholds` for one rod: all changes of its leading eigenvalues as the follower force grows from 0
+(paper, Sec. VI)."""
 
 import math
 from dataclasses import dataclass
@@ -13,7 +14,7 @@ from .unstable_modes import ChangeKind, Crossing, end_below_crushing
 
 
 class ThresholdStatus(PointStatus):
-    """Outcome of a search for stability changes along a path."""
+    """Status of a search for all changes along a path of rods."""
 
     ok = (
         0,
@@ -46,19 +47,19 @@ class ThresholdStatus(PointStatus):
 
 @dataclass(frozen=True, slots=True)
 class ThresholdsRequest:
-    """Request for every rod: the largest force, the relative accuracy of each threshold, and whether to
-    certify."""
+    """Request for each rod. F_max: largest force, in k3/L^2. accuracy: relative accuracy of each change.
+    certify: whether the list must be proved complete."""
 
     F_max: float
     accuracy: float
     certify: bool
     crossings: int
-    """Maximum number of stored changes."""
+    """Maximum number of changes in the list."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Thresholds:
-    """The changes along a path up to the value `end` of its parameter."""
+    """Result of a search: all changes along a path up to the parameter value `end`, with a status."""
 
     status: ThresholdStatus
     transitions: Transitions
@@ -73,7 +74,8 @@ class Thresholds:
 
 
 def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
-    """All changes of one rod along the force, from 0; a failure is a status, never an exception."""
+    """All changes of `rod` for forces from 0 to `request.F_max`; a failure is a status, never an
+    exception."""
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Thresholds:
@@ -84,13 +86,14 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
 
 
 def nothing_found(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:
-    """The outcome without a search, or after a failed search."""
+    """A result without changes: no search was necessary, or the search failed."""
     found = Transitions(proved=status == ThresholdStatus.ok)
     return Thresholds(status=status, transitions=found, end=end, message=message)
 
 
 def judged(found: Transitions, accuracy: float, certify: bool, most: int) -> Thresholds:
-    """The changes along a path with a status; the gravest problem determines the status."""
+    """The changes `found` along a path, with the status of the most serious problem. most: maximum number of
+    changes in the list."""
     status = ThresholdStatus.ok
     if found.ended_early:
         status = ThresholdStatus.ended_early
@@ -107,11 +110,12 @@ def judged(found: Transitions, accuracy: float, certify: bool, most: int) -> Thr
 
 @cache
 def warm_up() -> None:
-    """Loads compiled code and creates solver objects, so that the first point takes no extra time."""
+    """Solves one rod, so that compiled code is loaded and pools are filled before a time is measured."""
     solve_thresholds(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), ThresholdsRequest(40.0, 1e-8, True, 4))
 
 
 def filament_hopf() -> float:
-    """Fc, where the filament (k1 = k2 = inf, gamma3 = 0) starts to flutter (De Canio et al. 2017)."""
+    """Critical force Fc, in k3/L^2, at which the filament (k1 = k2 = inf, gamma3 = 0) starts to flutter (De
+    Canio et al. 2017)."""
     found = transitions(Path(Rod(F=0.0, k1=math.inf, k2=math.inf, gamma3=0.0), "F"), 0.0, 60.0)
     return next(c.at for c in found.crossings if c.kind == ChangeKind.hopf)

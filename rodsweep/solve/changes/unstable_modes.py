@@ -1,7 +1,7 @@
-"""Changes along a path as a list, and the number of unstable modes between them.
+"""Kinds of changes along a path of rods, and the number of unstable modes between the changes.
 
-Crossings and crossing directions give the number after every crossing; the winding number confirms the number
-at both ends and between.
+The directions of the crossings of the imaginary axis give the number after every crossing; winding numbers
+confirm it at both ends and between.
 """
 
 import math
@@ -17,31 +17,33 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChangeCountSettings:
-    """Ends of a search, and places of counts between changes."""
+    """Settings for the end of a search below the crushing force, and for counts of unstable modes between
+    changes."""
 
     crushing_margin: float = 1e-6
     """Relative distance below the crushing force at which a search ends; at F = k1 the rod is crushed."""
     meets_crushing: float = 1e-12
-    """Relative rounding error of F against the force that crushes the rod: two axes in steps may meet exactly
-    there."""
+    """Relative difference of F and the crushing force up to which both count as equal: on a grid of F and k1
+    the two may be equal but for rounding."""
     places: tuple[float, ...] = (0.5, 0.3, 0.7)
-    """Places between two crossings, as fractions, at which the unstable modes are counted until a count is
-    decided."""
+    """Positions between two crossings, as fractions of the interval, at which the unstable modes are counted,
+    in this order, until a count is decided."""
     too_close: float = 1e-3
-    """Relative distance of two crossings below which no count is made between: a pair is too near the
-    axis."""
+    """Relative distance of two crossings below which the modes between are not counted, because a pair is too
+    near the imaginary axis."""
 
 
 CHANGE_COUNTS = ChangeCountSettings()
 
 
 def end_below_crushing(rod: Rod, F: float) -> float:
-    """The force F, or the largest force of a search on a rod that a smaller force crushes."""
+    """Largest force of a search up to F, in k3/L^2: F, or a little less than the crushing force if F exceeds
+    it."""
     return min(F, rod.crushing_force * (1 - CHANGE_COUNTS.crushing_margin))
 
 
 class ChangeKind(IntEnum):
-    """Kind of a change along a path, in the direction of increasing parameter."""
+    """Kind of a change along a path, named as it happens with increasing parameter."""
 
     onset = 1
     hopf = 2
@@ -53,21 +55,23 @@ class ChangeKind(IntEnum):
 
     @property
     def changes_leader(self) -> bool:
-        """Whether the leading eigenvalue changes its kind, as opposed to a pair that crosses the axis."""
+        """Whether the leading eigenvalue changes between real and complex. Otherwise a pair crosses the
+        imaginary axis."""
         return self in (ChangeKind.onset, ChangeKind.pair_leads, ChangeKind.real_again, ChangeKind.real_leads)
 
     @property
     def pair_leads_after(self) -> bool:
-        """Whether a pair leads beyond the change."""
+        """Whether a complex pair leads after a change of the leading eigenvalue."""
         return self in (ChangeKind.onset, ChangeKind.pair_leads)
 
 
 @dataclass(frozen=True, slots=True)
 class Crossing:
-    """One change: the value of the parameter with its error, and the eigenvalue, in 1/tau2.
+    """One change along a path, at parameter value `at` with error `error`; the eigenvalue is growth_rate + i
+    frequency, in 1/tau2.
 
-    unstable_after: number of unstable modes just beyond the change, -1 if unknown. frequency_error: of the
-    frequency of a pair that crosses the axis, else nan.
+    unstable_after: number of unstable modes just after the change, -1 if unknown. frequency_error: error of
+    the frequency of a pair that crosses the imaginary axis, else nan.
     """
 
     at: float
@@ -80,10 +84,11 @@ class Crossing:
 
 
 class ModeCounter:
-    """Number of unstable modes along a path, carried from crossing to crossing and confirmed by counts.
+    """Number of unstable modes along a path, from the directions of the crossings, confirmed by winding
+    numbers.
 
-    gaps: intervals of the parameter that may contain crossings missing from the list. doubts: statements that
-    the counts do not confirm.
+    gaps: intervals of the parameter that may contain crossings missing from the list. doubts: sentences on
+    counts that disagree or are undecided.
     """
 
     def __init__(self, problem: "PathProblem", gaps: list[tuple[float, float]], certify: bool):
@@ -94,12 +99,13 @@ class ModeCounter:
         self.doubts: list[str] = []
 
     def at(self, value: float) -> int:
-        """The winding number at a value of the parameter; -1 if undecided."""
+        """Number of unstable modes at the parameter value `value`, by the winding number; -1 if undecided."""
         number = self.problem.count(0.0, self.path.variable(value)).number
         return -1 if number is None else number
 
     def amid(self, a: float, b: float) -> int:
-        """The winding number between two values; -1 if undecided at all of CHANGE_COUNTS.places."""
+        """Number of unstable modes somewhere between the parameter values a and b, by the winding number; -1
+        if undecided at all positions tried."""
         known = self.problem.counted_amid(*sorted((self.path.variable(a), self.path.variable(b))))
         if known is not None:
             return known
@@ -110,7 +116,8 @@ class ModeCounter:
         return -1
 
     def first(self, start: float, stop: float, hopfs: list[Crossing]) -> int:
-        """The number at the start, counted there or, if undecided, before the first change."""
+        """Number of unstable modes at `start`, counted there or, if undecided, before the first crossing or
+        gap."""
         number = self.at(start)
         until = min([stop, *(c.at for c in hopfs), *(a for a, _ in self.gaps)])
         return number if number >= 0 else self.amid(start, until)
@@ -118,8 +125,8 @@ class ModeCounter:
     def along(
         self, ordered: list[Crossing], ends: tuple[float, float], unstable: int
     ) -> tuple[tuple[Crossing, ...], int]:
-        """(crossings with the number of unstable modes after each, number at the end), from crossings in
-        order; resets `doubts`.
+        """(changes with `unstable_after` set, number of unstable modes at the end). ordered: changes by
+        increasing parameter. unstable: number at the start. Resets `doubts`.
         """
         self.doubts = []
         out: list[Crossing] = []
@@ -137,7 +144,8 @@ class ModeCounter:
         return tuple(out), self._between(place, ends[1], unstable)
 
     def _between(self, a: float, b: float, unstable: int) -> int:
-        """The number just before b, carried from just after a and confirmed by a count between."""
+        """Number of unstable modes just before b, from the number `unstable` just after a, confirmed by a
+        count between."""
         inside = [gap for gap in self.gaps if gap[1] > a and gap[0] < b]
         if inside:
             # A gap may hide crossings, so the number is counted anew behind it.

@@ -1,1 +1,1 @@
-"""Normal forms of Hopf points: amplitude, frequency and stability of the cycles born there."""
+"""Normal forms of Hopf points: amplitude, frequency and stability of the cycles that bifurcate there."""

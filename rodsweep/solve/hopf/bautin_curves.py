@@ -1,9 +1,9 @@
 """Curves of generalised Hopf points over three parameters.
 
 Generalised Hopf points, D(i eta) = 0 and Re c = 0, are isolated in a plane of two parameters and form a curve
-over three. Each step holds the parameter that changes fastest along the curve, so that folds in all
-parameters are possible. A line through the last two points predicts; the secant method then moves along the
-Hopf curve in the plane of the two free parameters, to Re c = 0.
+over three. Each step prescribes the parameter that changes fastest along the curve, so that folds in all
+parameters are possible. The line through the last two points is the predictor; the secant method then moves
+along the Hopf curve in the plane of the two free parameters, to Re c = 0.
 """
 
 from collections.abc import Sequence
@@ -25,7 +25,7 @@ from .generalised import GENERALISED_HOPF, GeneralisedHopfPoint, HopfCurve
 
 
 class BautinEnd(IntEnum):
-    """Reasons why a curve of generalised Hopf points ends."""
+    """Reason why a curve of generalised Hopf points ends."""
 
     none = 0
     range_end = 1
@@ -40,7 +40,7 @@ END_OTHERWISE = {
     CurveStop.lost: BautinEnd.not_found,
     CurveStop.full: BautinEnd.list_full,
 }
-"""`BautinEnd` of each stop of the follower except a margin, where the curve reaches an end of a range."""
+"""`BautinEnd` for each `CurveStop` but `margin`, at which the curve reaches an end of a parameter's range."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,7 +58,7 @@ class BautinCurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class BautinCurve:
-    """Points of a curve in order, and the reasons for its first and last end."""
+    """Points of a curve in order, and why the curve ends at the first and at the last of them."""
 
     points: tuple[BautinCurvePoint, ...]
     ends: tuple[BautinEnd, BautinEnd]
@@ -66,7 +66,7 @@ class BautinCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvePoint:
-    """A point of a curve. v: scaled values of the three parameters and log eta, (4,)."""
+    """Generalised Hopf point. v: coordinates for continuation, (4,): three scaled parameters and log eta."""
 
     v: Array
     point: BautinCurvePoint
@@ -74,10 +74,10 @@ class _CurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class BautinSpace:
-    """Space of three parameters, each with its range.
+    """Curve problem for the follower: generalised Hopf points over three parameters, each with its range.
 
     rod: values of the fixed parameters. asked: values of the third parameter at which points are stored.
-    accuracy: relative accuracy of c. side: direction of the first step along the third parameter, 1 or -1.
+    accuracy: relative accuracy of c. side: sign of the first step along the third parameter, 1 or -1.
     """
 
     rod: Rod
@@ -87,12 +87,13 @@ class BautinSpace:
     side: float = 1.0
 
     def scaled(self, values: Array, frequency: float) -> Array:
-        """Coordinates (x, y, z, log eta), shape (4,), of three parameter values, (3,), and a frequency."""
+        """Coordinates v, (4,): parameter `values`, (3,), scaled to [0, 1], and log `frequency`."""
         places = [axis.scaled(float(value)) for axis, value in zip(self.axes, values, strict=True)]
         return np.array([*places, np.log(frequency)])
 
     def solved(self, guess: Array, held: int) -> _CurvePoint:
-        """The point near a guess, (4,), with the scaled parameter `held` fixed; raises Unsolvable."""
+        """The generalised Hopf point near `guess`, (4,), with parameter number `held` fixed; raises
+        Unsolvable."""
         free = [i for i in range(3) if i != held]
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
         plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
@@ -113,7 +114,7 @@ class BautinSpace:
         return _CurvePoint(self.scaled(found_values, point.frequency), found)
 
     def step(self, behind: Sequence[_CurvePoint], length: float) -> StepResult[_CurvePoint]:
-        """The next point, predicted along the chord of the last two points; raises Unsolvable."""
+        """The next point after the points `behind`, predicted along their last chord; raises Unsolvable."""
         here = behind[-1].v
         tangent = np.array([0.0, 0.0, self.side, 0.0])
         if len(behind) > 1:
@@ -129,7 +130,7 @@ class BautinSpace:
         return StepResult(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
 
     def _within(self, here: Array, change: Array) -> tuple[_CurvePoint, bool]:
-        """(point after a change, (4,), or at the edge that the change crosses; whether it crosses an edge).
+        """(point near here + change, (4,), or on the end of a range before it; whether on an end).
 
         No point outside the ranges is solved: its parameters may describe no rod. Raises Unsolvable.
         """
@@ -145,15 +146,15 @@ class BautinSpace:
         return self.solved(guess, which), True
 
     def margins(self, place: _CurvePoint) -> Array:
-        """Distances from the ends of the three ranges, negative on an end, shape (6,)."""
+        """Distances of a point from both ends of the three ranges, (6,), negative on an end."""
         return np.ravel([place.v[:3], 1 - place.v[:3]], order="F") - BAUTIN.on_edge
 
     def landed(self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int) -> _CurvePoint | None:
-        """The outer point itself: `_within` has already shortened the step to end on the edge."""
+        """Point of the curve on the end of a range: `outer`, because `step` never goes beyond the end."""
         return outer
 
     def closes(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
-        """Whether the curve is closed: its first point lies between the last point and the next."""
+        """Whether the curve is closed: its first point lies between its last point and `there`."""
         first = behind[0].v
         last = behind[-1].v
         step = float(np.linalg.norm(there.v - behind[-1].v))
@@ -162,7 +163,7 @@ class BautinSpace:
 
     @staticmethod
     def _zero(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
-        """The zero of Re c along a Hopf curve from a start, (3,), along `way`, (3,); raises Unsolvable."""
+        """The zero of Re c near start + s way, (3,) each, by secant steps of s; raises Unsolvable."""
         # Secants, because the normal form does not give the derivatives of Re c.
         before = 0.0
         s = BAUTIN.first_secant
@@ -185,7 +186,7 @@ class BautinSpace:
 
 
 def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
-    """The curve through a generalised Hopf point, followed in both directions."""
+    """The curve of generalised Hopf points through `start`, followed in both directions."""
     here = _CurvePoint(space.scaled(start.values, start.frequency), start)
     back, first = _followed(replace(space, side=-1.0), here)
     if first is BautinEnd.closed:
@@ -196,7 +197,8 @@ def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
 
 
 def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
-    """Generalised Hopf point of a plane as a point of a curve; third: the plane's third parameter."""
+    """A generalised Hopf point of a plane as a point of a curve. third: value of the plane's third
+    parameter."""
     return BautinCurvePoint(
         values=np.array([*point.values, third]),
         errors=np.array([*point.errors, 0.0]),
@@ -206,14 +208,14 @@ def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
 
 
 def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> bool:
-    """Whether a point, at a requested value of the third parameter, is a stored point of a curve."""
+    """Whether `point`, at a requested value of the third parameter, is one of the points of `curve`."""
     v = space.scaled(point.values, point.frequency)
     others = [space.scaled(other.values, other.frequency) for other in curve.points]
     return any(float(np.abs(v - other).max()) < BAUTIN.same_point for other in others)
 
 
 def _followed(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
-    """Points from the start to `space.side`, requested third values included, and why the curve ends."""
+    """(points from `start` towards `space.side`, why the curve ends), with requested third values."""
     if not 0 < start.v[2] + space.side * BAUTIN_STEPS.shortest < 1:
         return [start], BautinEnd.range_end
     curve = follow(space, start, BAUTIN_STEPS, _report)
@@ -229,12 +231,12 @@ def _followed(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint]
 
 
 def _report(places: Sequence[_CurvePoint]) -> None:
-    """Reports the number of points found so far."""
+    """Reports the number of points of the curve as progress."""
     report(lambda: SolvePosition(f"curve of generalised Hopf points, {len(places)} points"))
 
 
 def _asked_between(space: BautinSpace, here: _CurvePoint, there: _CurvePoint) -> list[_CurvePoint]:
-    """Points at requested third values between two of a curve; raises Unsolvable or ValueError."""
+    """Points at requested third values between two points; raises Unsolvable or ValueError."""
     a = here.v[2]
     b = there.v[2]
     inner = [z for z in map(space.axes[2].scaled, space.asked) if min(a, b) < z < max(a, b)]

@@ -8,25 +8,27 @@ from ..continuation.follower import StepControl
 BAUTIN_STEPS = StepControl(
     first=0.01, longest=0.1, shortest=1e-4, far=0.2, sharpest=inf, growth=1.5, most=2000
 )
-"""Step lengths in units of the ranges; the prediction error is in units of the step."""
+"""Step length control along a curve. Lengths are in units of the parameters' ranges, the prediction error in
+units of the step."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BautinSettings:
-    """Settings for the corrections and ends of a curve of generalised Hopf points."""
+    """Settings for the corrector and the ends of a curve of generalised Hopf points."""
 
     max_secants: int = 10
-    """Maximum number of secant steps to a generalised Hopf point."""
+    """Maximum number of secant steps to a generalised Hopf point; the step along the curve fails beyond
+    it."""
     first_secant: float = 1e-3
     """First secant step along the Hopf curve, in units of the ranges."""
     tolerance: float = 1e-12
-    """Length of a secant step, in units of the ranges, at which the iteration has converged."""
+    """Secant step, in units of the ranges, at which the secant method has converged."""
     on_edge: float = 1e-12
     """Distance from an end of a range, in units of the range, below which a point lies on this end."""
     min_loop_points: int = 5
-    """Minimum number of points of a closed curve."""
+    """Number of points that a curve must exceed before it can be recognised as closed."""
     same_point: float = 1e-6
-    """Two points at a smaller distance, in units of the ranges, are the same."""
+    """Distance of two points, in units of the ranges, below which they count as the same."""
 
 
 BAUTIN = BautinSettings()

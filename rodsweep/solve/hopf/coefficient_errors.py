@@ -1,4 +1,4 @@
-"""The coefficients of a Hopf point with estimates of their errors, from two meshes and from D.
+"""Normal form coefficients of a Hopf point, with error estimates from two meshes and from D.
 
 The Landau coefficient c is computed on two meshes. The value of the finer mesh is stored, and its difference
 from the coarser mesh is the error estimate, which overestimates the error by some decades. Rounding and the
@@ -21,12 +21,14 @@ from .normal_form import NORMAL_FORM, NormalForm, a_third_finer, elements_for, n
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoefficientSettings:
-    """Settings for the error estimate of the coefficient c, and for the kept searches."""
+    """Settings for the coefficients of a Hopf point and their error estimates, and for the cache of
+    searches."""
 
     more_orders: int = 4
-    """Increase of the order from the first mesh to the second, which reduces the error of c by 10 to 10^4."""
+    """Increase of the element order from the first mesh to the second, which reduces the error of c by a
+    factor of 10 to 10^4."""
     max_refinements: int = 4
-    """Maximum number of refinements of the first mesh."""
+    """Maximum number of meshes after the first."""
     coarsest: float = 1e-2
     """Coarsest relative accuracy of the first mesh, on which the eigenvalue must still be identified."""
     rounding: float = 1.5e-14
@@ -38,7 +40,7 @@ class CoefficientSettings:
     force_step: float = 1e-5
     """Relative difference step in the force for the second derivative of w(F)."""
     searches_kept: int = 8
-    """Number of cached searches for Hopf points, shared by rods that differ in gamma1 only."""
+    """Number of searches for Hopf points in the cache; rods that differ in gamma1 only share a search."""
 
 
 COEFFICIENT = CoefficientSettings()
@@ -50,8 +52,7 @@ class HopfCoefficients:
 
     growth_slope in L^2/(k3 tau2), landau in 1/(tau2 L^2), their errors relative to their moduli;
     amplitude_coefficient a in L, frequency_slope b in L^2/(k3 tau2), their errors relative to their own
-    values. All are NaN where the computation failed; `message` then has
-    the cause.
+    values. All are NaN where the computation failed; `message` then has the cause.
     """
 
     growth_slope: complex = complex(math.nan, math.nan)
@@ -68,12 +69,13 @@ class HopfCoefficients:
 
     @property
     def known(self) -> bool:
-        """Whether the coefficients were computed."""
+        """Whether the coefficients were computed, and are not NaN."""
         return not math.isnan(self.landau_error)
 
     @property
     def criticality(self) -> float:
-        """-1 supercritical, 1 subcritical, 0 where the sign of Re c is within its error; nan if not known."""
+        """-1 supercritical, 1 subcritical, 0 if |Re c| is below the error of c; nan if the coefficients are
+        not known."""
         if not self.known:
             return math.nan
         if abs(self.landau.real) <= self.landau_error * abs(self.landau):
@@ -82,14 +84,15 @@ class HopfCoefficients:
 
     @property
     def largest_error(self) -> float:
-        """Larger relative error of c and dw/dF, from which a and b follow."""
+        """The larger of the relative errors of c and dw/dF, from which a and b are computed."""
         return max(self.landau_error, self.growth_slope_error)
 
 
 def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoefficients:
-    """The coefficients of a Hopf point of a rod, c to a relative accuracy; raises Unsolvable.
+    """The normal form coefficients at the Hopf point `hopf`, with c to a relative accuracy; raises
+    Unsolvable.
 
-    rod: at the force of the crossing. c may be less accurate where rounding limits it.
+    rod: the rod at the force of `hopf`. c is less accurate if its rounding error exceeds `accuracy`.
     """
     w = complex(0.0, hopf.frequency)
     # Undo the worst-case factor of the mesh rule: here the second mesh measures the actual error.
@@ -124,7 +127,8 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
 def _with_errors(
     normal: NormalForm, landau_error: float, slope_error: float, force_error: float
 ) -> HopfCoefficients:
-    """All coefficients of a normal form, from the relative errors of c, dw/dF and the force."""
+    """The coefficients of a normal form, with the errors that follow from the relative errors of c, dw/dF and
+    F."""
     c = normal.c
     slope = normal.slope
     slope_off = slope_error * abs(slope)
@@ -150,7 +154,7 @@ def _with_errors(
 
 
 def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
-    """(dw/dF, |d^2w/dF^2|) of the root of D at w."""
+    """(dw/dF, |d^2w/dF^2|) of the root w of D of the rod."""
     step = COEFFICIENT.force_step * abs(rod.F)
     problem = path_problem(Path(rod, "F"))
     _, slope, _ = problem.eigenvalue(w, rod.F)

@@ -18,7 +18,7 @@ from .coefficient_errors import COEFFICIENT, HopfCoefficients, hopf_coefficients
 
 
 class CriticalityStatus(PointStatus):
-    """Outcome of the search for Hopf points of one rod and of their coefficients."""
+    """Status of the search for the Hopf points of one rod, and of their coefficients."""
 
     ok = 0, "every Hopf point is found, with coefficients to the requested accuracy", True
     not_certified = (
@@ -56,7 +56,7 @@ class CriticalityStatus(PointStatus):
 
 @dataclass(frozen=True, slots=True)
 class CriticalityRequest:
-    """Request for each rod.
+    """Request of task `criticality` for each rod.
 
     F_max: largest force, in k3/L^2. accuracy: relative accuracy of the coefficients. certify: whether the
     list of Hopf points is proved complete.
@@ -71,7 +71,8 @@ class CriticalityRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criticality:
-    """Hopf points of a rod up to the force `end`, with coefficients of the first ones."""
+    """Result for one rod: all Hopf points up to the force `end`, with the coefficients of the first of
+    them."""
 
     status: CriticalityStatus
     transitions: Transitions
@@ -87,7 +88,8 @@ class Criticality:
 
 
 def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
-    """All Hopf points of one rod with coefficients; the rod's force is ignored, failures become a status."""
+    """All Hopf points of `rod` for forces up to `request.F_max`, with coefficients. The force of `rod` is
+    ignored; a failure is a status, never an exception."""
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Criticality:
@@ -111,7 +113,7 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
 
 @cache
 def warm_up() -> None:
-    """Loads compiled code and fills caches, so that the first point takes no extra time."""
+    """Solves one rod, so that compiled code is loaded and caches are filled before a time is measured."""
     solve_criticality(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), CriticalityRequest(40.0, 1e-8, True, 4))
 
 
@@ -121,7 +123,7 @@ def _hopf_points(path: Path, end: float, certify: bool, most: int) -> Transition
 
 
 def _coefficients(rod: Rod, hopf: Crossing, request: CriticalityRequest) -> HopfCoefficients:
-    """Coefficients of one Hopf point; a failure becomes the message of this point alone."""
+    """Coefficients of the Hopf point `hopf`; after a failure NaN, with the cause as message."""
     try:
         return hopf_coefficients(replace(rod, F=hopf.at), hopf, request.accuracy)
     except FAILURES as error:
@@ -141,7 +143,7 @@ def _nothing(end: float, cause: str) -> Criticality:
 def _judged(
     found: Transitions, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
 ) -> tuple[CriticalityStatus, str]:
-    """(status, message); the most serious status that holds wins."""
+    """(status of the most serious problem, message) of the Hopf points `found` and their coefficients."""
     failures = "; ".join(filter(None, (c.message for c in coefficients)))
     known = [c for c in coefficients if c.known]
     worse = any(c.error > request.accuracy * abs(c.at) for c in found.crossings) or any(

@@ -1,9 +1,9 @@
 """Generalised Hopf (Bautin) points: the criticality Re c changes its sign along a Hopf curve.
 
 The normal form gives the sign of Re c at every stored point of a Hopf curve. Between two neighbours of
-opposite sign D(i eta) = 0 and Re c = 0 have a common solution: Newton's method on D finds the Hopf point at
-each position between the neighbours, Brent's method the position where Re c vanishes. Two sign changes
-between the same neighbours are missed.
+opposite sign D(i eta) = 0 and Re c = 0 have a common solution: Newton's method on D computes the Hopf point
+at a position between the neighbours; Brent's method finds the position at which Re c vanishes. Two sign
+changes between the same neighbours are missed.
 """
 
 import math
@@ -30,13 +30,15 @@ class GeneralisedHopfSettings:
     coarsest: float = 1e-10
     """Coarsest relative accuracy of c for locating generalised Hopf points, which are located to 1e-9."""
     first_sign_accuracy: float = 1e-5
-    """Relative accuracy of c for a first sign; undecided signs are recomputed with `accuracy`."""
+    """Relative accuracy of c at first; if the sign of Re c is undecided, c is recomputed with the requested
+    accuracy."""
     tolerance: float = 1e-13
     """Tolerance of Brent's method, as a fraction of the distance between two neighbours."""
     slope_step: float = 1e-3
     """Difference step for the slope of Re c, as a fraction of the distance between two neighbours."""
-    vanishes: float = 1e-6
-    """Largest |Re c|/|c| at a zero; a larger value means that Re c jumps through 0."""
+    max_zero_ratio: float = 1e-6
+    """Largest |Re c|/|c| accepted as a zero of Re c; a larger value means that Re c jumps from one sign to
+    the other."""
 
 
 GENERALISED_HOPF = GeneralisedHopfSettings()
@@ -44,11 +46,10 @@ GENERALISED_HOPF = GeneralisedHopfSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GeneralisedHopfPoint:
-    """Point of a Hopf curve with Re c = 0.
+    """Generalised Hopf point: the point of a Hopf curve with Re c = 0.
 
-    values, errors: both parameters of the plane. frequency in 1/tau2, growth_slope = dw/dF in
-    L^2/(k3 tau2), landau_imag = Im c in 1/(tau2 L^2). after: index of the
-    stored point of the curve before this point.
+    values, errors: both parameters of the plane. frequency in 1/tau2, growth_slope = dw/dF in L^2/(k3 tau2),
+    landau_imag = Im c in 1/(tau2 L^2). after: index of the last stored point of the curve before this point.
     """
 
     after: int
@@ -61,9 +62,9 @@ class GeneralisedHopfPoint:
 
 @dataclass(frozen=True, slots=True)
 class CurveCriticality:
-    """Criticality along one Hopf curve.
+    """Signs of Re c along one Hopf curve, and its generalised Hopf points.
 
-    criticality: sign of Re c, 0 where undecided, NaN where the normal form failed, shape (points,).
+    criticality: sign of Re c at every stored point, 0 if undecided, NaN if the normal form failed, (points,).
     points: generalised Hopf points. unlocated: number of sign changes without a located point.
     """
 
@@ -74,19 +75,19 @@ class CurveCriticality:
 
 @dataclass(frozen=True, slots=True)
 class _HopfNormalForm:
-    """Hopf point of the plane with its normal form."""
+    """A Hopf point in the plane of two parameters, with its normal form coefficients."""
 
     there: BoundarySolution
     coefficients: HopfCoefficients
 
     @property
     def share(self) -> float:
-        """Re c/|c|: dimensionless, with the zeros of Re c."""
+        """Re c/|c|, a dimensionless function with the zeros of Re c."""
         return self.coefficients.landau.real / abs(self.coefficients.landau)
 
 
 def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> CurveCriticality:
-    """The sign of Re c at every point of a Hopf curve, and the generalised Hopf points between them.
+    """The sign of Re c at every stored point of the Hopf curve `curve`, and its generalised Hopf points.
 
     accuracy: relative accuracy of c, at most `GENERALISED_HOPF.coarsest`. A failure of the normal form makes
     the sign NaN at this point only.
@@ -116,7 +117,8 @@ class HopfCurve:
     accuracy: float
 
     def sign(self, i: int) -> float:
-        """Sign of Re c at point i: -1 or 1, 0 where undecided, NaN where the normal form fails."""
+        """Sign of Re c at the stored point of index i: -1 or 1, 0 if undecided, NaN if the normal form
+        fails."""
         points = len(self.scaled)
         report(lambda: SolvePosition(f"criticality of a Hopf curve, point {i + 1} of {points}", i / points))
         try:
@@ -129,7 +131,8 @@ class HopfCurve:
             return math.nan
 
     def at(self, guess: Array, normal: Array, accuracy: float) -> _HopfNormalForm:
-        """The Hopf point in the plane through a guess, (3,), with a normal, (3,); raises Unsolvable."""
+        """The Hopf point and its normal form where the Hopf curve crosses the plane through `guess`, (3,),
+        with normal vector `normal`, (3,); raises Unsolvable."""
         there = self.boundary.point_near(guess, normal)
         if there is None:
             raise Unsolvable("no Hopf point is found between two points of the curve")
@@ -144,7 +147,8 @@ class HopfCurve:
         return _HopfNormalForm(there, hopf_coefficients(rod, hopf, accuracy))
 
     def located(self, first: int, last: int) -> GeneralisedHopfPoint | None:
-        """The zero of Re c between two points of opposite sign; None if Brent's method does not find it."""
+        """The zero of Re c between the points of indices `first` and `last`, at which Re c has opposite
+        signs; None if Brent's method does not find it."""
         from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
         start = self.scaled[first]
@@ -160,7 +164,7 @@ class HopfCurve:
         except (*FAILURES, ValueError):
             return None
         slope = (beyond.share - before.share) / (2 * GENERALISED_HOPF.slope_step)
-        if abs(here.share) > GENERALISED_HOPF.vanishes or slope == 0:
+        if abs(here.share) > GENERALISED_HOPF.max_zero_ratio or slope == 0:
             return None
         # Points of undecided sign may lie between the two, before or behind the zero.
         passed = (self.scaled[first + 1 : last] - start) @ chord <= s * (chord @ chord)
@@ -168,7 +172,7 @@ class HopfCurve:
         return self.as_point(here, first + int(passed.sum()), chord * along)
 
     def as_point(self, here: _HopfNormalForm, after: int, moved: Array) -> GeneralisedHopfPoint:
-        """Generalised Hopf point from its normal form.
+        """The generalised Hopf point `here`, with errors of both parameters.
 
         after: index of the curve's stored point before this point. moved: position error along the chord,
         (3,).

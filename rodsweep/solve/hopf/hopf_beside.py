@@ -16,14 +16,15 @@ from .coefficient_errors import hopf_coefficients
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HopfBesideSettings:
-    """Settings for the search for the subcritical Hopf point beside a cycle."""
+    """Settings for the search for a subcritical Hopf point near the force of a rod."""
 
     farthest_force: float = 1.5
-    """Hopf points are sought at forces from F / this ratio to F * this ratio."""
+    """Hopf points are sought at forces from F/`farthest_force` to F `farthest_force`, with F the force of the
+    rod."""
     accuracy: float = 1e-3
-    """Relative accuracy of c, of which only the sign and the leading digits are needed."""
+    """Relative accuracy of the coefficient c; only its sign and its first digits are needed."""
     largest_y: float = 0.5
-    """Largest tip y, in L, of an unstable cycle for which the normal form is used."""
+    """Largest tip y, in L, of an unstable cycle: for larger cycles the normal form is too inaccurate."""
 
 
 HOPF_BESIDE = HopfBesideSettings()
@@ -31,7 +32,7 @@ HOPF_BESIDE = HopfBesideSettings()
 
 @dataclass(frozen=True, slots=True)
 class SubcriticalHopf:
-    """Subcritical Hopf point near the force of a rod.
+    """Subcritical Hopf point near the force of a rod, with the size of its unstable cycle.
 
     F: force of the Hopf point, in k3/L^2. unstable_y: largest tip y, in L, of the unstable cycle at the force
     of the rod, to leading order.
@@ -42,11 +43,11 @@ class SubcriticalHopf:
 
 
 def subcritical_hopf_beside(rod: Rod) -> SubcriticalHopf | None:
-    """The subcritical Hopf point nearest to a rod's force; None if neither neighbour is subcritical.
+    """The subcritical Hopf point nearest to the force of `rod`; None if no candidate is subcritical.
 
     The candidates are the first Hopf point above and the first below the force, where the tip y of their
-    unstable cycle is at most `HOPF_BESIDE.largest_y`. The straight rod must be stable. Raises
-    Unsolvable if the search for Hopf points or a coefficient fails.
+    unstable cycle is at most `HOPF_BESIDE.largest_y`. The straight rod must be stable. Raises Unsolvable if
+    the search for Hopf points or a coefficient fails.
     """
     low = rod.F / HOPF_BESIDE.farthest_force
     high = end_below_crushing(rod, rod.F * HOPF_BESIDE.farthest_force)

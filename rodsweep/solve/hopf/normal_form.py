@@ -1,4 +1,4 @@
-"""Normal form of a Hopf point: amplitude, frequency and motion of the cycles born there.
+"""Normal form of a Hopf point: amplitude, frequency and motion of the cycles that bifurcate there.
 
 About the straight rod the mixed form (`rodsweep.discretization.straight.mixed_form`) is
 M dX/dt = A X + B(X, X)/2 + C(X, X, X)/6. With a simple pair of eigenvalues w, conj w of (A, M),
@@ -38,25 +38,28 @@ class NormalFormSettings:
     """Settings for the normal form of a Hopf point: mesh and inverse iteration."""
 
     shift_offset: float = 1e-10
-    """Relative offset of the shift from the eigenvalue estimate, which keeps the shifted matrix regular."""
+    """Relative offset of the shift from the eigenvalue estimate; the offset keeps the shifted matrix
+    nonsingular."""
     found: float = 1e-8
-    """Relative distance of shift and eigenvalue below which the iterations converge to rounding error."""
+    """Relative distance of shift and eigenvalue at which the inverse iteration has converged: two iterations
+    with this shift reach rounding error."""
     max_shifts: int = 10
     """Maximum number of shifts of the inverse iteration."""
     accuracy_share: float = 0.1
-    """Safety factor on the accuracy: the mesh rule for eigenvalues leaves up to five times the error in c."""
+    """Factor on the requested accuracy of c for the mesh rule: the rule is made for eigenvalues, and the
+    error of c may be five times theirs."""
     largest_order: int = 20
-    """Largest order of an element; a further element is cheaper than a higher order."""
+    """Largest element order; a further element costs less than a higher order."""
     max_nodes: int = 2000
-    """Maximum number of nodes; Unsolvable for rods that need more."""
+    """Maximum number of nodes for a uniform rod; a rod that needs more raises Unsolvable."""
     max_arm_nodes: int = 400
-    """Maximum number of nodes of an arm, whose matrices are factorised as a whole."""
+    """Maximum number of nodes for an arm, whose matrices are factorised without elimination by elements."""
 
 
 NORMAL_FORM = NormalFormSettings()
 ITERATIONS_PER_SHIFT = 2
-"""Inverse iterations with one shift. Two square the distance `NORMAL_FORM.found` to rounding error; one would
-leave it in c, beyond the stated error."""
+"""Number of inverse iterations with one shift. After two, the error of the mode is about the square of
+`NORMAL_FORM.found`, below rounding error; after one, it would exceed the stated error of c."""
 
 
 HARMONIC_WAVES = 2
@@ -65,7 +68,7 @@ HARMONIC_WAVES = 2
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class NormalForm:
-    """The normal form of one eigenvalue w, Im w > 0, of a rod on a mesh.
+    """Normal form of a rod on a mesh, about the straight rod, for one eigenvalue w with Im w > 0.
 
     w in 1/tau2, slope = dw/dF, c in 1/(tau2 L^2). q, p, h20 complex and h11 real, of the shape (unknowns,)
     of `form`'s X. At a Hopf point w = i Im w but for the error of the mesh.
@@ -87,7 +90,8 @@ class NormalForm:
 
     @property
     def supercritical(self) -> bool:
-        """Whether the nonlinearity saturates; cycles are stable if no other mode grows."""
+        """Whether Re c < 0: the nonlinearity limits the growth, and cycles are stable if no other mode
+        grows."""
         return self.c.real < 0
 
     @property
@@ -105,27 +109,27 @@ class NormalForm:
         return self.slope.imag - self.c.imag * self.slope.real / self.c.real
 
     def cycle(self, F: float) -> tuple[float, float]:
-        """(squared largest tip y in L^2, frequency in 1/tau2) of the cycle at a force near this one.
+        """(squared largest tip y in L^2, frequency in 1/tau2) of the cycle at a force F near `self.F`.
 
-        The cycle belongs to the eigenvalue w + slope (F - self.F). With a negative square no cycle exists.
+        At F the eigenvalue is taken as w + slope (F - self.F). If the square is negative, no cycle exists.
         """
         w = self.w + self.slope * (F - self.F)
         squared = -w.real / self.c.real
         return squared, w.imag + self.c.imag * squared
 
     def motion(self, amplitude: float, phases: Array) -> Array:
-        """X to second order of a cycle at some of its phases, (n,): shape (n, unknowns).
+        """State X of a cycle, to second order in `amplitude`, at `phases`, (n,), in rad: shape (n, unknowns).
 
-        amplitude: the largest tip y, in L, which is reached at phase 0; a period has 2 pi.
+        amplitude: the largest tip y, in L; the tip reaches it at phase 0.
         """
         z = (amplitude * np.exp(1j * phases))[:, None]
         return 2 * (z * self.q).real + (z * z * self.h20).real + amplitude**2 * self.h11
 
 
 def normal_form(form: MixedForm, guess: complex) -> NormalForm:
-    """The normal form of the eigenvalue of (A, M) nearest to a guess, i Im w at a Hopf point.
+    """Normal form of the eigenvalue of (A, M) nearest to `guess`.
 
-    Raises Unsolvable where the eigenvalue is real or the iteration finds none.
+    Raises Unsolvable if the eigenvalue is real or the inverse iteration does not converge.
     """
     transverse, longitudinal = (straight_matrices(form, part) for part in (TRANSVERSE, LONGITUDINAL))
     w, q, p = _modes(transverse, guess)
@@ -140,15 +144,16 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
 
 
 def accurate_normal_form(rod: Rod, w: complex, accuracy: float) -> NormalForm:
-    """The normal form of the eigenvalue w, on a mesh that gives c to a relative accuracy.
+    """Normal form of the eigenvalue w of `rod`, on a mesh that gives c to the relative accuracy `accuracy`.
 
-    Raises Unsolvable where w is no eigenvalue to this accuracy, or no reasonable mesh is fine enough.
+    Raises Unsolvable if w is no eigenvalue to this accuracy, or if the mesh would have too many nodes.
     """
     return normal_form_on(elements_for(rod, w, accuracy), rod, w, accuracy)
 
 
 def elements_for(rod: Rod, w: complex, accuracy: float) -> Elements:
-    """Elements that give c of the eigenvalue w to a relative accuracy, as for eigenvalues."""
+    """Elements on which the coefficient c of the eigenvalue w has the relative accuracy `accuracy`, by the
+    mesh rule for eigenvalues."""
     accuracy *= NORMAL_FORM.accuracy_share
     waves = HARMONIC_WAVES * wave_number(rod, w)
     if not rod.standard:
@@ -158,7 +163,8 @@ def elements_for(rod: Rod, w: complex, accuracy: float) -> Elements:
 
 
 def of_odd_order(elements: Elements) -> Elements:
-    """Elements of odd order at least as fine; elements of even order cannot be eliminated one by one."""
+    """The elements with the order increased to an odd number; elements of even order cannot be eliminated one
+    by one."""
     return Elements(elements.edges, elements.order | 1)
 
 
@@ -173,9 +179,10 @@ def a_third_finer(elements: Elements) -> Elements:
 
 
 def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) -> NormalForm:
-    """The normal form of the eigenvalue w on some elements.
+    """Normal form of the eigenvalue w of `rod` on the mesh `elements`.
 
-    Raises Unsolvable where w is no eigenvalue to a relative accuracy, or the mesh is too fine to be solved.
+    Raises Unsolvable if w is no eigenvalue to the relative accuracy `accuracy`, or if the mesh has too many
+    nodes.
     """
     nodes = elements.nodes
     limit = NORMAL_FORM.max_nodes if rod.standard else NORMAL_FORM.max_arm_nodes
@@ -192,7 +199,8 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
 
 
 def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[complex, Complex, Complex]:
-    """(w, q, p) of the eigenvalue nearest to a guess, of the transverse unknowns alone, scaled.
+    """(w, q, p) for the eigenvalue nearest to `guess`, with the transverse modes q and p scaled as the module
+    says.
 
     Two-sided inverse iteration, with the two-sided Rayleigh quotient as the next shift.
     """

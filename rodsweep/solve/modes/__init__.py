@@ -1,1 +1,1 @@
-"""Leading modes and adjoint modes of one rod, and transient growth due to non-normality."""
+"""Leading modes and adjoint modes of one straight rod, and transient growth due to non-normality."""

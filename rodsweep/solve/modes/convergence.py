@@ -1,8 +1,8 @@
-"""Mode vectors of known eigenvalues, on a mesh fine enough, with their errors.
+"""Right and left modes of given eigenvalues on a sufficiently fine mesh, with error estimates.
 
-Two meshes are compared: their difference is the error estimate of the coarser mesh, and the finer mesh gives
-the results. Beside a double eigenvalue, where condition numbers grow like the inverse distance of the two
-eigenvalues, two meshes may agree by chance; the effect of rounding on the distance is added there.
+The result is that of the finer of two meshes; the difference of the two meshes is the error estimate. Near a
+double eigenvalue, where condition numbers grow like the inverse distance of the two eigenvalues, two meshes
+may agree by chance; an estimate of the rounding error is added there.
 """
 
 from dataclasses import dataclass, replace
@@ -23,34 +23,37 @@ from .inverse_iteration import ModeVectors, mode_vectors
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModeMeshSettings:
-    """Settings for the meshes of the modes and their condition numbers."""
+    """Settings for the meshes on which modes and condition numbers are computed."""
 
     more_orders: int = 4
-    """Increase of the order on the second mesh; it gains two orders of magnitude in the vectors."""
+    """Increase of the element order from the first mesh to the second, which reduces the error of the modes
+    by a factor of 100."""
     max_meshes: int = 4
-    """Maximum number of finer meshes."""
+    """Maximum number of meshes after the first, each finer than the one before."""
     max_unknowns: int = 1500
-    """Largest number of unknowns; dense linear algebra on a larger mesh takes seconds."""
+    """Largest number of unknowns of a mesh; dense linear algebra on a larger mesh takes seconds."""
     finest_accuracy: float = 1e-24
-    """Smallest accuracy of the eigenvalues that the first mesh is chosen for."""
+    """Smallest relative accuracy of eigenvalues for which the first mesh is chosen, whatever the request."""
     roundings: float = 2.0
-    """Relative rounding error of a condition number in units of rounding/distance; measured: median 0.6,
-    maximum 3.4."""
+    """Relative rounding error of a condition number, in units of (rounding error of the eigenvalue)/(distance
+    to the nearest eigenvalue); measured: median 0.6, maximum 3.4."""
 
 
 MODE_MESH = ModeMeshSettings()
 
 
 def vector_accuracy(accuracy: float) -> float:
-    """Accuracy of the eigenvalues for which the first mesh is chosen, for a given accuracy of the vectors."""
+    """Relative accuracy of eigenvalues for which the first mesh is chosen, if the modes need the relative
+    accuracy `accuracy`."""
     return max(mesh_accuracy(accuracy, True), MODE_MESH.finest_accuracy)
 
 
 def converged_vectors(
     rod: Rod, eigenvalues: Complex, points: Array, wave: float, accuracy: float
 ) -> ModeVectors | None:
-    """Mode vectors at `points`, (n,), on the best of a few meshes; None if even the first mesh is too
-    large."""
+    """Modes of `eigenvalues` at `points`, (n,), from the mesh with the smallest error estimate. wave: wave
+    number that the mesh must resolve. None if even the second mesh is larger than
+    `ModeMeshSettings.max_unknowns`."""
     mesh = mesh_for(rod, wave, vector_accuracy(accuracy))
     gaps = np.array([gap(rod, complex(w)) for w in eigenvalues])
     coarse = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
@@ -66,7 +69,7 @@ def converged_vectors(
         fine = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
         result = _compared(coarse, fine, gaps)
         error = max(result.errors().values())
-        # A mesh that does not halve the error has met rounding errors.
+        # If a finer mesh does not halve the error, rounding errors dominate.
         improved = error < least / 2
         if best is None or error < least:
             best = result
@@ -78,7 +81,8 @@ def converged_vectors(
 
 
 def _compared(coarse: ModeVectors, fine: ModeVectors, gaps: Array) -> ModeVectors:
-    """The finer mesh's modes, with the differences of the coarser mesh's modes as errors; gaps: (modes,)."""
+    """The modes `fine` with their differences from the modes `coarse` as errors. gaps: distance of each
+    eigenvalue to its nearest neighbour, (modes,)."""
     error = np.zeros(len(fine.condition))
     pairs = ((coarse.right, fine.right), (coarse.deformation, fine.deformation), (coarse.left, fine.left))
     for old, new in pairs:
@@ -98,7 +102,8 @@ def _compared(coarse: ModeVectors, fine: ModeVectors, gaps: Array) -> ModeVector
 
 
 def gap(rod: Rod, w: complex) -> float:
-    """Estimated distance of eigenvalue w from the nearest other one, 2 |D'/D''|; accurate if small."""
+    """Estimated distance from the eigenvalue w to the nearest other eigenvalue, 2 |D'/D''|; accurate if
+    small."""
     if rod.standard:
         return distance_to_next_root(w, rod.coefficients)
     determinant = arm_determinant(rod)

@@ -1,4 +1,4 @@
-"""Right and left modes of known eigenvalues on one mesh, by inverse iteration on the dense pencil.
+"""Right and left modes of given eigenvalues on one mesh, by inverse iteration on the dense pencil.
 
 The shift is the eigenvalue; the pencil gives the right vector, its transpose the left vector. Normalisation
 as in `rodsweep.solve.modes.leading_modes`.
@@ -20,12 +20,13 @@ from ...model.rod import Rod
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModeIterationSettings:
-    """Settings for the inverse iteration for the vectors of a mode."""
+    """Settings for the inverse iteration that computes the right and left mode of an eigenvalue."""
 
     iterations: int = 4
-    """Number of inverse iterations; two suffice unless the eigenvalue is nearly double."""
+    """Number of inverse iterations per eigenvalue; two suffice unless the eigenvalue is nearly double."""
     conjugate: float = 1e-12
-    """Relative distance below which an eigenvalue is the complex conjugate of its predecessor."""
+    """Relative distance below which an eigenvalue counts as the complex conjugate of the one before in the
+    list."""
 
 
 MODE_ITERATION = ModeIterationSettings()
@@ -33,7 +34,7 @@ MODE_ITERATION = ModeIterationSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModeVectors:
-    """Modes on one mesh, at given points.
+    """Right and left modes computed on one mesh, evaluated at given points of the rod, with their errors.
 
     right, deformation and left are complex, (2, modes, points), NaN if the tip does not move.
     """
@@ -57,17 +58,18 @@ class ModeVectors:
     mode_error: Array
     """Largest error of Y, Theta, h2, Pi, Y+ and Theta+, each in units of its largest value, (modes,)."""
     condition_error: Array
-    """Relative error of `condition`, (modes,). This error and `mode_error` are NaN until another mesh is
-    compared."""
+    """Relative error of `condition`, (modes,). `condition_error` and `mode_error` are NaN until two meshes
+    are compared."""
 
     def errors(self) -> dict[str, float]:
-        """Largest relative error of each quantity; inf if unknown."""
+        """Largest relative error over all modes of the "modes" and of the "condition numbers"; inf if
+        unknown."""
         errors = {"modes": self.mode_error.max(), "condition numbers": self.condition_error.max()}
         return {name: inf if np.isnan(error) else float(error) for name, error in errors.items()}
 
 
 def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Array) -> ModeVectors:
-    """Modes of known eigenvalues on one mesh, at `points` in [0, 1], (n,)."""
+    """Right and left modes of `eigenvalues` on the mesh of `pencil`, at `points` in [0, 1], (n,)."""
     form = dense_form(rod, pencil)
     X, Z, rounding = _vectors(form, eigenvalues)
     evaluation = form.mesh.evaluation(points)
@@ -75,7 +77,7 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
     pairing = (B * Z * X).sum(axis=0)
     norms = [np.sqrt((B * np.abs(V) ** 2).sum(axis=0)) for V in (X, Z)]
     return replace(
-        no_vectors(Resolution(form.mesh.elements, form.mesh.order), len(eigenvalues), len(points)),
+        unknown_vectors(Resolution(form.mesh.elements, form.mesh.order), len(eigenvalues), len(points)),
         right=np.stack([(evaluation @ field).T for field in form.fields(X)]),
         deformation=form.strains(X, points),
         left=np.stack([(evaluation @ field).T for field in form.fields(Z.conj())]),
@@ -85,8 +87,8 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
     )
 
 
-def no_vectors(resolution: Resolution, modes: int, points: int) -> ModeVectors:
-    """Placeholder for unknown vectors: all entries NaN."""
+def unknown_vectors(resolution: Resolution, modes: int, points: int) -> ModeVectors:
+    """Placeholder for modes that were not computed: all entries NaN. modes, points: numbers of both."""
     shape = np.full((2, modes, points), np.nan + 0j)
     numbers = np.full(modes, np.nan)
     return ModeVectors(
@@ -103,7 +105,8 @@ def no_vectors(resolution: Resolution, modes: int, points: int) -> ModeVectors:
 
 
 def _vectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, Array]:
-    """Right and left vectors, (unknowns, modes) each, scaled at the tip, and `ModeVectors.rounding`."""
+    """Right and left eigenvectors, (unknowns, modes) each, with tip deflection 1, and the rounding error of
+    each eigenvalue, (modes,)."""
     A = form.A
     B = form.B
     m = len(eigenvalues)
@@ -123,7 +126,8 @@ def _vectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, A
 
 
 def null_vectors(A: NDArray, B: NDArray, w: complex) -> tuple[NDArray, NDArray]:
-    """Right and left vector of eigenvalue w, (unknowns,) each, with largest entry 1; real for real w."""
+    """Right and left null vector of A - w diag(B), (unknowns,) each, with largest entry 1; real for real
+    w."""
     # The inverse is wanted although the matrix is singular to rounding: its error lies along the null vector.
     inverse = np.linalg.inv(A - np.diag((w if w.imag else w.real) * B))
     return _iterated(inverse, B), _iterated(inverse.T, B)

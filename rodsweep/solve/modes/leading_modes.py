@@ -1,8 +1,8 @@
 """Leading modes of one rod, their adjoints, and the transient growth due to non-normality.
 
-Eigenvalues come from `rodsweep.solve.spectrum`, certified and with their own error estimate; vectors from
-`convergence`; abscissa and growth from `transient_growth`. Each has its own meshes; the reported mesh is that
-of the vectors.
+Eigenvalues come from `rodsweep.solve.spectrum`, certified and with their own error estimate; modes from
+`convergence`; numerical abscissa and transient growth from `transient_growth`. Each module chooses its own
+meshes; the reported mesh is the mesh of the modes.
 
 Normalisation: right modes have Y(1) = 1 and left modes Y+(1) = 1. Both are therefore equal at F = 0, where L
 is self-adjoint. The coefficient of mode n in a state xi is (psi_n, xi)/(psi_n, xi_n); `pairing` is the
@@ -24,18 +24,19 @@ from ..point import solved
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus
 from .convergence import converged_vectors
-from .inverse_iteration import ModeVectors, no_vectors
+from .inverse_iteration import ModeVectors, unknown_vectors
 from .transient_growth import Growth, growth_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeadingModeSettings:
-    """Settings for the choice of the modes that are computed."""
+    """Settings for the transient growth of the leading modes."""
 
     growth_wave_number: float = 24.0
-    """Wave number of the eighth mode at rest: growth at short times needs more modes than the request."""
+    """Smallest wave number that the mesh for the growth resolves, that of the eighth mode without load:
+    growth at short times needs more modes than the request."""
     significant_errors: float = 4.0
-    """Smallest positive growth rate in units of its error estimate."""
+    """A rod is unstable if a growth rate exceeds this multiple of its error estimate."""
 
 
 LEADING_MODES = LeadingModeSettings()
@@ -43,7 +44,8 @@ LEADING_MODES = LeadingModeSettings()
 
 @dataclass(frozen=True, slots=True)
 class ModesRequest:
-    """Request: number of modes, relative accuracy, number of Lobatto nodes, and options."""
+    """Request for the leading modes: number of modes, relative accuracy, number of Lobatto nodes at which the
+    modes are stored, and options."""
 
     modes: int
     accuracy: float
@@ -55,9 +57,10 @@ class ModesRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Modes:
-    """Leading modes of one rod, in the order defined in `rodsweep.model`.
+    """Result for one rod: leading eigenvalues, modes and transient growth, in the order defined in
+    `rodsweep.model`.
 
-    status: status of the spectrum, unless a vector or the growth failed or missed the requested accuracy.
+    status: status of the spectrum, unless the modes or the growth failed or missed the requested accuracy.
     """
 
     status: SpectrumStatus
@@ -73,7 +76,7 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
     if rod.uniform and not rod.standard:
         return _from_equivalent(rod, request)
     spectrum = solve_spectrum(rod, SpectrumRequest(request.modes, request.accuracy, request.certify))
-    vectors = no_vectors(Resolution(spectrum.elements, spectrum.order), request.modes, request.nodes)
+    vectors = unknown_vectors(Resolution(spectrum.elements, spectrum.order), request.modes, request.nodes)
     outcome = Modes(
         status=spectrum.status,
         spectrum=spectrum,
@@ -112,7 +115,7 @@ def _from_equivalent(rod: Rod, request: ModesRequest) -> Modes:
 
 
 def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
-    """The outcome with vectors and, if requested, growth; the largest error determines the status."""
+    """`outcome` with modes and, if requested, transient growth; the largest error determines the status."""
     spectrum = outcome.spectrum
     wave = max(wave_number(rod, complex(w)) for w in spectrum.eigenvalues)
     points = lobatto_points(request.nodes)

@@ -1,4 +1,4 @@
-"""The maximum of |exp(L t)| over a range of times, and an upper bound over that range.
+"""The maximum of the norm |exp(L t)| over an interval of times, and an upper bound of the norm there.
 
 With the numerical abscissa a, N = |exp(L t)|, and t = t0 + r in an interval [t0, t1] of width h,
 
@@ -20,23 +20,24 @@ from .propagator import Propagator
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NormMaximumSettings:
-    """Settings for the search for the largest norm over all times."""
+    """Settings for the search for the maximum of |exp(L t)| over time."""
 
     start_ratio: float = 2**0.25
-    """Ratio of neighbouring times of the first grid."""
+    """Ratio of neighbouring times of the first grid, which is geometric."""
     max_halvings: int = 40
-    """Maximum number of halvings of an interval."""
+    """Maximum number of halvings of an interval of times; after them the bound is not improved further."""
     max_open_intervals: int = 4000
-    """Maximum number of open intervals; with more, the bound is left as it is."""
+    """Maximum number of intervals in which a larger norm is possible; with more, the bound is not improved
+    further."""
     batch: int = 128
-    """Number of times at which the propagator is evaluated at once."""
+    """Number of times at which the propagator is evaluated in one call, which limits the memory."""
     largest_exponent: float = 300.0
-    """Largest exponent, with an exponential that is still finite."""
+    """Largest argument of exp, at which exp does not overflow; larger arguments are cut to it."""
     max_peak_steps: int = 40
-    """Maximum number of steps of the search for a peak."""
+    """Maximum number of regula falsi steps to a maximum of the norm."""
     rise_left: float = 1e-14
-    """Relative rise of a concave maximum within its final bracket; the relative error of the time is the
-    square root of this."""
+    """Tolerance of the search for a maximum: largest possible relative rise of the norm within the final
+    bracket. The relative error of the time is the square root of the tolerance."""
 
 
 NORM_MAXIMUM = NormMaximumSettings()
@@ -45,9 +46,10 @@ NORM_MAXIMUM = NormMaximumSettings()
 def largest_norm(
     propagator: Propagator, span: tuple[float, float], abscissa: float, floor: float, tolerance: float
 ) -> tuple[tuple[float, float], float]:
-    """((largest |exp(L t)|, its time), upper bound of |exp(L t)|) over the times span[0] to span[1].
+    """((maximum of |exp(L t)|, its time), upper bound of |exp(L t)|) over the times span[0] to span[1].
 
-    Only values above `floor` are searched, to the relative tolerance. `abscissa` >= 0 is an upper bound.
+    tolerance: relative, of the bound. floor: norms below it are not searched for. abscissa: an upper bound,
+    at least 0, of the numerical abscissa.
     """
     low, high = span
     count = max(2, int(np.ceil(np.log(high / low) / np.log(NORM_MAXIMUM.start_ratio))) + 1)
@@ -85,21 +87,23 @@ def largest_norm(
 
 
 def _squares(propagator: Propagator, times: Array) -> tuple[Array, Array]:
-    """`Propagator.squares` in batches; each result (times,)."""
+    """(|exp(L t)|^2, curvature bound c) at `times`, (times,) each, evaluated in batches to limit the
+    memory."""
     parts = [propagator.squares(part) for part in np.array_split(times, len(times) // NORM_MAXIMUM.batch + 1)]
     return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
 
 
 def _bound(h: Array, left: Array, right: Array, bend: Array, abscissa: float) -> Array:
-    """Bound of N^2 over intervals of width h, from N^2 at both ends and c at the left end; all
-    (intervals,)."""
+    """Upper bound of N^2 in intervals of width `h`, from N^2 at the `left` and `right` end and c (`bend`) at
+    the left end; all (intervals,)."""
     growth = np.exp(np.minimum(2 * abscissa * h, NORM_MAXIMUM.largest_exponent))
     # Two bounds: growth at the rate of the abscissa, and the chord plus the largest curvature below it.
     return np.minimum(left * growth, np.maximum(left, right) + h**2 / 8 * bend * growth)
 
 
 def _peak(propagator: Propagator, low: float, high: float) -> tuple[float, float]:
-    """(|exp(L t)|, t) at the sign change of its derivative between low and high: Illinois regula falsi."""
+    """(|exp(L t)|, t) at a maximum between the times `low` and `high`: the zero of the derivative, by the
+    Illinois regula falsi."""
     at_low, rate_low = propagator.norm(low)
     at_high, rate_high = propagator.norm(high)
     if rate_low <= 0 or rate_high >= 0:

@@ -16,16 +16,17 @@ from .propagator import shifted_inverse
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AbscissaSettings:
-    """Settings for the shifts above the numerical abscissa."""
+    """Settings for the shifts with which the numerical abscissa is computed from above."""
 
     max_shifts: int = 60
-    """Maximum number of shifts tried to exceed the numerical abscissa if no bound is known; each doubles the
-    last."""
+    """Maximum number of shifts; as long as the shift is below the numerical abscissa, the next is about twice
+    as large."""
     close_shift: float = 0.05
-    """Relative distance of the last shift above the abscissa. A shift this close loses no digits to
-    cancellation."""
+    """Relative distance of the last shift above the numerical abscissa: small, so that shift + 1/eigenvalue
+    loses no digits to cancellation."""
     positive: float = 1e-9
-    """Relative size above which an eigenvalue of the shifted inverse is positive, not rounding."""
+    """Ratio to the most negative eigenvalue of the shifted inverse above which a positive eigenvalue is not
+    rounding error."""
 
 
 ABSCISSA = AbscissaSettings()

@@ -1,4 +1,4 @@
-"""exp(L t) on one mesh, represented as exp(L_k t) P_k, and bounds of its norm between two times.
+"""exp(L t) on one mesh, represented by exp(L_k t) P_k, and data for bounds of its norm between two times.
 
 P_k is the spectral projector of the k leading modes on the *whole* space; the remainder decays like exp(Re
 w_k t). Restricting the initial state to the span of the k leading modes, as is usual, converges only like a
@@ -17,7 +17,7 @@ from ...determinant.exponents import ROUND_OFF
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PropagatorSettings:
-    """Settings for the propagator exp(L t) in the space of the modes."""
+    """Settings for exp(L t) and for its representation by the leading modes."""
 
     infinite: float = 1e-12
     """Relative size of an eigenvalue of G below which the corresponding eigenvalue of L is infinite."""
@@ -66,7 +66,8 @@ class Propagator:
         self.overlap: Array = np.zeros((0, 0))
 
     def keep(self, k: int) -> int:
-        """Represents exp(L t) P_k as Q exp(L_k t) (Z^T Q)^-1 Z^T, with orthonormal real Q and Z.
+        """Represents exp(L t) from now on by k leading modes, Q exp(L_k t) (Z^T Q)^-1 Z^T, with orthonormal
+        real Q, Z.
 
         Q and Z are bases of the right and left invariant subspaces: at a double eigenvalue the eigenvectors
         are parallel, but the subspaces are well conditioned. The subspaces are nested, so L_k is upper
@@ -86,19 +87,20 @@ class Propagator:
         return k
 
     def at(self, times: Array) -> Array:
-        """exp(L t) between the bases Z and Q, shape (times, k, k)."""
+        """The matrix exp(L_k t) (Z^T Q)^-1, whose norm is |exp(L t) P_k|, at each of `times`: (times, k,
+        k)."""
         return exponential(self.generator * times[:, None, None]) @ np.linalg.inv(self.overlap)
 
     def norm(self, time: float) -> tuple[float, float]:
-        """(|exp(L t)|, its logarithmic derivative) at one time."""
+        """(norm |exp(L t)|, derivative of its logarithm) at `time`."""
         # d|E|/dt = u . dE/dt v = |E| u . L u, with u the left singular vector.
         u, sizes, _ = np.linalg.svd(self.at(np.array([time]))[0])
         return float(sizes[0]), float(u[:, 0] @ self.generator @ u[:, 0])
 
     def squares(self, times: Array) -> tuple[Array, Array]:
-        """(N^2, c) at many times, each of shape (times,).
+        """(N^2, c) at each of `times`, each of shape (times,).
 
-        N = |exp(L t)|, and f'' >= -c for f = |exp(L t) v|^2 of any |v| = 1.
+        N = |exp(L t)|. c bounds a curvature: f'' >= -c for f = |exp(L t) v|^2 with any |v| = 1.
         """
         E = self.at(times)
         first = self.generator @ E
@@ -107,15 +109,16 @@ class Propagator:
         return size, np.maximum(-np.linalg.eigvalsh(half + np.swapaxes(half, 1, 2))[:, 0], 0.0)
 
     def left_over(self, m: int, time: float) -> float:
-        """|exp(L t) (1 - P_m)|: contribution of the modes behind the m leading ones; m < k splits no pair."""
+        """|exp(L t) (P_k - P_m)|, the contribution at `time` of modes m + 1 to k; m < k must not split a
+        complex pair."""
         E = self.at(np.array([time]))[0]
         E[:m, :m] -= exponential(self.generator[:m, :m] * time) @ np.linalg.inv(self.overlap[:m, :m])
         return float(np.linalg.norm(E, 2))
 
 
 def _orthonormal(vectors: NDArray, w: NDArray) -> Array:
-    """Real orthonormal basis of the invariant subspace spanned by the vectors of w, (n, k), in their
-    order."""
+    """Real orthonormal basis, (n, k), of the invariant subspace of the eigenvalues w with eigenvectors
+    `vectors`; the first columns span the subspaces of the first eigenvalues."""
     columns = np.hstack([vectors.real[:, w.imag >= 0], vectors.imag[:, w.imag > 0]])
     place = np.concatenate([np.nonzero(w.imag >= 0)[0], np.nonzero(w.imag > 0)[0] + 1])
     return np.linalg.qr(columns[:, np.argsort(place)])[0]

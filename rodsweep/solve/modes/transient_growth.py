@@ -1,4 +1,5 @@
-"""Largest transient growth of a perturbation of a stable rod in the Gamma norm, S = sup_t |exp(L t)|.
+"""Largest transient growth of a perturbation of a stable straight rod in the Gamma norm, S = sup_t |exp(L
+t)|.
 
 With the numerical abscissa a, |exp(L t)| <= exp(a t), on a mesh as well as in the rod, because one form
 bounds both. Errors of a mesh at times t < log(S)/a therefore do not matter. The number of modes is sufficient
@@ -24,24 +25,25 @@ from .propagator import Propagator, shifted_inverse
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GrowthSettings:
-    """Settings for the modes and meshes of the largest transient growth."""
+    """Settings for the number of modes and the meshes from which the transient growth is computed."""
 
     min_modes: int = 8
-    """Number of modes that first represent exp(L t)."""
+    """Number of leading modes that represent exp(L t) at first."""
     more_modes: float = 0.5
-    """Increase of the number of modes when more are needed, in units of this number."""
+    """Increase of the number of modes if more are needed, as a fraction of the number."""
     truncation_margin: float = 4.0
-    """exp(-`truncation_margin`) is the share of the accuracy for the modes left out."""
+    """The modes left out contribute at most exp(-`truncation_margin`) of the accuracy."""
     search_share: float = 0.25
-    """Share of the accuracy for the bound between times."""
+    """Tolerance of `largest_norm`, as a fraction of the requested accuracy."""
     min_search_tolerance: float = 2e-13
-    """Smallest tolerance of that bound: the rounding of the norm."""
+    """Smallest tolerance of `largest_norm`: rounding error of the norm."""
     first_more_orders: int = 4
-    """Increase of the order on the second mesh."""
+    """Increase of the element order from the first mesh to the second."""
     order_factor: float = 1.4
-    """Factor on the order of each further mesh: boundary layers at the tip need high orders."""
+    """Ratio of the element orders of a further mesh and the mesh before: boundary layers at the tip need high
+    orders."""
     max_meshes: int = 5
-    """Maximum number of finer meshes."""
+    """Maximum number of meshes after the first, each finer than the one before."""
     max_unknowns: int = 400
     """Largest number of unknowns of a further mesh; all modes of a larger mesh take more than a second."""
 
@@ -51,7 +53,7 @@ GROWTH = GrowthSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Growth:
-    """Transient growth of a perturbation before its decay; NaN if not requested."""
+    """Transient growth of perturbations of a straight rod, with errors; NaN if not requested."""
 
     transient_growth: float = nan
     """Largest growth sup_t |exp(L t)| in the Gamma norm. For an unstable rod the growth is inf, at the time
@@ -67,7 +69,8 @@ class Growth:
     """Absolute error of `numerical_abscissa`."""
 
     def errors(self, rate: float) -> dict[str, float]:
-        """Relative errors by quantity; the abscissa relative to `rate` if `rate` is larger."""
+        """Relative errors of growth and numerical abscissa, by name; that of the abscissa is relative to the
+        larger of |abscissa| and `rate`, in 1/tau2."""
         scale = max(abs(self.numerical_abscissa), rate)
         return {"transient growth": self.growth_error, "numerical abscissa": self.abscissa_error / scale}
 
@@ -77,16 +80,17 @@ GROWTH_BY_STABILITY = {
     False: Growth(transient_growth=inf, transient_time=inf, growth_error=0.0),
     None: Growth(growth_error=0.0),
 }
-"""Growth of a rod as far as stability alone determines it; None for a stable rod, whose growth is
+"""Growth by stability (True, False, None if undecided). None for a stable rod, whose growth must be
 computed."""
 UNKNOWN_GROWTH = Growth(growth_error=inf)
-"""Placeholder for an unknown growth."""
+"""Growth after a failed computation: NaN with infinite error."""
 
 
 def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rate: float) -> Growth:
-    """Abscissa and growth on `mesh` and finer meshes. rate: modulus of the leading eigenvalue.
+    """Numerical abscissa and transient growth of a rod, from `mesh` and finer meshes. rate: modulus of the
+    leading eigenvalue.
 
-    stable: False gives unlimited growth; None, if stability is unknown, gives growth nan.
+    stable: whether the rod is stable, None if undecided; the growth then is NaN, and inf for an unstable rod.
     """
     best = UNKNOWN_GROWTH
     least = inf
@@ -123,14 +127,14 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
 
 
 def propagator_of(rod: Rod, pencil: AnyPencil) -> Propagator:
-    """exp(L t) of the rod on one mesh, in coordinates with a Euclidean Gamma norm."""
+    """exp(L t) of the rod on the mesh of `pencil`, in coordinates in which the Gamma norm is Euclidean."""
     form = dense_form(rod, pencil)
     return Propagator(shifted_inverse(form.A, form.B, 0.0))
 
 
 def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accuracy: float) -> Growth:
-    """The largest growth on the finer mesh; the coarser mesh gives its error. abscissa: an upper bound >
-    0."""
+    """Largest growth from the propagator `fine`; the propagator `coarse` of a coarser mesh gives the error.
+    abscissa: an upper bound > 0 of the numerical abscissa."""
     if isnan(abscissa) or not fine.w[0].real < 0:  # a spurious eigenvalue of the mesh
         return UNKNOWN_GROWTH
     patience = log(1 / accuracy) + GROWTH.truncation_margin
@@ -166,12 +170,13 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
 
 
 def _end(propagator: Propagator, first: float, patience: float) -> tuple[float, float]:
-    """(a time after which |exp(L t)| does not exceed its earlier values, relative error of this statement).
+    """(a time after which |exp(L t)| does not exceed its earlier values, relative amount by which it still
+    may).
 
     Since |exp(L (t + r))| <= |exp(L t)| |exp(L r)|, any time with |exp(L t)| < 1 will do. Near a threshold
     such a time is very late. But once the leading pair dominates, the motion repeats itself and shrinks every
-    half period. If the other modes still contribute r then, no later value exceeds all earlier values by more
-    than the share 2 r.
+    half period. If the other modes contribute r at that time, no later norm exceeds all earlier norms by more
+    than the fraction 2 r.
     """
     w = propagator.w[: len(propagator.generator)]
     m = 2 if w[0].imag else 1

@@ -45,7 +45,7 @@ _object_state = petsc_function("PetscObjectStateGet")
 
 @c_function(POINTER, types.float64, POINTER, POINTER, POINTER, POINTER)
 def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
-    """R = Udot - f(U), or R = Udot where the context asks for it."""
+    """PETSc's implicit function R = Udot - f(U), or R = Udot if the context's `without_rate` is set."""
     c = record_at(context, CONTEXT)
     n = c.unknowns
     at = context + OUTPUTS
@@ -70,7 +70,7 @@ def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
 
 @c_function(POINTER, types.float64, POINTER, POINTER, POINTER)
 def no_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
-    """F = 0: all of f is implicit.
+    """PETSc's explicit right-hand side F = 0: all of f is implicit.
 
     Without a right-hand side, PETSc from 3.20 on treats the rod as a differential-algebraic system and
     computes the first slope of each step by an additional Newton solve.
@@ -87,7 +87,8 @@ def no_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
 def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     ts: int, t: float, U: int, Udot: int, shift: float, A: int, B: int, context: int
 ) -> int:
-    """B = shift - J, with J evaluated as `matrix_due` requires; an unchanged B keeps its factors in PETSc."""
+    """PETSc's matrix B = shift - J, with J = df/dU at the state that the context's `matrix_due` names. PETSc
+    keeps the LU factors of an unchanged B."""
     c = record_at(context, CONTEXT)
     n = c.unknowns
     at = context + OUTPUTS
@@ -120,7 +121,7 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
 
 
 class Workspace:
-    """Memory behind the callbacks of one TS, for one mesh and any rod."""
+    """Arrays and context record that the callbacks of one TS use, for one mesh and any rod."""
 
     def __init__(self, mesh: Mesh) -> None:
         n = plane_layout(mesh.nodes).unknowns
@@ -145,9 +146,11 @@ class Workspace:
             self.context[name] = value
 
     def prepare(self, beam: Beam, error: float, floor: float) -> None:
-        """Sets the rod and the limits of Newton's method, both as rms errors of a stage.
+        """Sets the rod and the two tolerances of Newton's method, both rms values over the unknowns of a
+        stage.
 
-        error: Newton's method stops below it. floor: rounding error, at which it may stagnate.
+        error: estimated error of a stage at which Newton's method stops. floor: size of a Newton step below
+        which stagnation counts as rounding error.
         """
         self._rod = arrays_of(beam)  # the callbacks read these arrays by address as well
         self._set({name: array.ctypes.data for name, array in self._rod.items()})
@@ -161,11 +164,12 @@ class Workspace:
         take_steps(self.context)
 
     def predict_as(self, variant: str) -> None:
-        """Sets the extrapolation points of the stages for a variant of ARKIMEX; none for other variants."""
+        """Sets the extrapolation points of the stages for the ARKIMEX type `variant`; none if the type is not
+        in the table."""
         self._arrays["points"][:] = points_of(variant)
 
     def attach(self, ts: "PETSc.TS", matrix: "PETSc.Mat") -> None:
-        """Registers the callbacks in a TS whose options are set."""
+        """Registers the callbacks in `ts`, whose options must be set already."""
         context = self.context.ctypes.data
         B = matrix.handle
         snes = ts.getSNES()
@@ -194,7 +198,7 @@ class Workspace:
         call("SNESShellSetSolve", snes.handle, solve_stage.address)
 
     def destroy(self) -> None:
-        """Frees the memory and the PETSc objects."""
+        """Frees the stored steps and the PETSc vectors."""
         take_steps(self.context)
         for vector in self._vectors:
             vector.destroy()

@@ -14,26 +14,27 @@ from ...model.material.jump import COLUMNS
 from ..backend.c_functions import floats, floats_in, integers
 from .time_scheme import EXTRAPOLATION_POINTS
 
-NUMBERS_PER_SIDE = len(COLUMNS)
-"""Numbers of each side of a jump."""
+CONSTANTS_PER_JUMP_SIDE = len(COLUMNS)
+"""Number of material constants that are stored for each side of a jump of the material."""
 MAX_STAGES = 1 + max(max(stages) for stages in EXTRAPOLATION_POINTS.values())
-"""Maximum number of stored stages of a step."""
+"""Maximum number of stages of a time step that are stored for extrapolation, the state at the start
+included."""
 MAX_STAGE_POINTS = max(
     len(this) + len(last) for stages in EXTRAPOLATION_POINTS.values() for this, last in stages.values()
 )
-"""Maximum number of points through which a stage is extrapolated."""
+"""Maximum number of stored stages through which the prediction of a stage is extrapolated."""
 FLOAT = "<f8"
 WHOLE = "<i8"
 ROD = (*(name for name in NodalRod._fields if name not in ("unknown_velocities", "law")), "roots", "crushed")
-"""Fields with addresses of the integrated rod's arrays, of the square roots of its compliances, and of z1 at
-each node but the tip at which h1 = 0, (nodes,)."""
+"""Fields of `CONTEXT` with the addresses of the integrated rod's arrays. `roots`: square roots of the
+compliances. `crushed`: value of z1 with h1 = 0 at each node but the tip, (nodes,)."""
 ARRAYS = ("jacobian", "base", "times", "states", "points", "constant", "rates")
-"""Fields with addresses of a `Workspace`'s arrays: the last Jacobian, (unknowns, unknowns); the state at
-which a step's matrix is made, (unknowns,); times, (2 MAX_STAGES,), and states, (2 MAX_STAGES, unknowns), of
-the stages of this step and the last; extrapolation points of each stage, (MAX_STAGES, MAX_STAGE_POINTS); the
-constant of a stage's equation and the rates f, (unknowns,) each."""
+"""Fields of `CONTEXT` with the addresses of a `Workspace`'s arrays: the last Jacobian, (unknowns, unknowns);
+the state at which a step's matrix is made, (unknowns,); times, (2 MAX_STAGES,), and states, (2 MAX_STAGES,
+unknowns), of the stages of this step and the last; extrapolation points of each stage, (MAX_STAGES,
+MAX_STAGE_POINTS); the constant of a stage's equation and the rates f, (unknowns,) each."""
 HANDLES = ("ts", "matrix", "ksp", "residual", "correction")
-"""Fields with handles of PETSc objects."""
+"""Fields of `CONTEXT` with the handles of PETSc objects."""
 CONTEXT = np.dtype(
     [
         *((name, WHOLE) for name in (*NodeMatrices._fields, *ROD, *ARRAYS, *HANDLES)),
@@ -69,17 +70,17 @@ CONTEXT = np.dtype(
         ("outputs", WHOLE, (3,)),  # output arguments of PETSc's functions
     ]
 )
-"""Record that every callback receives."""
+"""Record type of the argument `context` of every callback."""
 CONTEXT_FIELDS: Mapping[str, Any] = CONTEXT.fields or {}
 OUTPUTS, MATRIX_STATE = (CONTEXT_FIELDS[name][1] for name in ("outputs", "matrix_state"))
-"""Offsets in bytes of the fields that PETSc writes."""
+"""Offsets, in bytes, of the fields of `CONTEXT` into which PETSc's functions write."""
 
 UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
-"""Values of `matrix_due`: no new matrix, or the state at which a new matrix is made."""
+"""Values of `matrix_due`: no new Newton matrix is due, or the state at which it is evaluated."""
 
 
 def arrays_of(beam: Beam) -> dict[str, Array]:
-    """Arrays of a rod for the fields `ROD`, of any shapes."""
+    """Arrays of the rod `beam` by the names in `ROD`, of any shapes."""
     own = beam.nodal._asdict() | {"roots": beam.sqrt_compliance, "crushed": beam.crushing_z1}
     return {name: own[name] for name in ROD}
 
@@ -95,7 +96,7 @@ def rod_of(c: Any) -> NodalRod:
     second = floats_in(c.second, (d, m, m))
     none = integers(c.rest, 0)
     jumps = integers(c.jumps, c.jump_count)
-    sides = floats_in(c.sides, (c.jump_count, 2, NUMBERS_PER_SIDE))
+    sides = floats_in(c.sides, (c.jump_count, 2, CONSTANTS_PER_JUMP_SIDE))
     tip_stress = floats(c.tip_stress, d)
     return NodalRod(tip_stress, rest, compliance, drag, mobility, second, none, c.law, jumps, sides)
 

@@ -1,13 +1,14 @@
-"""The rod bent with its tip at a chosen place: the start of a motion from a shape that a user sets.
+"""The rod bent until its tip is at a given point (x, y): the start of a motion that a user chooses.
 
-Of all curvatures Pi that put the tip at (x, y) these have the least integral of Pi^2. A force at the tip,
-without moment, bends a rod of constant bending stiffness so (an elastica). Stretch and shear are those of the
-straight rod under its follower force. Pi vanishes at the tip, so the state satisfies the rod's own conditions
-there. Newton's method solves for the curvatures and the force f, with W the weights of the quadrature,
+Of all curvatures Pi that put the tip at (x, y) the bent rod has those with the least integral of Pi^2. A
+force at the tip, without moment, bends a rod of constant bending stiffness so (an elastica). Stretch and
+shear are those of the straight rod under its follower force. Pi vanishes at the tip, so the state satisfies
+the rod's own conditions there. Newton's method solves for the curvatures and the force f, with W the weights
+of the quadrature,
 
-    W Pi - f . d(x, y)/dPi = 0,    (x, y)(Pi) = the place,
+    W Pi - f . d(x, y)/dPi = 0,    (x, y)(Pi) = target,
 
-along a path of places from the tip of a slightly bent rod.
+for targets along a path that starts at the tip of a slightly bent rod.
 """
 
 from dataclasses import dataclass
@@ -22,7 +23,7 @@ from ...discretization.elements.mesh import shape_from_strains
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HeldTipSettings:
-    """Settings for the rod bent with its tip at a chosen place."""
+    """Settings for the rod that is bent until its tip is at a given point."""
 
     reach: float = 0.98
     """Largest distance of the tip from the clamp, in lengths of the straight rod: at 1 the rod cannot be
@@ -31,15 +32,17 @@ class HeldTipSettings:
     """Angle of the tip, rad, where the path begins: the tip of a straight rod cannot move towards the
     clamp."""
     first_step: float = 0.1
-    """Length of the first step as a share of the path."""
+    """First step of the target, as a fraction of its path."""
     least_step: float = 1e-3
-    """Length of a step, as a share of the path, at which the path is given up."""
+    """Step of the target, as a fraction of its path, below which the search ends at the last point
+    reached."""
     max_iterations: int = 12
-    """Maximum Newton iterations of a step."""
+    """Maximum number of Newton iterations for one target."""
     placed: float = 1e-10
-    """Distance of the tip from its target, in L, at which iterations end."""
+    """Tolerance of Newton's method: distance of the tip from its target, in L."""
     largest_turn: float = 1.0
-    """Change of the angle by a Newton step, in rad, beyond which the step may lead to a different shape."""
+    """Largest change of theta by a Newton step, in rad. Newton's method fails beyond it, because a longer
+    step may lead to a different shape."""
 
 
 HELD_TIP = HeldTipSettings()
@@ -48,8 +51,8 @@ HELD_TIP = HeldTipSettings()
 def held_by_tip(beam: Beam, x: float, y: float) -> Array:
     """The state z, (unknowns,), of the rod bent until the tip is at (x, y) in L.
 
-    A target beyond `HeldTipSettings.reach` is moved towards the clamp. If the tip cannot be moved to the
-    target, the last state on the way is returned.
+    A target beyond `HeldTipSettings.reach` is moved towards the clamp. If Newton's method fails on the path
+    of targets, the state for the last target reached is returned.
     """
     bending = _Bending(beam)
     side = -1.0 if y < 0 else 1.0
@@ -75,7 +78,7 @@ def held_by_tip(beam: Beam, x: float, y: float) -> Array:
 
 
 class _Bending:
-    """A rod that only bends: place of the tip, and its derivatives. length: length of the straight rod, in
+    """A rod that only bends: position of its tip as a function of Pi. length: length of the straight rod, in
     L."""
 
     def __init__(self, beam: Beam) -> None:
@@ -90,16 +93,17 @@ class _Bending:
         """Matrix from Pi to theta, both at all nodes; at a jump of the material from the mean Pi."""
 
     def tip(self, Pi: Array) -> Array:
-        """(x, y) of the tip, (2,), for curvatures at all nodes, (nodes + 1,)."""
+        """Position (x, y) of the tip, (2,), for curvatures Pi at all nodes, (nodes + 1,)."""
         end: Array = self._beam.tip(self.state(Pi))[:2]
         return end
 
     def state(self, Pi: Array) -> Array:
-        """The state z, (unknowns,), for curvatures at all nodes, (nodes + 1,)."""
+        """The state z, (unknowns,), for curvatures Pi at all nodes, (nodes + 1,)."""
         return self._beam.state_of_strains(np.stack([self.h1, self.h2, Pi]))
 
     def placed(self, Pi: Array, force: Array, place: Array) -> tuple[Array, Array] | None:
-        """(curvatures, (nodes + 1,); force, (2,)) with the tip at a place, (2,); None where Newton fails."""
+        """(curvatures Pi, (nodes + 1,); force, (2,)) with the tip at `place`, (2,); None if Newton's method
+        fails."""
         size = len(Pi)
         weights = self.mesh.quadrature
         matrix = np.zeros((size + 2, size + 2))

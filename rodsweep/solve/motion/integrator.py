@@ -1,9 +1,9 @@
-"""Time integration of one rod by PETSc TS: a run from one state, its steps, and the reason of its end.
+"""Time integration of one rod from one state by PETSc's TS: the steps, and the reason why the run ended.
 
-The default is fully implicit ARKIMEX of order 5, the fastest scheme in measurements. The speed comes from
-three measures. Stages are extrapolated from the stages of this step and the last. Newton's method is
-compiled, and stops at a share of the step's tolerance. Each step has a single Jacobian, at the state
-predicted for the middle of the step; a Jacobian at the start costs a quarter more iterations.
+The default is fully implicit ARKIMEX of order 5, the fastest scheme in measurements. Three measures make it
+fast. Stages are extrapolated from the stages of this step and the last. Newton's method is compiled, and its
+tolerance is a fraction of the step's tolerance. Each step has a single Jacobian, at the state predicted for
+the middle of the step; a Jacobian at the start costs a quarter more iterations.
 """
 
 from collections.abc import Callable
@@ -26,37 +26,38 @@ from .time_scheme import TimeScheme
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IntegratorSettings:
-    """Limits of a run of the time integration."""
+    """Settings for runs of the time integration: tolerances, limits, and the run of `relaxed`."""
 
     stage_rounding: float = 1e-9
-    """Size of a Newton step, relative to the motion, at which stagnation is due to rounding errors."""
+    """Newton step, in units of the largest component of the start state, below which stagnation counts as
+    rounding error and the iteration ends."""
     first_step_share: float = 1e-3
-    """Default first step in units of the duration."""
+    """Default first time step, as a fraction of the run's duration."""
     max_steps: int = 100_000
-    """Default maximum number of steps."""
+    """Default maximum number of time steps of a run."""
     max_rejections: int = 30
-    """Maximum number of successive rejections of one step."""
+    """Maximum number of successive rejections of one time step; PETSc ends the run beyond it."""
     max_failed_stages: int = 1_000_000
-    """Maximum number of failures of Newton's method in a run."""
+    """Maximum number of stages in a run at which Newton's method fails; each failure shortens the step."""
     relaxation_share: float = 1e-3
-    """Duration of `relaxed` in periods."""
+    """Duration of the run of `relaxed`, in periods."""
     relaxation_steps: float = 1e5
-    """First steps of `relaxed` that would fill a period; the fast components decay within ten steps."""
+    """Period divided by the first time step of `relaxed`; the fast components decay within ten steps."""
     relaxation_tolerance: float = 1e-3
-    """Tolerance of the scheme of `relaxed`."""
+    """Local error per time step of `relaxed`, in units of the motion's size."""
     kept: int = 8
-    """Number of integrators kept for further runs on equal meshes."""
+    """Maximum number of integrators in the pool, for further runs with the same mesh and scheme."""
 
 
 INTEGRATOR = IntegratorSettings()
 
 
 RELAXATION = TimeScheme("beuler", "", tolerance=INTEGRATOR.relaxation_tolerance, prefix="cycle_relaxation_")
-"""Scheme of `relaxed`."""
+"""Time scheme of `relaxed`: backward Euler, which damps fast components."""
 
 
 class RunEnding(IntEnum):
-    """Reasons of the end of a run."""
+    """Reason why a run of the time integration ended."""
 
     reached = 0
     stopped = 1
@@ -67,7 +68,8 @@ class RunEnding(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Trajectory:
-    """Steps of a run: times in tau2, (steps + 1,), states z, (steps + 1, unknowns); and why the run ended."""
+    """Result of a run: times in tau2, (steps + 1,), states z, (steps + 1, unknowns), why the run ended, and
+    PETSc's error message."""
 
     ending: RunEnding
     times: Array
@@ -77,7 +79,7 @@ class Trajectory:
 
 @dataclass(frozen=True, slots=True)
 class RunLimit:
-    """Early end of a run: a step to z with `reached(z)`, or the maximum number of steps."""
+    """Conditions that end a run early: a step to a state z with `reached(z)` true, or `max_steps` steps."""
 
     reached: Callable[[Array], bool] | None = None
     max_steps: int = INTEGRATOR.max_steps
@@ -87,7 +89,7 @@ UNLIMITED = RunLimit()
 
 
 class Integrator:
-    """A TS for a mesh and a scheme; `run` may be called any number of times, for any rod."""
+    """PETSc time integrator for a mesh and a scheme; `run` may be called any number of times, for any rod."""
 
     def __init__(self, mesh: Mesh, scheme: TimeScheme) -> None:
         self.scheme = scheme
@@ -135,10 +137,12 @@ class Integrator:
     def run(
         self, beam: Beam, z: Array, duration: float, step: float = 0.0, limit: RunLimit = UNLIMITED
     ) -> Trajectory:
-        """Integrates from z, shape (unknowns,), over `duration` or to the limit; failures become a RunEnding.
+        """Integrates from the state z, (unknowns,), over `duration`, in tau2, or to the limit. A failure is a
+        `RunEnding`, not an exception.
 
-        step: the first step, or each step if the steps are equal. Tolerances are relative to the largest
-        component of z, so that small motions are integrated as accurately as large ones.
+        step: the first time step, or every time step of a scheme with equal steps; 0 for the default.
+        Tolerances are relative to the largest component of z, so that small motions are integrated as
+        accurately as large ones.
         """
         ts = self.ts
         scheme = self.scheme
@@ -182,11 +186,12 @@ class Integrator:
 
     @property
     def kept_bytes(self) -> int:
-        """Memory of the dense Jacobian, its factors and a copy, in bytes."""
+        """Estimate of the memory in bytes: the dense Jacobian, its LU factors and a copy."""
         return 3 * 8 * self.vector.size**2
 
     def destroy(self) -> None:
-        """Frees the PETSc objects; TS and integrator refer to each other, so garbage collection would not."""
+        """Frees the PETSc objects. Garbage collection would not free them, because TS and integrator refer to
+        each other."""
         for held in (self.ts, self.workspace, self.matrix, self.vector):
             held.destroy()
 
@@ -195,7 +200,7 @@ _kept: LruPool[tuple[Mesh, TimeScheme], Integrator] = LruPool(lambda key: Integr
 
 
 def integrator(mesh: Mesh, scheme: TimeScheme) -> Integrator:
-    """The kept integrator for a mesh and a scheme; replaced after an error."""
+    """The pooled integrator for `mesh` and `scheme`; a new integrator after an error inside PETSc."""
     key = mesh, scheme
     if _kept.get(key).broken:
         _kept.drop(key)
@@ -203,12 +208,13 @@ def integrator(mesh: Mesh, scheme: TimeScheme) -> Integrator:
 
 
 def forget_integrators() -> None:
-    """Drops all kept integrators, after an error or a change of options."""
+    """Destroys all pooled integrators, after an error or a change of PETSc options."""
     _kept.clear()
 
 
 def relaxed(beam: Beam, z: Array, period: float) -> Array:
-    """The state z, (unknowns,), after a thousandth of a period, when its fast components have decayed.
+    """The state z, (unknowns,), after a thousandth of `period`, when the fast components of the start have
+    decayed.
 
     A scaled or interpolated state has rates of 1e10/tau2 in the components that k1, k2 and 1/gamma3 make
     fast. The explicit first stage of ARKIMEX does not damp these components at any step length; backward

@@ -1,4 +1,4 @@
-"""Leading mode of the rod at rest on a mesh: the start of a motion."""
+"""Leading mode of the straight rod on a mesh, for the start of a motion."""
 
 from dataclasses import dataclass
 
@@ -11,19 +11,21 @@ from ...discretization.beam import Beam
 
 @dataclass(frozen=True, slots=True)
 class LeadingMode:
-    """Leading eigenvalue w in 1/tau2, Im w >= 0, and its mode z, (unknowns,), with y(1) = 1 to 1st order."""
+    """Leading eigenvalue w of the straight rod, in 1/tau2, Im w >= 0, and its mode z, (unknowns,), scaled to
+    a tip deflection y(1) = 1 to first order."""
 
     w: complex
     z: Complex
 
     @property
     def period(self) -> float:
-        """Period in tau2, or the decay time of a mode that does not oscillate."""
+        """Period 2 pi/Im w in tau2, or the time constant 1/|w| of a mode that does not oscillate."""
         return 2 * np.pi / self.w.imag if self.w.imag else 1 / max(abs(self.w.real), EXPONENTS.least_divisor)
 
 
 def leading_mode(beam: Beam) -> LeadingMode:
-    """The leading mode, from the transverse part of the Jacobian at rest; the axial part is decoupled."""
+    """The leading mode of the straight rod, from the transverse block of the Jacobian; the axial block is
+    decoupled."""
     layout = beam.layout
     rest = np.zeros(layout.unknowns)
     J = layout.transverse(layout.transverse(beam.jacobian(rest)).T).T

@@ -1,4 +1,4 @@
-"""Functions of PETSc's TS, SNES and KSP, and of the C library, for compiled callers, with types.
+"""Declarations of functions of PETSc (Vec, TS, SNES, KSP) and of the C library for calls from compiled code.
 
 PETSc's functions return an error code, and exist in PETSc 3.18 and later.
 """
@@ -16,8 +16,8 @@ ENUM = types.int32
 
 
 def _external(name: str, *arguments: Any) -> Any:
-    """The function int name(arguments) of libpetsc for compiled code; unlike a ctypes function it can be
-    cached.
+    """The libpetsc function `int name(arguments)` for compiled code. Code with this function can be cached on
+    disk, code with a ctypes function cannot.
     """
     return _found(name, typing.signature(types.int32, *arguments))
 

@@ -1,7 +1,7 @@
-"""Prediction of a stage: a polynomial in time through stages of the present and the last step.
+"""Prediction of a Runge-Kutta stage by a polynomial in time through stages of this step and the last.
 
-PETSc's own prediction is linear, with errors of thousands of tolerances. The polynomial has errors of ten
-tolerances and saves every second Newton iteration. Stages of a method have different errors, so the best
+PETSc's own prediction is linear; its error is thousands of tolerances. The error of the polynomial is ten
+tolerances, which saves every second Newton iteration. Stages of a method have different errors, so the best
 extrapolation points depend on the method's tableau: `time_scheme.EXTRAPOLATION_POINTS`.
 """
 
@@ -23,26 +23,30 @@ from .time_scheme import EXTRAPOLATION_POINTS
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StagePredictorSettings(CompiledSettings):
-    """Settings for the prediction of stages."""
+    """Settings for the prediction of Runge-Kutta stages and for the state at which Newton's matrix is
+    made."""
 
     largest_step_ratio: float = 2.0
-    """Largest ratio of a step and the last one for which stages are extrapolated. At 1 no growing step would
-    be, and errors of a motion grow by a factor of five: Newton's method stops too early at PETSc's guess."""
+    """Largest ratio of this step to the last for which stages are extrapolated. With 1, no growing step would
+    be extrapolated: Newton's method would stop too early at PETSc's prediction, with errors of a motion five
+    times as large."""
     middle: float = 0.5
-    """Time in a step at which the matrix is made, in units of the step; 0 for methods of a single stage."""
+    """Time at which the state for Newton's matrix is predicted, as a fraction of the step; 0 (the start) for
+    methods of a single stage."""
     ranges: ClassVar = {"largest_step_ratio": (1.0, inf)}
 
 
 STAGE_PREDICTOR = StagePredictorSettings()
 
 NO_POINT = -1
-"""Entry of the points behind the last point of a stage."""
+"""Fills the unused entries of the array of extrapolation points."""
 
 
 def points_of(variant: str) -> NDArray[np.int64]:
-    """Extrapolation points of all stages, (MAX_STAGES, MAX_STAGE_POINTS), filled up with NO_POINT.
+    """Indices of the stages through which each stage is extrapolated, for the ARKIMEX type `variant`,
+    (MAX_STAGES, MAX_STAGE_POINTS); unused entries are NO_POINT.
 
-    Points of the last step have MAX_STAGES added.
+    An index k of this step is k, an index k of the last step is MAX_STAGES + k.
     """
     points = np.full((MAX_STAGES, MAX_STAGE_POINTS), NO_POINT)
     for stage, (this, last) in EXTRAPOLATION_POINTS.get(variant, {}).items():
@@ -53,7 +57,8 @@ def points_of(variant: str) -> NDArray[np.int64]:
 
 @c_function(POINTER)
 def begin_step(ts: int) -> int:
-    """Before a step: the present step becomes the last one, and a matrix at the new middle becomes due."""
+    """PETSc's pre-step: stores the stages of the step before as the last step, and requests Newton's matrix
+    at the predicted middle of the new step."""
     address = np.empty(1, np.int64)
     context_of_ts(ts, address.ctypes.data)
     context = address[0]
@@ -92,7 +97,8 @@ def begin_step(ts: int) -> int:
 
 @compiled
 def extrapolate(points: NDArray[np.int64], times: Array, states: Array, t: float, out: Array) -> None:
-    """Value at time t of the polynomial through states[points] at times[points], into out, (unknowns,)."""
+    """Writes into `out`, (unknowns,), the value at time t of the Lagrange polynomial through `states[points]`
+    at `times[points]`."""
     out[:] = 0.0
     for i in points:
         weight = 1.0
@@ -105,7 +111,8 @@ def extrapolate(points: NDArray[np.int64], times: Array, states: Array, t: float
 
 @compiled
 def predict(c: Any, guess: Array) -> None:
-    """Predicted stage at c.time into guess, (unknowns,); unchanged if no extrapolation is possible."""
+    """Writes the predicted stage at time `c.time` into `guess`, (unknowns,); leaves `guess` unchanged if no
+    extrapolation is possible."""
     if c.stages >= MAX_STAGES or not c.steps:
         return
     points = integers(c.points, MAX_STAGES * MAX_STAGE_POINTS).reshape(MAX_STAGES, MAX_STAGE_POINTS)[c.stages]
@@ -121,8 +128,8 @@ def predict(c: Any, guess: Array) -> None:
 
 
 @compiled
-def remember(c: Any, stage: Array) -> None:
-    """Stores a solved stage, (unknowns,), at c.time."""
+def store_stage(c: Any, stage: Array) -> None:
+    """Stores the solved `stage`, (unknowns,), and its time `c.time`, for later extrapolation."""
     if c.stages < MAX_STAGES:
         at = c.current * MAX_STAGES + c.stages
         times_of(c)[at] = c.time

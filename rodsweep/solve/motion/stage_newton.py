@@ -1,4 +1,5 @@
-"""Newton's method inside a stage of a time step: the whole method as PETSc's SNESSHELL, or its stopping test.
+"""Newton's method for a stage of a time step: the whole method as a SNESSHELL, or the stopping test of
+PETSc's method.
 
 The C functions are called by PETSc, as in `rodsweep.solve.motion.callbacks`. PETSc's own Newton method, which
 options may select, takes three times as long per iteration: evaluation of f and solution of the linear system
@@ -43,41 +44,45 @@ from .petsc_calls import (
     step_of,
     write_array,
 )
-from .predictor import predict, remember
+from .predictor import predict, store_stage
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StageNewtonSettings(CompiledSettings):
-    """Settings for Newton's method inside a stage."""
+    """Settings of Newton's method for a stage of a time step. The contraction is the ratio of successive
+    Newton steps."""
 
     new_matrix_contraction: float = 0.3
-    """Contraction above which a new matrix at the iterate pays off."""
+    """Contraction above which a new matrix is made at the iterate."""
     stagnant: float = 0.5
-    """Contraction of small steps above which only rounding errors are left."""
+    """Contraction above which Newton steps as small as rounding error end the iteration, as converged."""
     diverging: float = 2.0
-    """A contraction above this is growth."""
+    """Contraction above which a Newton step counts as growing."""
     max_growing: int = 2
-    """Number of successive growths that ends the iteration."""
+    """Number of successive growing Newton steps after which the iteration has failed."""
     min_contraction_ratio: float = 0.3
-    """Smallest new contraction in units of the stored one."""
+    """Smallest ratio of the newly stored contraction to the stored one, so that one lucky step does not lower
+    it too far."""
     first_iteration_safety: float = 3.0
-    """Safety factor on the stored contraction at the first iteration of a stage; with 1 errors double."""
+    """Safety factor on the contraction of the stage before, at the first iteration of a stage; with 1 the
+    errors of a motion double."""
     iterations_before_giving_up: int = 3
-    """Number of iterations after which growth may end the iteration."""
+    """Number of iterations before which growing Newton steps do not end the iteration."""
 
 
 STAGE_NEWTON = StageNewtonSettings()
 
 ITERATING, STEP_SMALL, NOT_FINITE, NOT_CONTRACTING = 0, 4, -4, -5
-"""Values of SNESConvergedReason."""
+"""Values of PETSc's SNESConvergedReason."""
 
 
 @compiled
 def linearise_at_start(c: Any) -> None:
-    """After a failed stage: the shorter step takes its matrix at the state at the start of the step.
+    """After a failed stage, requests Newton's matrix of the repeated, shorter step at the state at the start
+    of the step.
 
-    The last matrix may be that of a diverged iterate, with entries that are not finite; with it all shorter
-    steps would fail as well.
+    The last matrix may belong to a diverged iterate and have entries that are not finite; all shorter steps
+    would fail with it.
     """
     floats(c.base, c.unknowns)[:] = states_of(c)[c.current * MAX_STAGES]
     c.matrix_due = AT_BASE
@@ -85,12 +90,13 @@ def linearise_at_start(c: Any) -> None:
 
 @compiled
 def convergence_reason(c: Any, iteration: int, dx: float) -> int:
-    """SNESConvergedReason by the error estimate contraction * last step (Hairer & Wanner II, IV.8).
+    """SNESConvergedReason after a Newton step of 2-norm `dx`. The error estimate is contraction * dx (Hairer
+    & Wanner II, IV.8).
 
     The contraction is stored from stage to stage, so that after a good prediction a single iteration is
     enough. The contraction is measured from the second iteration on, and reset at each new step of a method
-    of many stages. Otherwise stages with a single iteration, which measure nothing, would keep a contraction
-    that was small once, with errors a hundred times too large.
+    of many stages. Otherwise stages with a single iteration, which cannot measure the contraction, would
+    reuse a small old contraction, with errors a hundred times too large.
     """
     if not np.isfinite(dx):
         linearise_at_start(c)
@@ -133,10 +139,11 @@ def newton_test(  # noqa: PLR0913, PLR0917 - PETSc's signature
 
 @compiled
 def state_equation(c: Any, at: int, snes: int, X: int) -> None:
-    """Equation of a stage, shift x + constant - f(x) = 0, and its time, from PETSc.
+    """Gets the equation of a stage, shift x + constant - f(x) = 0, and its time from PETSc into the context
+    `c`.
 
-    In every method the slope is affine in x. The residual without f at any x, and the shift, which comes with
-    the matrix, therefore determine the equation.
+    In every time scheme the slope dx/dt is affine in x. The residual without f at any x, and the shift, which
+    comes with the matrix, therefore determine the equation.
     """
     n = c.unknowns
     outputs = integers(at, 3)
@@ -173,7 +180,7 @@ def norm(x: Array) -> float:
 
 @compiled
 def newton_step(c: Any, at: int, X: int) -> float:
-    """Makes a Newton iteration; returns the 2-norm of the step."""
+    """Makes one Newton step of the stage X in place; returns the 2-norm of the step."""
     n = c.unknowns
     outputs = integers(at, 3)
     constant = floats(c.constant, n)
@@ -198,7 +205,8 @@ def newton_step(c: Any, at: int, X: int) -> float:
 
 @c_function(POINTER, POINTER)
 def solve_stage(snes: int, X: int) -> int:
-    """Solves one stage by Newton's method from its prediction; sets PETSc's reason and iteration number."""
+    """Solves for the stage X by Newton's method from its prediction; sets the converged reason and the number
+    of iterations in `snes`."""
     address = np.empty(1, np.int64)
     context_of_snes(snes, address.ctypes.data)
     context = address[0]
@@ -223,7 +231,7 @@ def solve_stage(snes: int, X: int) -> int:
             linearise_at_start(c)
             reason = NOT_CONTRACTING
     read_array(X, at)
-    remember(c, floats(integers(at, 1)[0], c.unknowns))
+    store_stage(c, floats(integers(at, 1)[0], c.unknowns))
     release_read(X, at)
     set_iterations(snes, iteration)
     set_reason(snes, reason)

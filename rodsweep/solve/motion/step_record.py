@@ -1,4 +1,5 @@
-"""Storage of a run's steps by compiled code: Python calls after each step would take 1/7 of the time."""
+"""Stores the time steps of a run in compiled code: a Python call after each step would take 1/7 of the
+time."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -25,22 +26,24 @@ from .petsc_calls import (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepRecordSettings(CompiledSettings):
-    """Settings for the memory of a run's steps."""
+    """Settings for the memory in which the time steps of a run are stored."""
 
     first_capacity: int = 256
-    """Number of steps for which memory is allocated first; the memory doubles when it is full."""
+    """Number of time steps for which memory is allocated first; the memory doubles whenever it is full."""
 
 
 STEP_RECORD = StepRecordSettings()
 
 OUT_OF_MEMORY = 55
-"""PETSc's error code for a lack of memory."""
-STOPPED = int(PETSc.TS.ConvergedReason.CONVERGED_USER)
+"""PETSc's error code for failed memory allocation, PETSC_ERR_MEM."""
+CONVERGED_USER = int(PETSc.TS.ConvergedReason.CONVERGED_USER)
+"""PETSc's TSConvergedReason with which a run is stopped before its end."""
 
 
 @compiled
-def keep_step(c: Any, at: int, ts: int) -> int:
-    """Stores a row (time, state); ends the run if the rod has left the model."""
+def store_step(c: Any, at: int, ts: int) -> int:
+    """Stores the time and the state of the `ts` as a row; ends the run if h1 <= 0 at a node, where the model
+    does not hold."""
     n = c.unknowns
     outputs = integers(at, 3)
     if c.stored == c.capacity:
@@ -65,17 +68,17 @@ def keep_step(c: Any, at: int, ts: int) -> int:
     for i in range(nodes):
         if row[1 + i] <= crushed[i] and not c.left:
             c.left = 1
-            set_ts_reason(ts, STOPPED)
+            set_ts_reason(ts, CONVERGED_USER)
     return 0
 
 
 @c_function(POINTER)
 def end_step(ts: int) -> int:
-    """PETSc's post-step: stores the step."""
+    """PETSc's post-step: stores the finished time step."""
     address = np.empty(1, np.int64)
     context_of_ts(ts, address.ctypes.data)
     context = address[0]
-    return keep_step(record_at(context, CONTEXT), context + OUTPUTS, ts)
+    return store_step(record_at(context, CONTEXT), context + OUTPUTS, ts)
 
 
 @compiled
@@ -89,7 +92,7 @@ def _freed(address: int) -> None:
 
 
 def take_steps(context: Any) -> Array:
-    """Rows (time, state) of the stored steps, (steps, 1 + unknowns); clears the record."""
+    """Rows (time, state) of the time steps stored in `context`, (steps, 1 + unknowns); frees their memory."""
     address = int(context["rows"])
     kept = int(context["stored"])
     columns = int(context["unknowns"]) + 1

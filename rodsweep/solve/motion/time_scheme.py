@@ -1,10 +1,10 @@
-"""Time scheme: PETSc's type of integrator, the tolerances, and the PETSc options for both."""
+"""Time scheme of the integration: PETSc's TS type, the tolerances, and the PETSc options for both."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 CYCLE_PREFIX = "cycle_"
-"""Prefix of the PETSc options that override the scheme, for example -cycle_ts_type bdf."""
+"""Prefix of PETSc options with which a user overrides the time scheme, for example -cycle_ts_type bdf."""
 
 EXTRAPOLATION_POINTS: Mapping[str, Mapping[int, tuple[tuple[int, ...], tuple[int, ...]]]] = {
     "3": {1: ((), (0, 1, 2)), 2: ((0, 1), (0, 2)), 3: ((1,), (0, 1, 2))},
@@ -26,24 +26,26 @@ EXTRAPOLATION_POINTS: Mapping[str, Mapping[int, tuple[tuple[int, ...], tuple[int
     },
 }
 """Extrapolation points of each stage, by variant of ARKIMEX: (stages of this step, stages of the last step).
-Stage 0 is the state at the start. These sets had the smallest errors of all sets of up to six points, on two
-dozen motions, mostly of stiff rods."""
+Stage 0 is the state at the start of a step. These sets had the smallest prediction errors of all sets of up
+to six points, in two dozen motions, mostly of stiff rods."""
 
 
 SNES_TYPES: Mapping[str, str] = {
     "rosw": "ksponly",
     **dict.fromkeys(("arkimex", "dirk", "bdf", "theta", "beuler", "cn"), "shell"),
 }
-"""PETSc's SNES for each TS type. "shell" stands for `stage_newton`, which solves for the state at which f is
-evaluated. The type alpha, for example, has a different unknown."""
+"""PETSc's SNES type for each TS type; "newtonls" for all others. "shell" selects `stage_newton`, which
+requires that the unknown of a stage is the state at which f is evaluated; the TS type alpha, for example, has
+a different unknown."""
 
 
 @dataclass(frozen=True, slots=True)
 class TimeScheme:
-    """PETSc's TS type and sub-type (for bdf: its order), with tolerances.
+    """Time scheme: `family` is PETSc's TS type, `variant` its sub-type (for bdf: its order).
 
-    tolerance: local error per step of each component of z, in units of the motion's size. newton: error of a
-    stage in units of the tolerance. equal_steps: constant step length. prefix: of overriding PETSc options.
+    tolerance: local error per time step of each component of z, in units of the motion's size. newton: error
+    at which Newton's method for a stage stops, in units of `tolerance`. equal_steps: whether the step length
+    is constant. prefix: prefix of the PETSc options that override the scheme.
     """
 
     family: str = "arkimex"
@@ -62,7 +64,7 @@ class TimeScheme:
         if family == "arkimex":
             linear = (
                 "false" if self.variant in EXTRAPOLATION_POINTS else "true"
-            )  # PETSc's prediction where POINTS has none
+            )  # PETSc predicts for types without extrapolation points
             own |= {"ts_arkimex_fully_implicit": "true", "ts_arkimex_initial_guess_extrapolate": linear}
         adapt = {"ts_adapt_type": "none"} if self.equal_steps else {"ts_adapt_dsp_filter": "PI42"}
         return {

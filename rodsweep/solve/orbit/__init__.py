@@ -1,1 +1,2 @@
-"""Periodic orbits: meshes, Newton's method, multipliers, symmetry and measures."""
+"""Periodic orbits of the nonlinear rod: meshes, Newton's method, Floquet multipliers, symmetry and
+measures."""

@@ -1,4 +1,4 @@
-"""Compiled measures of the states along an orbit: strains, motion of the tip, mean powers."""
+"""Compiled functions of the states along an orbit: strains, motion of the tip, mean powers."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -18,22 +18,24 @@ from ...model.material.jump import Unknowns, unknowns_before_jump, unknowns_behi
 from .semidiscrete import Semidiscrete
 
 REFLECTION_SIGNS = np.array([1.0, -1.0, -1.0])
-"""Signs of (x, y, theta), and of (h1, h2, Pi), half a period later on a symmetric orbit."""
+"""Signs of (x, y, theta), and of (h1, h2, Pi), under the reflection: the values half a period later on a
+symmetric orbit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExtremumSettings(CompiledSettings):
-    """Settings for the extrema of a path."""
+    """Settings for the extrema of the tip's coordinates over a period."""
 
     oversampling: int = 4
-    """Samples per time node for the search of extrema."""
+    """Number of samples per time node among which the extrema are sought."""
 
 
 EXTREMA = ExtremumSettings()
 
 
 class TipPath(NamedTuple):
-    """Path of the tip, and strains, from the states at the time nodes.
+    """Path of the tip over a period, and strains, as trigonometric polynomials through the states at the time
+    nodes.
 
     strains: (h1, h2, Pi) at the nodes of every element, and their derivatives by the time in periods, for the
     solved states, (2, 3, K, elements (order + 1)). For (x, y, theta) of the tip over the period:
@@ -49,7 +51,7 @@ class TipPath(NamedTuple):
 
 
 class OrbitMeans(NamedTuple):
-    """Means over an orbit, with names and units as in `Measures`."""
+    """Means of the powers over a period, and the smallest h1, with names and units as in `Measures`."""
 
     injection_mean: float
     injection_rms: float
@@ -60,7 +62,8 @@ class OrbitMeans(NamedTuple):
 
 @compiled_for_vectors
 def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> TipPath:
-    """The path from equidistant states, (K, n), over half the period for a symmetric orbit."""
+    """Path of the tip from `states` at equidistant times, (K, n), over half the period for a symmetric
+    orbit."""
     size = len(p.matrices.weights)
     order = len(m.ends) - 1
     strains = np.empty((2, 3, len(states), len(m.lengths) * (order + 1)))
@@ -82,7 +85,7 @@ def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> T
 
 @compiled_for_vectors
 def node_stresses(states: Array, out: Array) -> None:
-    """S at all nodes of states (K, n) into out, (3, K, nodes + 1)."""
+    """Writes the stresses S at all nodes of `states`, (K, n), into `out`, (3, K, nodes + 1)."""
     n = out.shape[2] - 1
     for a in range(len(out)):
         for k in range(len(states)):
@@ -94,9 +97,10 @@ def node_stresses(states: Array, out: Array) -> None:
 
 @compiled_for_vectors
 def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
-    """Sizes of the harmonics from the first, root sums of squares over all columns, (count - 1,).
+    """Size of each harmonic from the first, (count - 1,): the root sum of squares over all columns of
+    `values`.
 
-    values, slopes: as in `hermite_columns`. sign: common sign of all columns.
+    values, slopes: as in `hermite_columns`. sign: of every column half a period later, 0 without symmetry.
     """
     c = hermite_columns(values, slopes, np.full(values.shape[1], sign))
     sizes = np.zeros(len(c) - 1)
@@ -108,7 +112,7 @@ def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
 
 @compiled_for_vectors
 def means(stages: Array, weights: Array, p: Semidiscrete) -> OrbitMeans:
-    """Means over all stages, (K, s, n), with the weights of the method, (s,)."""
+    """Means over a period from the states at the `stages`, (K, s, n), with the quadrature weights, (s,)."""
     K, s, n = stages.shape
     flat = stages.reshape(K * s, n)
     nodes = len(p.matrices.weights) - 1
@@ -135,7 +139,8 @@ def means(stages: Array, weights: Array, p: Semidiscrete) -> OrbitMeans:
 
 @compiled_for_vectors
 def _stretch_at_jump(state: Array, node: int, sides: Array, rod: NodalRod) -> float:
-    """The smaller h1 beside a jump; state: (n,), sides: (2, 7)."""
+    """The smaller of the two h1 at a jump of the material at `node`. state: (n,). sides: material constants,
+    (2, 7)."""
     n = rod.rest.shape[1] - 1
     q = Unknowns(state[stress_index(0, node, n)], state[stress_index(2, node, n)])
     a = unknowns_before_jump(rod.law, sides, q)
@@ -145,7 +150,8 @@ def _stretch_at_jump(state: Array, node: int, sides: Array, rod: NodalRod) -> fl
 
 @compiled_for_vectors
 def strain_rates(states: Array, out: Array, p: Semidiscrete) -> None:
-    """dE/dt at all nodes, 0 at the tip, of states (m, n) into out, (3, m, nodes + 1)."""
+    """Writes the strain rates dE/dt at all nodes, 0 at the tip, of `states`, (m, n), into `out`, (3, m, nodes
+    + 1)."""
     size = len(p.matrices.weights)
     V = np.empty((3, size))
     G = np.empty((3, size))
@@ -159,7 +165,8 @@ def strain_rates(states: Array, out: Array, p: Semidiscrete) -> None:
 
 @compiled_for_vectors
 def powers(states: Array, out: Array, p: Semidiscrete) -> None:
-    """Powers of the follower force (by the reaction) and the drag, of states (m, n), into out, (2, m)."""
+    """Writes the powers of the follower force (by the reaction) and of the drag for `states`, (m, n), into
+    `out`, (2, m)."""
     size = len(p.matrices.weights)
     V = np.empty((3, size))
     G = np.empty((3, size))

@@ -1,8 +1,8 @@
-"""Measures of a cycle: extrema, harmonics, energy budget, paths and shapes.
+"""Measures of a cycle: extrema, harmonics, energy budget, path of the tip and shapes of the rod.
 
-At the starts of the intervals, equidistant in time, strains and their rates have the full order of the
-collocation. The trigonometric polynomial through both converges spectrally, so that extrema need no event
-location. Means are integrals by the collocation's quadrature over the stages.
+At the starts of the intervals, equidistant in time, strains and their rates have the full order of accuracy
+of the collocation. The trigonometric polynomial through strains and rates converges spectrally, so that
+extrema need no event location. Means are integrals by the collocation's quadrature.
 """
 
 from dataclasses import dataclass, field
@@ -28,7 +28,7 @@ from .orbit import Orbit
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Measures:
-    """Numbers of a cycle, named as in the result file; NaN where a number is not known.
+    """Scalar measures and harmonics of a cycle, named as in the result file; NaN if not known.
 
     period in tau2; frequency = 2 pi/period; tip in L and rad. harmonic_amplitude: harmonics of the tip's y
     from the first, in L. injection, dissipation: mean, and rms of the fluctuation, in k3/(L tau2).
@@ -52,7 +52,7 @@ class Measures:
 
 
 class CyclePath:
-    """Trigonometric polynomials of an orbit over its whole period."""
+    """Motion of an orbit over its whole period, by trigonometric polynomials."""
 
     def __init__(self, orbit: Orbit) -> None:
         self.orbit = orbit
@@ -65,7 +65,8 @@ class CyclePath:
 
     @cached_property
     def strain_coefficients(self) -> Complex:
-        """Coefficients of (h1, h2, Pi) at the nodes of every element, (count, 3, elements (order + 1))."""
+        """Fourier coefficients of (h1, h2, Pi) at the nodes of every element, (count, 3, elements (order +
+        1))."""
         K, size = self._path.strains.shape[2:]
         values, slopes = self._path.strains.swapaxes(1, 2).reshape(2, K, 3 * size)
         signs = np.repeat(REFLECTION_SIGNS if self.orbit.symmetric else np.zeros(3), size)
@@ -74,16 +75,17 @@ class CyclePath:
 
     @cached_property
     def bending_harmonics(self) -> Array:
-        """Sizes of Pi's harmonics from the first, (count - 1,).
+        """Size of each harmonic of the curvature Pi, from the first, (count - 1,).
 
-        A size is the root sum of squares over the nodes of every element.
+        The size is the root sum of squares over the nodes of all elements.
         """
         values, slopes = self._path.strains[:, 2]
         sizes: Array = harmonic_sizes(values, slopes, REFLECTION_SIGNS[2] * self.orbit.symmetric)
         return sizes
 
     def resampled_tip(self, count: int) -> Array:
-        """`tip_samples` at a different number of times, shape (count, 3)."""
+        """(x, y, theta) of the tip at `count` equidistant times of a period, as in `tip_samples`, shape
+        (count, 3)."""
         return series_samples(self.tip_coefficients, count)
 
     @cached_property
@@ -100,7 +102,7 @@ class CyclePath:
 
     @property
     def tip_y_min(self) -> float:
-        """Smallest y of the tip; for a symmetric orbit minus the largest y."""
+        """Smallest y of the tip, in L; for a symmetric orbit minus the largest y."""
         return -self.extrema["tip_y_max"] if self.orbit.symmetric else float(self._path.least[1])
 
     @property
@@ -110,7 +112,7 @@ class CyclePath:
 
     @cached_property
     def beginning(self) -> float:
-        """Time in periods at which the tip's y rises through its mean."""
+        """Time, in periods from the orbit's start, at which the tip's y rises through its mean."""
         return time_of_rise_through_mean(self.tip_samples[:, 1])
 
     def tip(self, samples: int) -> Array:
@@ -118,7 +120,7 @@ class CyclePath:
         return self._sampled(self.tip_coefficients, samples).T
 
     def energy(self, samples: int) -> Array:
-        """(U, injection, dissipation) at equidistant times from `beginning`, (3, samples)."""
+        """(elastic energy U, injection, dissipation) at equidistant times from `beginning`, (3, samples)."""
         period = self.orbit.period
         # Factors of the time derivative of Fourier coefficients.
         times = 2j * np.pi / period * np.arange(len(self.tip_coefficients))
@@ -140,7 +142,8 @@ class CyclePath:
         return np.stack([U, injection, injection - change])
 
     def shapes(self, count: int, nodes: int) -> Array:
-        """(x, y, theta) at `count` equidistant times on `nodes` Lobatto nodes, shape (3, count, nodes)."""
+        """(x, y, theta) of the rod at `count` equidistant times from `beginning`, on `nodes` Lobatto nodes,
+        shape (3, count, nodes)."""
         strains = self._sampled(self.strain_coefficients, count).swapaxes(0, 1)
         grid = self.orbit.form.mesh
         return shape_from_strains(grid, np.ascontiguousarray(strains), np.zeros(3)) @ _at_lobatto(grid, nodes)
@@ -153,12 +156,13 @@ class CyclePath:
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def _at_lobatto(grid: Mesh, nodes: int) -> Array:
-    """Matrix, applied from the right, from values at all nodes of a mesh to Lobatto nodes of the rod."""
+    """Matrix that interpolates, from the right, values at all nodes of the mesh `grid` to `nodes` Lobatto
+    nodes of the rod."""
     return grid.evaluation(lobatto_points(nodes)).T
 
 
 def measures_of(path: CyclePath) -> Measures:
-    """The measures of an orbit."""
+    """All scalar measures and harmonics of the orbit of `path`."""
     orbit = path.orbit
     y = path.tip_coefficients[:, 1]
     mean = means(np.ascontiguousarray(orbit.states), orbit.method.weights, orbit.semidiscrete)

@@ -15,25 +15,25 @@ from .orbit import Orbit
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OrbitNewtonSettings:
-    """Settings of Newton's method for a periodic orbit, with or without a parameter."""
+    """Settings of Newton's method for a periodic orbit, with a parameter among the unknowns or without."""
 
     new_matrix_ratio: float = 0.1
-    """Ratio of successive Newton steps above which a new matrix is made."""
+    """Ratio of successive Newton steps above which a new Newton matrix is assembled and eliminated."""
     longest_step: float = 0.5
-    """Largest relative change of state, period or parameter in one iteration: a larger first step without a
-    parameter is shortened; another larger step means that no orbit is near."""
+    """Largest relative change of state, period or parameter in one iteration. A longer first step is
+    shortened if no parameter is unknown; any other longer step means that no orbit is near the start."""
     max_iterations: int = 12
     """Maximum number of iterations: a slower convergence means that no orbit is near the start."""
     quadratic_error: float = 1e5
-    """Error after a step with a matrix at the iterate of a nearly neutral orbit, in units of the squared
-    step."""
+    """Bound of the error after a Newton step with the matrix at the iterate, in units of the squared relative
+    step; nearly neutral orbits come close to it."""
 
 
 ORBIT_NEWTON = OrbitNewtonSettings()
 
 
 class HasMultipliers(Protocol):
-    """Newton's matrix of an orbit, with the orbit's multipliers.
+    """Newton's matrix of an orbit, which also gives the orbit's Floquet multipliers.
 
     tangent: derivative of the orbit by a parameter, (N,), or None. workspace: memory of the matrix.
     """
@@ -42,12 +42,14 @@ class HasMultipliers(Protocol):
     workspace: NewtonWorkspace
 
     def multipliers(self) -> Complex:
-        """Floquet multipliers above rounding errors, (rank,), trivial one included, by descending modulus."""
+        """Floquet multipliers above rounding error, the trivial multiplier included, (rank,), by descending
+        modulus."""
 
 
 @dataclass(frozen=True, eq=False)
 class ConvergedOrbit:
-    """Solution of Newton's method: the orbit, its last matrix, and the relative distance between the two."""
+    """Result of Newton's method. matrix: the last Newton matrix. distance: relative distance of `orbit` from
+    the iterate at which the matrix was made."""
 
     orbit: Orbit
     matrix: HasMultipliers
@@ -55,17 +57,19 @@ class ConvergedOrbit:
 
     @property
     def workspace(self) -> NewtonWorkspace:
-        """Workspace in which the matrix was made."""
+        """Workspace that holds the matrix."""
         return self.matrix.workspace
 
 
 def newton(
     orbit: Orbit, tolerance: float, workspace: NewtonWorkspace, parameter: str | None = None
 ) -> ConvergedOrbit:
-    """The orbit near a start; raises Unsolvable.
+    """The periodic orbit near the start `orbit`, by Newton's method; raises Unsolvable if it does not
+    converge.
 
-    tolerance: relative, of states and period. workspace: memory of the matrices. parameter: parameter of the
-    matrix's tangent. A matrix is used again as long as the steps decrease fast.
+    tolerance: relative, of states and period. workspace: memory of the matrices. parameter: name of the
+    parameter by which the matrix gives the orbit's derivative, or
+    None. A matrix is reused while the Newton steps decrease fast.
     """
     matrix = Linearisation(orbit, workspace, parameter)
     distance = 0.0
@@ -107,21 +111,23 @@ def newton(
 
 
 def at_orbit(found: ConvergedOrbit, distance: float, parameter: str | None = None) -> ConvergedOrbit:
-    """The solution with a matrix at most at this relative distance from the orbit."""
+    """`found`, or after one more Newton step if its matrix was made farther than the relative `distance` from
+    the orbit."""
     if found.distance <= distance:
         return found
     return linearised(found, parameter)
 
 
 def linearised(found: ConvergedOrbit, parameter: str | None = None) -> ConvergedOrbit:
-    """The solution after one more Newton step, with a matrix at the orbit before this step."""
+    """`found` after one more Newton step, with the matrix at the orbit before this step."""
     orbit = found.orbit
     matrix = Linearisation(orbit, found.workspace, parameter)
     return ConvergedOrbit(orbit.moved(matrix.step), matrix, relative_change(orbit, matrix.step))
 
 
 def multipliers_of(found: ConvergedOrbit) -> tuple[Complex, float]:
-    """(nontrivial multipliers, (rank - 1,), by descending modulus; distance of the trivial one from 1)."""
+    """(nontrivial Floquet multipliers, (rank - 1,), by descending modulus; distance of the trivial multiplier
+    from 1)."""
     values = found.matrix.multipliers()
     # The derivative of the orbit by time is an eigenvector with multiplier 1; its computed distance from 1
     # shows the error of all.
@@ -131,8 +137,9 @@ def multipliers_of(found: ConvergedOrbit) -> tuple[Complex, float]:
 
 
 def multiplier_change(multipliers: Complex, others: Complex) -> float:
-    """Distance of the largest of the multipliers, (m,), from the nearest of another mesh's multipliers, (l,),
-    at least the difference of the largest moduli; both by descending modulus.
+    """Error of the largest multiplier, from the `multipliers`, (m,), and `others`, (l,), of two meshes, both
+    by descending modulus: the distance of `multipliers[0]` from the nearest of `others`, or the difference of
+    the largest moduli if larger.
 
     The multiplier of the same index is not compared, nor are the moduli alone: on another mesh two
     multipliers may exchange their places, or two moduli may agree by coincidence.
@@ -145,5 +152,6 @@ def multiplier_change(multipliers: Complex, others: Complex) -> float:
 
 
 def relative_change(orbit: Orbit, step: Array) -> float:
-    """Largest change of n2, m3 and the period by a step, (N,), each in units of its largest value."""
+    """Largest change of n2, m3 and the period by the Newton step `step`, (N,), each relative to its largest
+    value."""
     return float(largest_change(orbit.values, step, orbit.form.unknowns, orbit.form.mesh.nodes))

@@ -20,7 +20,8 @@ from .symmetry import REFLECTION
 
 
 class Reflected(NamedTuple):
-    """Effect of the reflection on a state, and the norm by which orbits are measured.
+    """Components of a state that the reflection reverses, and the weights of the norm that defines an orbit's
+    size.
 
     reversed: 1 for components that the reflection reverses, 0 for all others, (n,). weights: quadrature
     weights of m3^2, (n,).
@@ -31,7 +32,7 @@ class Reflected(NamedTuple):
 
 
 def reflected(orbit: Orbit) -> Reflected:
-    """Reflection of an orbit's states."""
+    """Reflection and weights for the states of `orbit`."""
     return _reflected(orbit.form.layout, orbit.form.mesh)
 
 
@@ -41,22 +42,23 @@ def _reflected(layout: StateLayout, mesh: Mesh) -> Reflected:
 
 
 def normalised(orbit: Orbit) -> Array:
-    """Normalised values of an orbit, (N + 1,): components that the reflection reverses, divided by the size;
-    all other values; the squared size.
+    """Normalised values of an orbit, (N + 1,): its values, with components that the reflection reverses
+    divided by the orbit's size, and the squared size at the end.
     """
     values: Array = normalised_values(orbit.values, reflected(orbit))
     return values
 
 
 def normalised_tangent(orbit: Orbit, tangent: Array) -> Array:
-    """Derivative of the normalised values, (N + 1,), from the derivative of the values, (N,)."""
+    """Derivative of an orbit's normalised values by a parameter, (N + 1,), from the derivative `tangent` of
+    its values, (N,)."""
     slopes: Array = normalised_slopes(orbit.values, tangent, reflected(orbit))
     return slopes
 
 
 @compiled_for_vectors
 def normalised_values(values: Array, r: Reflected) -> Array:
-    """`normalised` for the values of an orbit, (N,)."""
+    """Normalised values, (N + 1,), of an orbit with the values `values`, (N,); compiled."""
     squared = squared_size(values, values, r)
     out = np.empty(len(values) + 1)
     out[:-1] = values
@@ -67,7 +69,7 @@ def normalised_values(values: Array, r: Reflected) -> Array:
 
 @compiled_for_vectors
 def values_of(normalised: Array, r: Reflected) -> Array:
-    """Values, (N,), from normalised values, (N + 1,), whose last entry must be positive."""
+    """Values of an orbit, (N,), from its normalised values, (N + 1,), whose last entry must be positive."""
     out = normalised[:-1].copy()
     _scale_reversed(out, normalised[-1] ** 0.5, r)
     return out
@@ -75,9 +77,9 @@ def values_of(normalised: Array, r: Reflected) -> Array:
 
 @compiled_for_vectors
 def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
-    """Weights of data in the change of their interpolation polynomial from 0 to a step, (m,).
+    """Weights, (m,), with which m data give p(step) - p(0) for their interpolation polynomial p.
 
-    places: place of each datum, (m,). orders: 1 for a slope, 0 for a value minus the value at 0, (m,).
+    places: argument of each datum, (m,). orders: 1 for a slope p', 0 for a difference p - p(0), (m,).
     """
     m = len(places)
     # Places in units of the largest keep the Vandermonde matrix well conditioned.
@@ -98,10 +100,11 @@ def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
 
 @compiled_for_vectors
 def with_weighted_data(values: Array, data: Array, orders: Array, weights: Array) -> Array:
-    """An orbit's values, (N + 1,), plus a weighted sum of data, (m, N + 1): slopes, and other orbits' values
-    minus its own.
+    """Predictor: the normalised values of an orbit, (N + 1,), plus a weighted sum of slopes and of
+    differences of other orbits' values from its values.
 
-    orders: 1 for a slope, 0 for values, (m,). weights: (m,).
+    data: slopes, or values of other orbits, (m, N + 1). orders: 1 for a slope, 0 for values, (m,). weights:
+    (m,).
     """
     out = np.zeros(len(values))
     rest = 1.0
@@ -137,7 +140,8 @@ def normalised_slopes(values: Array, tangent: Array, r: Reflected) -> Array:
 
 @compiled_for_vectors
 def squared_size(values: Array, others: Array, r: Reflected) -> float:
-    """Integral of m3^2 at t = 0, or of the product of m3 for two sets of values, (N,) each."""
+    """Integral along the rod, at t = 0, of the product of m3 of the orbits with `values` and `others`, (N,)
+    each."""
     total = 0.0
     for i in range(len(r.weights)):
         total += r.weights[i] * values[i] * others[i]
@@ -146,7 +150,8 @@ def squared_size(values: Array, others: Array, r: Reflected) -> float:
 
 @compiled_for_vectors
 def _scale_reversed(values: Array, factor: float, r: Reflected) -> None:
-    """Multiplies the reversed components of the states in values by a factor, in place."""
+    """Multiplies the components that the reflection reverses, in all states in `values`, by `factor`, in
+    place."""
     n = len(r.reversed)
     for first in range(0, len(values) - n + 1, n):
         for i in range(n):

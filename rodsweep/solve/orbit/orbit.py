@@ -23,7 +23,8 @@ from .symmetry import Symmetry
 
 @dataclass(frozen=True, eq=False)
 class Orbit:
-    """A periodic orbit in the form `form`, with K intervals of s stages each.
+    """A periodic orbit of the rod and space mesh of `form`, on K time intervals with s collocation stages
+    each.
 
     values: states at the start and at the stages of all intervals, one after the other, and the period in
     tau2, (N,) with N = (1 + K s) n + 1.
@@ -37,7 +38,7 @@ class Orbit:
 
     @classmethod
     def of(cls, form: StressForm, symmetry: Symmetry, period: float, states: Array, stages: int) -> "Orbit":
-        """The orbit with states at the start and at the stages of all intervals, (1 + K s, n)."""
+        """The orbit with the given period, in tau2, and `states` at t = 0 and at all stages, (1 + K s, n)."""
         values = np.append(states.ravel(), period)
         return cls(form, symmetry, (len(states) - 1) // stages, stages, values)
 
@@ -47,7 +48,7 @@ class Orbit:
 
     @property
     def points(self) -> Array:
-        """States at the start and at the stages, (1 + K s, n)."""
+        """States at t = 0 and at the stages of all intervals, (1 + K s, n)."""
         return self.values[:-1].reshape(1 + self.intervals * self.stages, -1)
 
     @property
@@ -57,7 +58,7 @@ class Orbit:
 
     @property
     def states(self) -> Array:
-        """States at the stages, (K, s, n)."""
+        """States at the stages of each interval, (K, s, n)."""
         return self.points[1:].reshape(self.intervals, self.stages, -1)
 
     @property
@@ -90,21 +91,21 @@ class Orbit:
 
     @property
     def size(self) -> float:
-        """Largest amplitude of the motion, in units of sqrt(energy)."""
+        """Size of the motion: the largest norm of its states, in units of sqrt(energy)."""
         # The reflected part of the period has the same amplitude.
         return float(self.form.amplitude(self.regular_states).max())
 
     def moved(self, change: Array, share: float = 1.0) -> "Orbit":
-        """The orbit plus a share of a change, (N,)."""
+        """The orbit with the values changed by `share` times `change`, (N,)."""
         return replace(self, values=self.values + share * change)
 
     def at(self, times: Array) -> Array:
-        """States at times in [0, 1], in units of the duration, shape (len(times), n)."""
+        """States at `times` in [0, 1], in units of the solved duration, shape (len(times), n)."""
         at: Array = piecewise((self.intervals, self.stages), times) @ self.points
         return at
 
     def on(self, grid: Mesh, intervals: int, stages: int) -> "Orbit":
-        """The orbit's polynomials, evaluated on another mesh and other intervals."""
+        """The orbit interpolated to the space mesh `grid` and to other time intervals."""
         points = self.points
         source = self.intervals, self.stages
         target = intervals, stages
@@ -123,7 +124,7 @@ class Orbit:
 
 @lru_cache(maxsize=ELEMENTS.max_pencils)
 def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: int) -> Semidiscrete:
-    """Equations that are common to all orbits of a form, with a symmetry and a method in time."""
+    """Data of the equations for all orbits with the same form, symmetry and time intervals."""
     d = radau_method(stages).differentiation
     lengths = interval_lengths(intervals)
     S = symmetry.matrix(form.layout)
@@ -133,7 +134,8 @@ def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: 
 
 @lru_cache(maxsize=ELEMENTS.max_mesh_pairs)
 def interval_lengths(intervals: int) -> Array:
-    """Lengths of the intervals in units of the duration, (intervals,): equal, but the last two are halves.
+    """Lengths of the time intervals in units of the solved duration, (intervals,): equal, but half for the
+    last two.
 
     Where modes decay within an interval, the error at its end depends on the interval's own length, hardly on
     the others. The largest y is taken at the end of the last interval, which is therefore short.
@@ -142,12 +144,12 @@ def interval_lengths(intervals: int) -> Array:
 
 
 def interval_starts(intervals: int) -> Array:
-    """Start times of the intervals in units of the duration, (intervals,)."""
+    """Start times of the time intervals in units of the solved duration, (intervals,)."""
     return np.append(0.0, np.cumsum(interval_lengths(intervals)[:-1]))
 
 
 def node_times(intervals: int, stages: int) -> Array:
-    """Times of the start and the stages in units of the duration, (1 + K s,)."""
+    """Times of the start and of all stages in units of the solved duration, (1 + K s,)."""
     starts = interval_starts(intervals)[:, None]
     lengths = interval_lengths(intervals)[:, None]
     return np.append(0.0, starts + lengths * radau_method(stages).nodes)
@@ -155,13 +157,15 @@ def node_times(intervals: int, stages: int) -> Array:
 
 @lru_cache(maxsize=ELEMENTS.max_mesh_pairs)
 def between_intervals(source: tuple[int, int], target: tuple[int, int]) -> csr_array:
-    """Matrix from the points of source (intervals, stages) to those of the target, (target, source)."""
+    """Matrix that interpolates the states at the nodes of `source` = (intervals, stages) to the nodes of
+    `target`, (1 + K s of target, 1 + K s of source)."""
     intervals, stages = target
     return piecewise(source, node_times(intervals, stages))
 
 
 def piecewise(source: tuple[int, int], times: Array) -> csr_array:
-    """Matrix from the points of source (K, s) to values at times in [0, 1], (m,), of shape (m, 1 + K s).
+    """Matrix, (m, 1 + K s), that interpolates the states at the nodes of `source` = (K, s) to `times` in [0,
+    1], (m,).
 
     The matrix is sparse because each value depends on one interval only; a dense matrix of a long orbit would
     fill the memory.

@@ -1,6 +1,6 @@
-"""Meshes of an orbit in space and time, and the mesh that an accuracy requires.
+"""Meshes of an orbit in space and time, and the choice of the mesh for a requested accuracy.
 
-The required mesh follows from the tails of a nearby orbit (`tails`).
+The choice follows from the coefficient tails of a nearby orbit (`tails`).
 """
 
 from dataclasses import dataclass, replace
@@ -22,39 +22,45 @@ class OrbitMeshSettings:
     """Settings for the choice of the mesh of an orbit in space and time."""
 
     space_factor: float = 5.0
-    """Largest stated error of period and extrema in units of the squared tail in space, as predicted from a
-    coarse mesh. With `space_factor` and `time_factor` the first mesh is fine enough for five rods in six, and
-    costs a fifth more than necessary."""
+    """Predicted error of period and extrema due to the mesh in space, in units of the squared tail in space.
+    With `space_factor` and `time_factor` the first mesh is fine enough for five rods in six, and costs a
+    fifth more than necessary."""
     time_factor: float = 1.5
-    """Largest stated error of period and extrema in units of the squared tail in time."""
+    """Predicted error of period and extrema due to the intervals in time, in units of the squared tail in
+    time."""
     smallest_tail: float = 1e-15
     """Smallest tail from which a mesh is chosen; smaller ones are rounding errors."""
     expected_share: float = 1 / 3
-    """Error in space, and error in time, for which a mesh is chosen, in units of the accuracy."""
+    """Fraction of the requested accuracy for which the mesh in space, and likewise the mesh in time, is
+    chosen."""
     coarser_order: int = 2
-    """Decrease of the order on the coarser mesh, whose errors are about ten times larger."""
+    """Decrease of the element order from a mesh to its `coarser`, whose errors are about ten times larger."""
     coarser_share: float = 0.6
-    """Ratio of the numbers of intervals of the coarser mesh and the mesh."""
+    """Ratio of the numbers of time intervals of `coarser` and of the mesh itself."""
     min_order: int = 8
-    """Smallest order of a chosen mesh."""
+    """Smallest element order of a chosen mesh."""
     min_intervals: int = 4
-    """Smallest number of intervals of a chosen mesh."""
+    """Smallest number of time intervals of a chosen mesh."""
     max_intervals: int = 256
-    """Largest number of intervals of a chosen mesh."""
+    """Largest number of time intervals of a chosen mesh."""
     stage_accuracies: tuple[float, ...] = (2e-5, 3e-9, 3e-11)
-    """Accuracies below which four, five and six stages in time cost less than one stage fewer."""
+    """Accuracies below which four, five and six collocation stages cost less than three, four and five."""
     fewest_stages: int = 3
-    """Number of stages in time above all of these accuracies."""
+    """Number of collocation stages for accuracies above all of `stage_accuracies`."""
     max_more_orders: int = 12
-    """Largest increase of the order at once: tails far below the present order's are extrapolated."""
+    """Largest increase of the element order at once, because the tail at much higher orders is an
+    extrapolation."""
     max_interval_ratio: int = 4
-    """Largest ratio of the numbers of intervals, for the same reason."""
+    """Largest ratio of the new to the present number of time intervals, because the tail of a much finer mesh
+    is an extrapolation."""
     more_intervals: float = 1.2
-    """Factor on the number of intervals where the wanted mesh is no finer than the present mesh."""
+    """Factor on the number of time intervals if the mesh chosen from the tails is no finer than the present
+    mesh."""
     halved_order: float = 0.6
-    """Order after all elements are halved, in units of the order before, at equal errors."""
+    """Ratio of the element orders after and before all elements are halved, at equal errors."""
     vector: int = 8
-    """Doubles of a processor's vector: a BLAS takes as long for fewer."""
+    """Number of doubles in a vector register: for fewer unknowns than a multiple of it, a BLAS takes as
+    long."""
     max_unknowns: int = 400
     """Largest number of unknowns of a state; a Newton step for a larger state would take more than a
     second."""
@@ -80,7 +86,8 @@ class OrbitMesh:
 
     @property
     def full_intervals(self) -> int:
-        """The period in units of a full interval: the last two intervals have half its length."""
+        """Solved duration in units of a full interval: the last two intervals have half the length of the
+        others."""
         return self.intervals - 1
 
     @property
@@ -94,12 +101,12 @@ class OrbitMesh:
 
     @property
     def numbers(self) -> Array:
-        """Numbers from which `from_numbers` makes the mesh again, (elements + 4,)."""
+        """The mesh as an array for storage, (elements + 4,): order, intervals, stages, edges."""
         return np.array([self.order, self.intervals, self.stages, *self.edges])
 
     @classmethod
     def from_numbers(cls, numbers: Array) -> "OrbitMesh":
-        """The mesh of stored `numbers`, (elements + 4,)."""
+        """The mesh whose property `numbers` is the given array, (elements + 4,)."""
         order, intervals, stages = map(int, numbers[:3])
         return cls(tuple(numbers[3:].tolist()), order, intervals, stages)
 
@@ -112,7 +119,7 @@ class OrbitMesh:
 
     @property
     def finer(self) -> "OrbitMesh":
-        """Finer mesh for a new attempt without an error estimate."""
+        """Finer mesh in space and time, for a new attempt if no error estimate is available."""
         more = int(ORBIT_MESH.more_intervals * self.intervals) + 1
         return replace(self.finer_in_space, intervals=more)
 
@@ -131,28 +138,30 @@ class OrbitMesh:
 
     @property
     def cost(self) -> float:
-        """Cost of an elimination in any unit; unknowns count in whole vectors of the processor."""
+        """Relative cost of the elimination of Newton's matrix, with the unknowns rounded up to whole vector
+        registers."""
         unknowns = ORBIT_MESH.vector * ceil(self.unknowns / ORBIT_MESH.vector)
         return float(unknowns**3 * self.intervals * self.stages**2)
 
     def carry(self, orbit: Orbit) -> Orbit:
-        """The orbit's polynomials, evaluated on this mesh."""
+        """`orbit` interpolated to this mesh."""
         return orbit.on(self.grid, self.intervals, self.stages)
 
 
 def mesh_of(orbit: Orbit) -> OrbitMesh:
-    """The mesh of an orbit."""
+    """The mesh in space and time on which `orbit` is represented."""
     grid = orbit.form.mesh
     return OrbitMesh(grid.edges, grid.order, orbit.intervals, orbit.stages)
 
 
 def stages_for(accuracy: float) -> int:
-    """Number of stages in time for which an accuracy costs least."""
+    """Number of collocation stages with which the relative accuracy `accuracy` costs least."""
     return ORBIT_MESH.fewest_stages + sum(accuracy <= limit for limit in ORBIT_MESH.stage_accuracies)
 
 
 def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
-    """The smallest mesh that is expected to reach an accuracy, from the tails of a nearby orbit."""
+    """The coarsest mesh with `stages` stages that is expected to reach `accuracy`, from the tails of the
+    nearby `orbit`."""
     present = mesh_of(orbit)
     tails = tails_of(orbit)
     aim_space = (ORBIT_MESH.expected_share * accuracy / ORBIT_MESH.space_factor) ** 0.5
@@ -176,7 +185,7 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
 
 
 def finer_mesh(mesh: OrbitMesh, wanted: OrbitMesh) -> OrbitMesh:
-    """A mesh at least as fine as the wanted mesh, and finer than the present mesh."""
+    """A mesh at least as fine as `wanted`, and finer than the present mesh `mesh`."""
     order = max(wanted.order, mesh.order) if wanted.edges == mesh.edges else wanted.order
     intervals = max(wanted.intervals, mesh.intervals)
     stages = max(wanted.stages, mesh.stages)

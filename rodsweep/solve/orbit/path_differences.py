@@ -1,4 +1,4 @@
-"""Differences between the tip's paths on two meshes."""
+"""Differences between the paths of the tip in two solutions of a cycle, on two meshes."""
 
 import numpy as np
 
@@ -9,11 +9,12 @@ from .measures import CyclePath
 from .orbit import Orbit
 
 PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH = range(4)
-"""Indices of the result of `path_differences`."""
+"""Indices into the array that `path_differences` returns."""
 
 
 def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
-    """Differences of the period, the largest y, the worst extremum, and the whole paths, (4,).
+    """Differences of two paths, (4,): period, largest y, extremum with the largest difference, whole path of
+    the tip.
 
     The period's difference is relative; the other three are in units of the largest y. On a branch the two
     rods may differ, too; the relative difference of their parameters then counts as a difference of the
@@ -28,7 +29,7 @@ def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
 
 
 def rod_difference(one: Orbit, other: Orbit) -> float:
-    """Largest relative difference of two rods' parameters."""
+    """Largest relative difference between the parameters of the rods of two orbits."""
     a, b = (_numbers(orbit.form.rod) for orbit in (one, other))
     # A coefficient of 0 is a limit, such as c1 = 0, in which both rods agree exactly.
     return float(np.abs((a - b) / np.where(b == 0, 1, b)).max())

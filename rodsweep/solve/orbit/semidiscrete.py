@@ -1,4 +1,4 @@
-"""Equations of a periodic orbit: the rod on its mesh, the method in time, and the closing condition."""
+"""Data of the discretised equations of a periodic orbit, for compiled code."""
 
 from typing import NamedTuple
 
@@ -8,10 +8,11 @@ from ...discretization.nodal_rod import NodalRod
 
 
 class Semidiscrete(NamedTuple):
-    """The rod on its mesh, the method in time, and the closing condition x(T/p) = S x(0) of an orbit.
+    """Data of an orbit's equations: rod and mesh in space, collocation in time, closing condition x(T/p) = S
+    x(0).
 
-    mass: (n,). differentiation: (s, s + 1). lengths: lengths of the intervals, with sum 1, (K,). symmetry: S,
-    (n, n). parts: p, 1 or 2.
+    mass: diagonal of the mass matrix, (n,). differentiation: matrix of the collocation, (s, s + 1). lengths:
+    lengths of the intervals, with sum 1, (K,). symmetry: S, (n, n). parts: p, 1 or 2.
     """
 
     rod: NodalRod

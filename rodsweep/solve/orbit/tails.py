@@ -1,4 +1,4 @@
-"""Tails of an orbit, the last coefficients of its polynomials in space and time, which show its resolution.
+"""Tails of an orbit: the last Legendre coefficients in space and time, which measure the truncation error.
 
 Errors of period and largest deflection are of the order of the squared tails: both converge twice as fast as
 the states.
@@ -24,7 +24,7 @@ from .orbit import Orbit
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TailSettings(CompiledSettings):
-    """Settings for the decay of coefficients and for the tails of orbits."""
+    """Settings for the tails of an orbit and for the decay of its coefficients."""
 
     min_decay: float = 0.2
     """Smallest decay of the coefficients in space per order, natural logarithm."""
@@ -33,7 +33,8 @@ class TailSettings(CompiledSettings):
     rounding: float = 1e-16
     """Size of coefficients, in units of the largest, below which their decay is not measured."""
     last_coefficients: int = 4
-    """Number of last coefficients in space whose size changes smoothly from orbit to orbit."""
+    """Number of last coefficients in space for `lasting_tails`: the norm of this many changes smoothly along
+    a branch."""
 
 
 TAILS = TailSettings()
@@ -41,7 +42,7 @@ TAILS = TailSettings()
 
 @dataclass(frozen=True, slots=True)
 class Tails:
-    """Last coefficients in space and in time, in units of the largest coefficients.
+    """Last Legendre coefficients of an orbit in space and in time, in units of the largest.
 
     decay: decay of the coefficients in space per order, natural logarithm.
     """
@@ -52,7 +53,7 @@ class Tails:
 
 
 def tails_of(orbit: Orbit) -> Tails:
-    """The tails of an orbit."""
+    """Tails of `orbit` in space and in time, and the decay of its coefficients in space."""
     c = _space_coefficients(orbit)
     # Two coefficients, because by parity a single one may vanish.
     last = np.hypot(c[:, -1], c[:, -2]) / np.maximum(c.max(axis=1), EXPONENTS.least_divisor)
@@ -61,7 +62,8 @@ def tails_of(orbit: Orbit) -> Tails:
 
 @compiled_for_vectors
 def _decay(c: Array) -> float:
-    """Mean slope of the envelope of coefficients, (fields, p + 1), over their upper half."""
+    """Decay per order, natural logarithm: minus the mean slope of the envelope of the coefficients c,
+    (fields, p + 1), in the upper half of the orders, within `TAILS.min_decay` and `TAILS.max_decay`."""
     fields, size = c.shape
     middle = (size - 1) / 2 + (size // 2) / 2
     highest = TAILS.rounding
@@ -90,7 +92,8 @@ def _space_coefficients(orbit: Orbit) -> Array:
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def _analysis_on_element(order: int) -> Array:
-    """Matrix, applied from the right, from an element's nodes to Legendre coefficients, (p + 1, p + 1)."""
+    """Matrix, (p + 1, p + 1), that maps, from the right, values at the nodes of an element to Legendre
+    coefficients."""
     return np.ascontiguousarray(legendre_analysis(2 * mesh(1, order).positions - 1).T)
 
 
@@ -117,9 +120,10 @@ def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array
 
 
 def lasting_tails(orbit: Orbit) -> Array:
-    """Tails in space and in time that change as smoothly as an orbit, (2,), in units of the largest values.
+    """Tails in space and in time, (2,), that change smoothly along a branch, in units of the largest values.
 
-    A single last coefficient may vanish, so in space the last few at all points are used.
+    A single last coefficient may vanish, so the tail in space uses `TAILS.last_coefficients` at all time
+    nodes.
     """
     grid = orbit.form.mesh
     if not orbit.form.smooth_stresses:
@@ -140,15 +144,16 @@ def _by_elements(orbit: Orbit, states: Array) -> Array:
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def _lasting_on_element(order: int) -> Array:
-    """Last columns of `_analysis_on_element`, (p + 1, `TAILS.last_coefficients`)."""
+    """Columns of `_analysis_on_element` for the last coefficients, (p + 1, `TAILS.last_coefficients`)."""
     return np.ascontiguousarray(_analysis_on_element(order)[:, -TAILS.last_coefficients :])
 
 
 @compiled_for_vectors
 def relative_tail(points: Array, elements: int, analysis: Array) -> float:
-    """Largest 2-norm of the last coefficients of n1, n2 or m3 in an element, in units of its largest value.
+    """Largest 2-norm of the last coefficients of n1, n2 or m3 in an element, in units of the field's largest
+    value.
 
-    points: (m, n); analysis: from an element's nodes to the last coefficients, (p + 1, count).
+    points: states, (m, n). analysis: matrix from an element's nodes to the last coefficients, (p + 1, count).
     """
     size, count = analysis.shape
     nodes = elements * (size - 1)
@@ -173,13 +178,13 @@ def relative_tail(points: Array, elements: int, analysis: Array) -> float:
 
 
 def _tail_in_time(orbit: Orbit) -> float:
-    """The largest of the tails of n1, n2 and m3 in time."""
+    """The largest of the tails in time of n1, n2 and m3, in units of the largest values."""
     return largest_tail(orbit.points, _last_in_interval(orbit.stages), orbit.form.mesh.nodes)
 
 
 @lru_cache(maxsize=ELEMENTS.max_pencils)
 def _last_in_interval(stages: int) -> Array:
-    """Row from the values at an interval's start and stages to the last Legendre coefficient, (s + 1,)."""
+    """Weights, (s + 1,), of the values at an interval's start and stages in the last Legendre coefficient."""
     nodes: Array = np.append(0.0, radau_method(stages).nodes)
     row: Array = legendre_analysis(2 * nodes - 1)[-1]
     return row
@@ -187,9 +192,10 @@ def _last_in_interval(stages: int) -> Array:
 
 @compiled_for_vectors
 def largest_tail(points: Array, row: Array, nodes: int) -> float:
-    """Largest last coefficient of n1, n2, m3 in an interval, in units of the largest value of each.
+    """Largest last Legendre coefficient in time of n1, n2 or m3 in any interval, in units of the field's
+    largest value.
 
-    points: start and stages one after the other, (1 + K s, n). row: from an interval's values to the last
+    points: states at the start and all stages, (1 + K s, n). row: weights of an interval's values in the last
     coefficient, (s + 1,). Sizes are 2-norms of a stress over all nodes.
     """
     s = len(row) - 1
