@@ -12,6 +12,7 @@ import pytest
 from numba.core import event
 
 from rodsweep.model.compiled import compilation
+from rodsweep.model.rod import Rod
 
 SOLVED_BEFORE = """
 from rodsweep.solve.branch import branches
@@ -303,3 +304,9 @@ def test_an_array_is_assigned_to_a_slice_of_its_shape_only_and_no_text_is_compil
         assign(np.zeros((2, 3)), np.ones(2))
     (code,) = assign.inspect_llvm().values()
     assert "unicode" not in code
+
+
+def test_whole_numbers_of_a_rod_compile_nothing_anew():
+    """numba compiles a function once for each type of its arguments."""
+    whole, real = Rod(F=50, k1=10000, k2=100, gamma3=1), Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1.0)
+    assert numba.typeof(whole.coefficients) == numba.typeof(real.coefficients)
