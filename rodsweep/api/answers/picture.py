@@ -169,10 +169,13 @@ def plot(
     views = [section(view_for(one, EXAMPLE), values) for one in several]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
     choices |= {"look": FigureLook(**look), "shapes": SolvedShapes()}
+    file = None if output is None else file_path(output, EXAMPLE)
+    ending = ".gif" if what == "animation" else ".png"
     with TemporaryDirectory(prefix="rodsweep-") as place:
-        path = Path(place, "figure.gif" if what == "animation" else "figure.png")
-        shown = draw(views, path, **choices).partition(": ")[2]
+        # A file in the format of the display is the display: the figure is drawn once.
+        path = file if file is not None and file.suffix == ending else Path(place, f"figure{ending}")
+        shown = draw(views, path, **choices).removeprefix(f"wrote {path}: ")
         picture = Picture(views, choices, in_python(shown), path.read_bytes())
-    if output is not None:
-        picture.save(file_path(output, EXAMPLE))
+    if file is not None and file != path:
+        picture.save(file)
     return picture
