@@ -1,7 +1,8 @@
-"""The peers of `rodsweep bench`: what one would otherwise use, timed beside rodsweep where it is installed.
+"""Peers of `rodsweep bench`: codes that a user might choose instead of rodsweep, timed if they are installed.
 
-A module of the name of each study that has peers; what they offer is said in `rodsweep.bench.peers`. They are
-no part of the package: nothing in it imports from here but the command `rodsweep bench`.
+Every study with peers has a subpackage of its name. `rodsweep.bench.peers` documents the functions that a
+subpackage offers. The peers do not belong to the package rodsweep: only the command `rodsweep bench` imports
+them.
 """
 
 import shutil
@@ -9,10 +10,11 @@ import subprocess
 from importlib.metadata import PackageNotFoundError, version
 
 PACKAGES = ("scipy", "pycont-lite", "scikit-sundae")
+"""Python packages of the peers, by their names on PyPI."""
 
 
 def versions() -> dict[str, str]:
-    """Of the peers that are installed; AUTO-07p does not tell its own, but Debian's package does."""
+    """Version of every installed peer, by name. AUTO-07p does not state its version: Debian's is reported."""
     found = {}
     for name in PACKAGES:
         try:

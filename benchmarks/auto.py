@@ -1,4 +1,4 @@
-"""AUTO-07p as a peer: its program, compiled with the equations it is to follow, and a run of it."""
+"""AUTO-07p as a peer: compiles the program with the equations of a rod, runs it and reads its table."""
 
 import os
 import shutil
@@ -7,14 +7,14 @@ from pathlib import Path
 
 AUTO = "AUTO-07p"
 AUTO_LIBRARY = Path(os.environ.get("AUTO_DIR", "/usr/lib/auto-07p")) / "lib"
-"""The compiled parts of AUTO-07p: AUTO_DIR is its own variable, the default is where Debian has it."""
-HEAD = "0"
-"""The first word of a line of the head of fort.7."""
-SKIPPED = f"{AUTO} is skipped: it needs the program (Debian: auto-07p) and gfortran."
+"""Folder with AUTO-07p's object files. AUTO-07p itself reads AUTO_DIR; the default is Debian's folder."""
+HEAD_MARK = "0"
+"""First word of every line in the head of AUTO's table, the file fort.7."""
+AUTO_SKIPPED = f"{AUTO} is skipped: it needs the program (Debian: auto-07p) and gfortran."
 
 
 def auto_program(directory: Path, equations: str) -> Path | None:
-    """AUTO-07p compiled in the directory with equations in Fortran; None where it or gfortran is missing."""
+    """Compiles AUTO-07p with Fortran equations in a directory; None if AUTO-07p or gfortran is missing."""
     compiler, parts = shutil.which("gfortran"), sorted(map(str, AUTO_LIBRARY.glob("*.o")))
     if compiler is None or not parts:
         return None
@@ -25,7 +25,10 @@ def auto_program(directory: Path, equations: str) -> Path | None:
 
 
 def run_auto(program: Path, place: Path, constants: str) -> str:
-    """What the program says in a run in the directory `place`, on one core; RuntimeError where it fails."""
+    """Standard output of a run of the program in the directory `place`, on one core.
+
+    constants: content of AUTO's constants file fort.2. Raises RuntimeError if the program fails.
+    """
     (place / "fort.2").write_text(constants)
     environment = os.environ | {"OMP_NUM_THREADS": "1"}
     done = subprocess.run([program], cwd=place, capture_output=True, text=True, check=False, env=environment)
@@ -36,6 +39,9 @@ def run_auto(program: Path, place: Path, constants: str) -> str:
 
 
 def table_lines(place: Path) -> list[list[str]]:
-    """The words of the lines of fort.7, a line for each point of the branch; its head is left out."""
+    """Words of each line of AUTO's table fort.7 in the directory `place`, one line per point of the branch.
+
+    The head of the table is left out.
+    """
     lines = [line.split() for line in (place / "fort.7").read_text().splitlines()]
-    return [words for words in lines if words[0] != HEAD]
+    return [words for words in lines if words[0] != HEAD_MARK]

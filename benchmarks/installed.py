@@ -1,11 +1,11 @@
-"""Whether a peer is there: its Python module where it is installed."""
+"""Optional Python modules of the peers."""
 
 import importlib
 from typing import Any
 
 
-def installed(module: str) -> Any | None:
-    """A peer's module; None where it is not installed."""
+def optional_module(module: str) -> Any | None:
+    """The Python module of a peer, by its import name; None if the peer is not installed."""
     try:
         return importlib.import_module(module)
     except ImportError:

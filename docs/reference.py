@@ -38,7 +38,7 @@ from rodsweep.results.layouts.phase_diagram import (
 from rodsweep.results.layouts.spectrum import FORCE_CHANGES
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from rodsweep.results.layouts.variables import DIMENSIONS, MISSING, Variable
-from rodsweep.tasks.arm.points import NoRod
+from rodsweep.tasks.arm.points import NoRodStatus
 from rodsweep.tasks.running.job import Job, make_job
 
 DOCS = Path(__file__).parent
@@ -353,7 +353,7 @@ A point of a grid may be an arm outside the model. Nothing is computed, and `sta
 
 def validity() -> str:
     """Variables on the validity of the model, and statuses of arms without a rod."""
-    statuses = [[str(int(status)), f"`{status.name}`", status.sentence] for status in NoRod]
+    statuses = [[str(int(status)), f"`{status.name}`", status.sentence] for status in NoRodStatus]
     variables = variable_table(variable_row(v, ["...", *v.extra], "") for v in VALIDITY)
     return variables + UNCOVERED + table(("value", "word", "meaning"), statuses)
 

@@ -4,6 +4,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-"""Floating-point numbers."""
+"""NumPy array of floating-point numbers, of any shape."""
 Complex = NDArray[np.complex128]
-"""Complex numbers."""
+"""NumPy array of complex numbers, of any shape."""

@@ -11,8 +11,9 @@ BUG_STATUS = 70
 
 
 class Refusal(Exception):
-    """Error shown to the user as one sentence; `collective` if every rank of a run raises it at the same
-    place.
+    """Error that the command line shows as one sentence, without a traceback.
+
+    collective: whether every rank of a run raises the error at the same place.
     """
 
     collective = False
@@ -36,19 +37,20 @@ class EnvironmentIncomplete(Refusal):
     exit_status = 3
 
 
-def not_importable(modules: str, reason: object, extra: str = "solvers") -> EnvironmentIncomplete:
-    """Refusal for modules that a plain `pip install` leaves to the distribution: the sentence says how to get
-    them.
+def import_refusal(modules: str, reason: object, extra: str = "solvers") -> EnvironmentIncomplete:
+    """EnvironmentIncomplete for modules whose import failed; its sentence says how to install the modules.
 
-    extra: name of the optional dependencies that bring the modules from PyPI. Modules of a distribution are
-    compiled for its NumPy; under another major version their import fails with a message about binary
-    incompatibility.
+    modules: names for the sentence. reason: error of the import. extra: name of the optional dependencies
+    that install the modules from PyPI. Modules of a Linux distribution are compiled for its NumPy; with
+    another major version of NumPy their import fails with a message about binary incompatibility.
     """
     if "binary incompatibility" in str(reason):
-        remedy = "compiled for another NumPy: on Debian 12 pip install 'rodsweep[debian12]'"
+        remedy = "they are compiled for another NumPy: on Debian 12 pip install 'rodsweep[debian12]'"
     else:
         wheel = "pip install 'rodsweep[solvers]', which compiles PETSc"
         if extra != "solvers":
             wheel = f"pip install 'rodsweep[{extra}]' to read and draw results; to solve, {wheel}"
-        remedy = f"`make install` of a clone brings all; beside a wheel take Debian's or conda's, or {wheel}"
+        remedy = (
+            f"`make install` in a clone installs all; or take the packages of Debian or conda, or {wheel}"
+        )
     return EnvironmentIncomplete(f"{modules} cannot be imported ({reason}); {remedy}")

@@ -13,8 +13,10 @@ from typing import NamedTuple
 
 
 class SolvePosition(NamedTuple):
-    """Position of a solve in words, and the fraction of its work that is done, from 0 to 1; None if
-    unknown.
+    """Position of a running solve, as a listener shows it.
+
+    words: the position in words, such as "branch 2 of 3". share: fraction of the work that is done, from 0 to
+    1; None if unknown.
     """
 
     words: str = ""
@@ -22,18 +24,22 @@ class SolvePosition(NamedTuple):
 
 
 MakePosition = Callable[[], SolvePosition]
-"""Builds the text of a report. It is called only if a listener shows the report."""
+"""Function that makes the position of a report. A listener calls it only to show the report."""
 Listener = Callable[[MakePosition], None]
-"""Receives every report; raises `Stopped` to end the solve."""
+"""Function called at every report of a solve. It raises `SolveStopped` to end the solve."""
 
 
-class Stopped(BaseException):
-    """Raised by a listener to end a running solve. Solvers do not catch it with their own errors."""
+class SolveStopped(BaseException):
+    """Raised by a listener to end a running solve. Solvers that catch their own errors do not catch this
+    one.
+    """
 
 
 class _SolvePart(NamedTuple):
-    """Named part of a solve; shares: fractions of the whole work at its start and its end, None if
-    unknown.
+    """Named part of a solve.
+
+    shares: fractions of the work of the whole solve that are done at the start and at the end of the part;
+    None if unknown.
     """
 
     name: str
@@ -55,9 +61,10 @@ _parts: ContextVar[tuple[_SolvePart, ...]] = ContextVar("parts", default=())
 
 @contextmanager
 def reporting_to(listener: Listener) -> Iterator[None]:
-    """Sends the reports of all solves in the `with` block to the listener, after any outer listeners.
+    """Sends the reports of all solves in the `with` block to the listener, after the listeners of outer
+    blocks.
 
-    The listener receives positions within the block: parts outside the block do not precede its texts.
+    The positions are relative to the block: names of parts that enclose the block do not precede the words.
     """
     token = _listeners.set((*_listeners.get(), (listener, len(_parts.get()))))
     try:
@@ -67,11 +74,11 @@ def reporting_to(listener: Listener) -> Iterator[None]:
 
 
 @contextmanager
-def part(name: str, shares: tuple[float, float] | None = None) -> Iterator[None]:
-    """Marks the reports in the `with` block as part of a larger solve, such as a branch; `name` precedes each
-    text.
+def solve_part(name: str, shares: tuple[float, float] | None = None) -> Iterator[None]:
+    """Marks the reports in the `with` block as reports of a named part of a larger solve, such as a branch.
 
-    shares: fractions of the whole work done at the beginning and at the end of the part, None if unknown.
+    name: precedes the words of each report. shares: fractions of the work of the larger solve that are done
+    at the start and at the end of the part; None if unknown.
     """
     token = _parts.set((*_parts.get(), _SolvePart(name, shares)))
     try:
@@ -81,7 +88,10 @@ def part(name: str, shares: tuple[float, float] | None = None) -> Iterator[None]
 
 
 def report(place: MakePosition = SolvePosition) -> None:
-    """Reports the position of the solve. Called without a position, it only marks a safe place to stop."""
+    """Reports the position of the solve to all listeners.
+
+    place: makes the position; by default the report is empty and only lets a listener end the solve.
+    """
     for listener, outside in _listeners.get():
         listener(partial(_in_whole, place, outside))
 

@@ -1,22 +1,22 @@
 """Counts, plurals and durations in words, for the command line and `show`."""
 
-SIBILANTS = ("s", "x", "z", "ch", "sh")
+SIBILANT_ENDINGS = ("s", "x", "z", "ch", "sh")
 """Endings of nouns whose plural ends in "es"."""
 
 LONGEST_IN_MS = 0.9995
-"""Duration in seconds from which `duration` writes seconds. Three digits round a longer one to 1000 ms."""
+"""Duration in seconds from which `duration` writes seconds: three digits round a longer one to 1000 ms."""
 
 
 def counted(count: int, noun: str) -> str:
-    """A count with its noun: "1 branch", "2 branches". In a noun of several words only the last word
-    changes.
+    """A count with its noun: "1 branch", "2 branches". Of a noun of several words the last word becomes
+    plural.
     """
     return f"{int(count)} {noun if count == 1 else plural(noun)}"
 
 
 def plural(noun: str) -> str:
     """The plural of a regular noun."""
-    if noun.endswith(SIBILANTS):
+    if noun.endswith(SIBILANT_ENDINGS):
         return f"{noun}es"
     return f"{noun[:-1]}ies" if noun.endswith("y") and noun[-2] not in "aeiou" else f"{noun}s"
 
@@ -32,7 +32,7 @@ def has_or_have(count: int) -> str:
 
 
 def some_of(count: int, whole: int, noun: str) -> str:
-    """A part of a total: `"at " + some_of(2, 4, "row")` is "at 2 of 4 rows"."""
+    """A count out of a total with its noun: `some_of(2, 4, "row")` is "2 of 4 rows"."""
     return f"{int(count)} of {counted(whole, noun)}"
 
 

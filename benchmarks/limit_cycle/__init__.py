@@ -1,4 +1,4 @@
-"""Peers of the limit cycle: integrators that follow it or wait for it, and AUTO-07p, which continues it."""
+"""Peers of the study limit_cycle: time integrators, and AUTO-07p, which continues the cycle in F."""
 
 from functools import partial
 from pathlib import Path
@@ -6,21 +6,21 @@ from pathlib import Path
 from rodsweep.bench.limit_cycle.study import FOLLOWING, WAITING
 from rodsweep.bench.peers import Peers
 
-from ..auto import SKIPPED, auto_program
+from ..auto import AUTO_SKIPPED, auto_program
 from .auto_equations import EQUATIONS
-from .continuation import beside_auto
-from .integrators import CVODE, CVODE_SKIPPED, families
+from .continuation import compare_with_auto
+from .integrators import CVODE, CVODE_SKIPPED, installed_families
 
 
 def peers(quick: bool, place: Path) -> Peers:
-    """All integrators that are here, and AUTO-07p, compiled in `place`."""
-    every, program = families(), auto_program(place, EQUATIONS)
+    """All installed integrators, and AUTO-07p, compiled in `place`. quick: fewer settings of AUTO-07p."""
+    every, program = installed_families(), auto_program(place, EQUATIONS)
     skipped = [] if CVODE in [family.name for family in every] else [CVODE_SKIPPED]
     return Peers(
         contenders={
             FOLLOWING: [contender for family in every for contender in family.followers()],
             WAITING: [contender for family in every for contender in family.waiters()],
         },
-        sections=(partial(beside_auto, program, quick),) if program else (),
-        skipped=skipped if program else [*skipped, SKIPPED],
+        sections=(partial(compare_with_auto, program, quick),) if program else (),
+        skipped=skipped if program else [*skipped, AUTO_SKIPPED],
     )

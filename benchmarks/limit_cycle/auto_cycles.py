@@ -1,7 +1,8 @@
-"""AUTO-07p continuing the cycles of a rod in F, with their multipliers, on this tool's mesh in space.
+"""AUTO-07p continues the cycles of a rod in F, with their Floquet multipliers, on rodsweep's mesh in space.
 
-It collocates at Gauss points over the whole period, starts from this tool's cycle, and takes equal steps. Its
-largest y is measured as that of integrators, from its nodes in time, where collocation is most accurate.
+AUTO collocates at Gauss points over the whole period, starts from a cycle of rodsweep, and takes equal steps
+in F. The largest y of the tip is measured as for the integrators: from AUTO's mesh points in time, where
+collocation is most accurate.
 """
 
 import re
@@ -12,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from rodsweep.arrays import Array, Complex
-from rodsweep.bench.limit_cycle.tracking import height_near, on_cycle
+from rodsweep.bench.limit_cycle.tracking import largest_y_near, state_on_cycle
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.solve.motion.integrator import RunEnding, Trajectory
@@ -21,20 +22,28 @@ from rodsweep.solve.orbit.orbit import Orbit
 from ..auto import AUTO, run_auto, table_lines
 
 NO_CONVERGENCE = "-9"
-"""Third word of a line of fort.7."""
-CONSTANTS = """NDIM={unknowns}, IPS=2, IRS=0, ILP=0, ISP=2, ISW=1, MXBF=0, JAC=1, IID=2
+"""Third word of the last line of AUTO's table fort.7 if Newton's method did not converge."""
+AUTO_CONSTANTS = """NDIM={unknowns}, IPS=2, IRS=0, ILP=0, ISP=2, ISW=1, MXBF=0, JAC=1, IID=2
 ICP=[1, 11], SP=['BP0', 'PD0', 'TR0'], NTST={intervals}, NCOL={points}, IAD={adapted}
 THL={{11: 0.0}}, THU={{{no_states}}}
 NMX={most}, NPR={most}, ITMX=20, ITNW=20, NWTN=1, EPSL={tolerance!r}, EPSU={tolerance!r}, EPSS=1e-5
 DS={step!r}, DSMIN={step!r}, DSMAX={step!r}, IADS=0
 """
-"""Steps are in F alone. All multipliers are computed, but what happens to them is not looked for: it would
-take further cycles. One matrix is made for each cycle, at its prediction; the multipliers are that one's."""
+"""Content of AUTO's constants file for a continuation in F, a format of `str.format`.
+
+The step length counts F only. AUTO computes all Floquet multipliers, but locates no bifurcations, because
+locating them would take further cycles. AUTO assembles one Jacobian per cycle, at the predictor; the
+multipliers belong to this Jacobian."""
 
 
 @dataclass(frozen=True, slots=True)
 class AutoSetting:
-    """order: of the one element in space; intervals NTST, points NCOL, a new mesh after `adapted` cycles."""
+    """Mesh and tolerance of a run of AUTO-07p.
+
+    order: order of the single element in space. intervals: NTST, mesh intervals of a period. points: NCOL,
+    collocation points of an interval. adapted: IAD, cycles between two mesh adaptations; 0 for a fixed mesh.
+    tolerance: EPSL and EPSU, relative tolerance of Newton's method.
+    """
 
     order: int
     intervals: int
@@ -47,8 +56,11 @@ class AutoSetting:
 
 
 @dataclass(frozen=True, eq=False)
-class Branch:
-    """AUTO's last cycle, at the force F: period in tau2, the tip's largest y in L, all multipliers."""
+class AutoCycle:
+    """Last cycle of a run of AUTO-07p, at the force F.
+
+    period: in tau2. tip_y_max: largest y of the tip in L. multipliers: all Floquet multipliers, (unknowns,).
+    """
 
     F: float
     period: float
@@ -56,10 +68,13 @@ class Branch:
     multipliers: Complex
 
 
-def continued(program: Path, first: Orbit, setting: AutoSetting, step: float, cycles: int) -> Branch:
-    """So many cycles from the first, in steps of F; RuntimeError where AUTO fails."""
+def continue_cycles(program: Path, first: Orbit, setting: AutoSetting, step: float, cycles: int) -> AutoCycle:
+    """Continues the cycle `first` in F by AUTO-07p, and returns the last of `cycles` cycles.
+
+    step: difference of F between two cycles. Raises RuntimeError if AUTO fails.
+    """
     unknowns = first.form.unknowns
-    constants = CONSTANTS.format(
+    constants = AUTO_CONSTANTS.format(
         unknowns=unknowns,
         intervals=setting.intervals,
         points=setting.points,
@@ -81,11 +96,11 @@ def continued(program: Path, first: Orbit, setting: AutoSetting, step: float, cy
         pairs = re.findall(r"Multiplier +\d+ +(\S+) +(\S+) ", (place / "fort.9").read_text())
     multipliers = np.array([complex(*map(float, pair)) for pair in pairs[-unknowns:]])
     form = replace(first.form, rod=replace(first.form.rod, F=F))
-    return Branch(F, period, largest_y(form, period * times, states), multipliers)
+    return AutoCycle(F, period, largest_y(form, period * times, states), multipliers)
 
 
 def rod_file(form: StressForm) -> bytes:
-    """What the equations read as `rod`."""
+    """Content of the file `rod`, from which AUTO's equations read the mesh in space and the parameters."""
     rod, matrices = form.rod, form.mesh.matrices
     numbers = np.array([rod.c1, rod.c2, rod.axial_drag, rod.rotational_drag])
     parts = (np.int32(form.mesh.nodes), matrices.D_transposed, matrices.weights, numbers)
@@ -93,8 +108,12 @@ def rod_file(form: StressForm) -> bytes:
 
 
 def start_file(orbit: Orbit, pieces: int) -> bytes:
-    """What the equations read as `start`: F, the period and the states z at equal times, ends included."""
-    beam, _ = on_cycle(orbit)
+    """Content of the file `start`, from which AUTO's equations read the first cycle.
+
+    The file has F, the period in tau2, and the states z at `pieces` + 1 equidistant times of one period, both
+    ends included.
+    """
+    beam, _ = state_on_cycle(orbit)
     turns = np.arange(pieces + 1) / pieces * orbit.symmetry.parts
     states = orbit.at(np.where(turns > 1, turns - 1, turns))
     states[turns > 1] = orbit.symmetry.of(states[turns > 1], orbit.form.layout)
@@ -103,7 +122,10 @@ def start_file(orbit: Orbit, pieces: int) -> bytes:
 
 
 def last_solution(fort8: str) -> tuple[Array, Array]:
-    """Times in periods, (NTST + 1,), and states, (NTST + 1, unknowns), at the nodes in time."""
+    """(times in periods, (NTST + 1,); states z, (NTST + 1, unknowns)) at the mesh points of the last cycle.
+
+    fort8: text of AUTO's solution file fort.8.
+    """
     lines, place = fort8.splitlines(), 0
     times, states = np.empty(0), np.empty((0, 0))
     while place < len(lines):
@@ -117,8 +139,11 @@ def last_solution(fort8: str) -> tuple[Array, Array]:
 
 
 def largest_y(form: StressForm, times: Array, states: Array) -> float:
-    """The tip's largest y in L on a cycle of states z, (m, n), at times, (m,), the first again at the end."""
+    """Largest y of the tip, in L, on a cycle.
+
+    times: in tau2, (m,). states: z, (m, unknowns); the last state repeats the first.
+    """
     beam = Beam(form.rod, form.mesh)
     twice = np.concatenate([times, times[-1] + times[1:]]), np.concatenate([states, states[1:]])
     y = beam.tip(twice[1])[1]
-    return height_near(beam, Trajectory(RunEnding.reached, *twice), 1 + int(np.argmax(y[1:-1])))
+    return largest_y_near(beam, Trajectory(RunEnding.reached, *twice), 1 + int(np.argmax(y[1:-1])))

@@ -1,8 +1,8 @@
-"""The nonlinear rod on a mesh in Fortran, as AUTO-07p takes it: dz/dt and its exact derivatives.
+"""Fortran subroutines of the nonlinear rod on a mesh for AUTO-07p: dz/dt and its exact derivatives.
 
-The equations are those of `rodsweep.discretization.stress.balance` without Omega among the unknowns, the
-state is z = C^(1/2) S, par(1) = F, and par(11) the period in tau2. The file `rod` holds the mesh and the rod,
-`start` the first cycle.
+The equations are those of `rodsweep.discretization.stress.balance` with Omega eliminated. The state is
+z = C^(1/2) S; par(1) is F, and par(11) is the period in tau2. The subroutines read the mesh and the
+parameters from the file `rod`, and the first cycle from the file `start`.
 """
 
 EQUATIONS = """

@@ -1,7 +1,7 @@
-"""A cycle with its multipliers from its neighbour in F: this tool beside AUTO-07p, at equal error.
+"""Continuation of cycles in F, with their Floquet multipliers: rodsweep and AUTO-07p timed at equal error.
 
-AUTO's time of a cycle is the difference of two runs of different length by their difference in cycles: the
-start of its program, and the first cycle, cancel.
+AUTO's time per cycle is the difference of the times of a long and a short run, divided by the difference of
+their numbers of cycles: the start of the program and the first cycle cancel.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,7 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from rodsweep.bench.limit_cycle.sweeping import RODS, TIMED_POINTS, ExactCycle, from_neighbour, name_of, swept
+from rodsweep.bench.limit_cycle.sweeping import (
+    RODS,
+    TIMED_POINT_COUNT,
+    ExactCycle,
+    rod_label,
+    solve_from_neighbour,
+    swept_rod,
+)
 from rodsweep.bench.limit_cycle.tracking import (
     REFERENCE_INTERVALS,
     REFERENCE_NEWTON_TOLERANCE,
@@ -22,7 +29,7 @@ from rodsweep.bench.limit_cycle.tracking import (
     cycle_request,
     orbit_of,
 )
-from rodsweep.bench.study import Measurement, TimedRuns, failsafe, race, table
+from rodsweep.bench.study import Measurement, TimedRuns, markdown_table, race, result_or_error
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
@@ -32,18 +39,21 @@ from rodsweep.solve.orbit.newton import newton
 from rodsweep.solve.orbit.orbit import Orbit
 
 from ..auto import AUTO
-from .auto_cycles import AutoSetting, Branch, continued
+from .auto_cycles import AutoCycle, AutoSetting, continue_cycles
 
-STEP, FEW, MANY = 0.01, 3, 23
-"""AUTO's step in units of the force at which it ends, and cycles of its two runs."""
-MOST_ROUNDS = 3
-"""Of runs that take seconds."""
-LARGE = 0.5
-"""Modulus of a multiplier from which it is counted: next to 1 one is looked at."""
-OWN = "rodsweep"
-TARGETS = (1e-6, 1e-7)
-ASKED = (2e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7)
-"""Accuracies that rodsweep is asked for: what it reaches is better, for its estimates are careful."""
+RELATIVE_STEP = 0.01
+"""Step of AUTO in F, as a fraction of the last force."""
+SHORT_RUN_CYCLES, LONG_RUN_CYCLES = 3, 23
+"""Numbers of cycles of AUTO's two runs."""
+MAX_ROUNDS = 3
+"""Maximum number of timed rounds, because the runs take seconds."""
+LARGE_MODULUS = 0.5
+"""Modulus above which a Floquet multiplier is counted: multipliers near 1 decide the stability."""
+RODSWEEP = "rodsweep"
+TARGET_ERRORS = (1e-6, 1e-7)
+"""Errors at which the two codes are compared."""
+REQUESTED_ACCURACIES = (2e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7)
+"""Accuracies requested from rodsweep. Its errors are smaller, because its error estimates are cautious."""
 SETTINGS = (
     AutoSetting(13, 19, 3, 3),
     AutoSetting(14, 17, 3, 3),
@@ -57,50 +67,64 @@ SETTINGS = (
     AutoSetting(16, 9, 5, 3),
     AutoSetting(16, 14, 4, 3),
 )
-"""Those worth running. Where NTST and NCOL are odd, what is stiff has multipliers near -1, else near 1, where
-Newton's matrix is nearly singular: on meshes as coarse as these AUTO then fails, but for IAD = 0."""
+"""Settings of AUTO that are fast for their error.
+
+If NTST and NCOL are odd, the stiff unknowns have spurious multipliers near -1; otherwise the multipliers are
+near 1, and Newton's matrix is nearly singular. On such coarse meshes AUTO then fails, except with IAD = 0."""
 QUICK_SETTINGS = SETTINGS[1:6:4]
-"""One for each target."""
+"""Settings of a quick run, one for each target."""
 
 
-def beside_auto(program: Path, quick: bool, rounds: int) -> tuple[list[str], list[Measurement]]:
-    """Blocks of text, and the measurements, by the program that was compiled with the equations."""
+def compare_with_auto(program: Path, quick: bool, rounds: int) -> tuple[list[str], list[Measurement]]:
+    """(blocks of text for the report, measurements) of rodsweep and AUTO on the first rod of the study.
+
+    program: AUTO compiled with the rod's equations. quick: QUICK_SETTINGS only. rounds: timed rounds.
+    """
     settings = QUICK_SETTINGS if quick else SETTINGS
-    found = compared(program, RODS[0], settings, min(rounds, MOST_ROUNDS))
+    found = measure_continuation(program, RODS[0], settings, min(rounds, MAX_ROUNDS))
     return [introduction(RODS[0]), cycle_table(found), ratio_table(found)], found
 
 
-def compared(program: Path, point: Rod, settings: Sequence[AutoSetting], rounds: int) -> list[Measurement]:
-    """This tool at all targets and AUTO at all settings, timed in turn."""
-    rods, step = [swept(point, accuracy) for accuracy in ASKED], STEP * point.F
-    starts = first_cycles(replace(point, F=point.F - (MANY - 1) * step), settings)
+def measure_continuation(
+    program: Path, point: Rod, settings: Sequence[AutoSetting], rounds: int
+) -> list[Measurement]:
+    """Measurements of rodsweep at all requested accuracies and of AUTO at all settings, timed in turn."""
+    rods, step = (
+        [swept_rod(point, accuracy) for accuracy in REQUESTED_ACCURACIES],
+        RELATIVE_STEP * point.F,
+    )
+    starts = first_cycles(replace(point, F=point.F - (LONG_RUN_CYCLES - 1) * step), settings)
     runs: list[Callable[[], Any]] = [
-        partial(failsafe, partial(from_neighbour, "F", accuracy), rod)
-        for accuracy, rod in zip(ASKED, rods, strict=True)
+        partial(result_or_error, partial(solve_from_neighbour, "F", accuracy), rod)
+        for accuracy, rod in zip(REQUESTED_ACCURACIES, rods, strict=True)
     ]
     for setting in settings:
-        run = partial(continued, program, starts[setting.order], setting, step)
-        runs += [partial(failsafe, run, cycles) for cycles in (FEW, MANY)]
+        run = partial(continue_cycles, program, starts[setting.order], setting, step)
+        runs += [partial(result_or_error, run, cycles) for cycles in (SHORT_RUN_CYCLES, LONG_RUN_CYCLES)]
     raced = race(runs, [rounds] * len(runs))
-    ours, exact = len(ASKED), rods[-1].exact
+    ours, exact = len(REQUESTED_ACCURACIES), rods[-1].exact_cycle
     own = [
-        judged(
+        judged_measurement(
             exact,
-            Measurement(name_of(point), OWN, f"{accuracy:.0e}", timed.median / TIMED_POINTS, inf),
+            Measurement(rod_label(point), RODSWEEP, f"{accuracy:.0e}", timed.median / TIMED_POINT_COUNT, inf),
             timed.outcome,
         )
-        for accuracy, timed in zip(ASKED, raced[:ours], strict=True)
+        for accuracy, timed in zip(REQUESTED_ACCURACIES, raced[:ours], strict=True)
     ]
     pairs = zip(settings, raced[ours::2], raced[ours + 1 :: 2], strict=True)
     peers = [
-        judged(exact, Measurement(name_of(point), AUTO, str(setting), each(few, many), inf), many.outcome)
-        for setting, few, many in pairs
+        judged_measurement(
+            exact,
+            Measurement(rod_label(point), AUTO, str(setting), seconds_per_cycle(short, long), inf),
+            long.outcome,
+        )
+        for setting, short, long in pairs
     ]
     return own + peers
 
 
 def first_cycles(point: Rod, settings: Sequence[AutoSetting]) -> dict[int, Orbit]:
-    """AUTO's first cycle on one element of each order."""
+    """First cycle of AUTO's runs, by the order of the single element in space."""
     near = orbit_of(solve_cycle(point, cycle_request(SETTLED_WITHIN), along="F"))
     orders = {setting.order for setting in settings}
     moved = {order: near.on(mesh(1, order), REFERENCE_INTERVALS, REFERENCE_STAGES) for order in orders}
@@ -110,43 +134,49 @@ def first_cycles(point: Rod, settings: Sequence[AutoSetting]) -> dict[int, Orbit
     }
 
 
-def each(few: TimedRuns, many: TimedRuns) -> float:
-    """Seconds of one cycle."""
-    return (many.median - few.median) / (MANY - FEW)
+def seconds_per_cycle(short: TimedRuns, long: TimedRuns) -> float:
+    """AUTO's time per cycle in seconds, from its short and its long run."""
+    return (long.median - short.median) / (LONG_RUN_CYCLES - SHORT_RUN_CYCLES)
 
 
-def judged(exact: ExactCycle, m: Measurement, outcome: Any) -> Measurement:
-    """The measurement with its errors, or with the failure."""
+def judged_measurement(exact: ExactCycle, m: Measurement, outcome: Any) -> Measurement:
+    """The measurement `m` completed by the errors of its outcome, or by the reason of its failure.
+
+    outcome: `AutoCycle` of AUTO, `Cycle` of rodsweep, or the exception raised.
+    """
     if isinstance(outcome, Exception):
         return replace(m, failure=f"failed ({outcome})", seconds=nan)
-    if isinstance(outcome, Branch):
+    if isinstance(outcome, AutoCycle):
         errors = exact.at(outcome.F).errors_of(outcome.period, outcome.tip_y_max)
         multipliers = outcome.multipliers
     else:
         errors = exact.errors_of(outcome.measures.period, outcome.measures.tip_y_max)
         multipliers = Linearisation(orbit_of(outcome), NewtonWorkspace()).multipliers()
-    large = float(np.count_nonzero(np.abs(multipliers) > LARGE))
+    large = float(np.count_nonzero(np.abs(multipliers) > LARGE_MODULUS))
     return replace(m, error=max(errors.values()), extra=errors | {"large": large})
 
 
 def introduction(point: Rod) -> str:
-    """What is compared."""
+    """Description of the comparison for the report."""
     return (
         f"{AUTO} (IPS = 2, ISP = 2, NWTN = 1, the exact Jacobian compiled with -O3) continues the cycles of "
-        f"F, k1, k2, gamma3, gamma1 = {name_of(point)} with all multipliers up to this F, in {MANY - 1} "
-        f"steps of {STEP:.0%}, on one element of order p, starting from a cycle of rodsweep. The time per "
-        f"cycle is the difference between this run and a run of {FEW} cycles, so that the start does not "
-        f"count. Errors are those of the last cycle. rodsweep's time is the mean of {TIMED_POINTS} cycles "
-        f"and includes the choice of the mesh and the error estimate; {AUTO} has neither. Multipliers are "
-        f"counted beyond {LARGE:g} in modulus, with the trivial one; Gauss collocation adds spurious ones."
+        f"F, k1, k2, gamma3, gamma1 = {rod_label(point)} with all multipliers up to this F, in "
+        f"{LONG_RUN_CYCLES - 1} steps of {RELATIVE_STEP:.0%}, on one element of order p, starting from a "
+        "cycle of rodsweep. The time per cycle is the difference between this run and a run of "
+        f"{SHORT_RUN_CYCLES} cycles, so that the start does not count. Errors are those of the last cycle. "
+        f"rodsweep's time is the mean of {TIMED_POINT_COUNT} cycles and includes the choice of the mesh and "
+        "the "
+        f"error estimate; {AUTO} has neither. Multipliers are counted beyond {LARGE_MODULUS:g} in modulus, "
+        "with the trivial one; Gauss collocation adds spurious ones."
     )
 
 
 def cycle_table(measurements: Sequence[Measurement]) -> str:
-    """All methods at all settings."""
+    """Table of rodsweep and AUTO at all settings: time per cycle, errors, number of large multipliers."""
     nothing = dict.fromkeys(("period_error", "amplitude_error", "large"), nan)
-    return table(
-        f"method | setting | ms | error of period | error of amplitude | multipliers beyond {LARGE:g}",
+    return markdown_table(
+        "method | setting | ms | error of period | error of amplitude "
+        f"| multipliers beyond {LARGE_MODULUS:g}",
         "{method} | {setting} | {failure}{ms:.1f} | {period_error:.1e} | {amplitude_error:.1e} | {large:.0f}",
         [
             {"method": m.method, "setting": m.setting, "failure": m.failure, "ms": 1e3 * m.seconds}
@@ -158,24 +188,24 @@ def cycle_table(measurements: Sequence[Measurement]) -> str:
 
 
 def ratio_table(measurements: Sequence[Measurement]) -> str:
-    """At each target: the fastest setting of either that reaches it."""
+    """Table of the fastest settings of rodsweep and AUTO that reach each target error, and of their ratio."""
     rows = []
-    for target in TARGETS:
-        own, peer = (fastest(measurements, method, target) for method in (OWN, AUTO))
+    for target in TARGET_ERRORS:
+        own, peer = (fastest_measurement(measurements, method, target) for method in (RODSWEEP, AUTO))
         row = {"target": target, "own": 1e3 * own.seconds, "asked": own.setting}
         row |= {"auto": 1e3 * peer.seconds, "setting": peer.setting, "ratio": peer.seconds / own.seconds}
         rows.append(row)
     return (
         "At equal error: each method at its fastest setting in the table above that reaches the error. For "
         "rodsweep, the setting is the requested accuracy.\n\n"
-    ) + table(
+    ) + markdown_table(
         f"error | ms, rodsweep | at | ms, {AUTO} | at | times rodsweep's time",
         "{target:.0e} | {own:.1f} | {asked} | {auto:.1f} | {setting} | {ratio:.1f}",
         rows,
     )
 
 
-def fastest(measurements: Sequence[Measurement], method: str, target: float) -> Measurement:
-    """A method's fastest measurement whose error is at most a target's; NaN where there is none."""
+def fastest_measurement(measurements: Sequence[Measurement], method: str, target: float) -> Measurement:
+    """Fastest measurement of a method with an error of at most `target`; its seconds are NaN if none has."""
     enough = [m for m in measurements if m.method == method and m.error <= target]
     return min(enough, key=lambda m: m.seconds, default=Measurement("", method, "", nan, inf))

@@ -1,4 +1,4 @@
-"""Integrators that rodsweep does not use: others of PETSc, SciPy's, CVODE of SUNDIALS by scikit-sundae."""
+"""Time integrators that rodsweep does not use: further schemes of PETSc, SciPy, and CVODE of SUNDIALS."""
 
 import warnings
 from functools import partial
@@ -12,31 +12,35 @@ from rodsweep.bench.limit_cycle.integrators import (
     WAITING_TOLERANCES,
     IntegrationTask,
     IntegratorFamily,
-    by_petsc,
+    petsc_run,
 )
 from rodsweep.discretization.stress.rates import rate, rate_jacobian
 from rodsweep.solve.motion.integrator import RunEnding, Trajectory
 
-from ..installed import installed
+from ..installed import optional_module
 
-FIRST_SHARE, FIRST_MULTISTEP_SHARE = 1e-3, 1e-5
-"""First step in units of the duration; that of multistep methods, which start with order 1. LSODA fails
-where its first step is too long for the start."""
+FIRST_STEP = 1e-3
+"""First step of Radau, as a fraction of the duration."""
+FIRST_MULTISTEP_STEP = 1e-5
+"""First step of multistep methods, as a fraction of the duration. These methods start with order 1, and LSODA
+fails if the first step is too long."""
 CVODE = "CVODE"
 CVODE_MODULE = "sksundae.cvode"
-"""Of scikit-sundae, which is an optional extra (`cvode`)."""
+"""Import name of CVODE in scikit-sundae, which the optional extra `cvode` of rodsweep installs."""
 CVODE_SKIPPED = f"{CVODE} is skipped: scikit-sundae is not installed (extra `cvode`)."
-MOST_CVODE_STEPS = 200_000
+MAX_CVODE_STEPS = 200_000
+"""Maximum number of steps of an integration by CVODE."""
 
 
-def by_scipy(method: str, tolerance: float, leg: IntegrationTask) -> Trajectory:
-    """SciPy's solve_ivp.
+def scipy_run(method: str, tolerance: float, leg: IntegrationTask) -> Trajectory:
+    """Integrates a leg by SciPy's solve_ivp; ArithmeticError if the integration fails.
 
-    Its Newton test is sqrt(rtol) of the tolerance, so rtol is the tolerance too.
+    SciPy's implicit methods stop Newton's method at sqrt(rtol) times the tolerance. Hence `rtol` is set to
+    `tolerance` too.
     """
     beam, z, duration = leg
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # LSODA warns of what its success says
+        warnings.simplefilter("ignore")  # LSODA warns of a failure that `found.success` reports too
         found = scipy.integrate.solve_ivp(
             lambda _, x: beam.rate(x),
             (0.0, duration),
@@ -45,15 +49,18 @@ def by_scipy(method: str, tolerance: float, leg: IntegrationTask) -> Trajectory:
             jac=lambda _, x: beam.jacobian(x),
             rtol=tolerance,
             atol=tolerance * np.abs(z).max(),
-            first_step=(FIRST_SHARE if method == "Radau" else FIRST_MULTISTEP_SHARE) * duration,
+            first_step=(FIRST_STEP if method == "Radau" else FIRST_MULTISTEP_STEP) * duration,
         )
     if not found.success:
         raise ArithmeticError(f"SciPy {method} at {tolerance:g}: {found.message}")
     return Trajectory(RunEnding.reached, found.t, found.y.T)
 
 
-def by_cvode(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
-    """CVODE's BDF with its dense solver, through scikit-sundae."""
+def cvode_run(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
+    """Integrates a leg by CVODE's BDF with its dense linear solver; ArithmeticError if this fails.
+
+    cvode: the module CVODE_MODULE.
+    """
     beam, z, duration = leg
     arguments = beam.roots, beam.nodal, beam.mesh.matrices
     buffer = np.empty((len(z), len(z)))
@@ -72,8 +79,8 @@ def by_cvode(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
         jacfn=derivative,
         rtol=tolerance,
         atol=tolerance * np.abs(z).max(),
-        first_step=FIRST_MULTISTEP_SHARE * duration,
-        max_num_steps=MOST_CVODE_STEPS,
+        first_step=FIRST_MULTISTEP_STEP * duration,
+        max_num_steps=MAX_CVODE_STEPS,
     )
     found = solver.solve(np.array([0.0, duration]), z)
     if not found.success:
@@ -81,29 +88,35 @@ def by_cvode(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
     return Trajectory(RunEnding.reached, found.t, found.y)
 
 
-RADAU = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6)
+RADAU_TOLERANCES = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6)
 FAMILIES = (
-    IntegratorFamily("ARKIMEX 2", partial(by_petsc, "arkimex", "2e"), (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)),
-    IntegratorFamily("ARKIMEX 3", partial(by_petsc, "arkimex", "3"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
-    IntegratorFamily("ARKIMEX 4", partial(by_petsc, "arkimex", "4"), (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8)),
-    IntegratorFamily("BDF 5", partial(by_petsc, "bdf", "5"), (1e-6, 1e-7, 3e-8, 1e-8, 1e-9)),
-    IntegratorFamily("ROSW ra34pw2", partial(by_petsc, "rosw", "ra34pw2"), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7)),
-    IntegratorFamily("ROSW rodas3", partial(by_petsc, "rosw", "rodas3"), (1e-4, 1e-5, 3e-6, 1e-6, 3e-7)),
-    IntegratorFamily("SciPy BDF", partial(by_scipy, "BDF"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
+    IntegratorFamily("ARKIMEX 2", partial(petsc_run, "arkimex", "2e"), (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)),
+    IntegratorFamily("ARKIMEX 3", partial(petsc_run, "arkimex", "3"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
+    IntegratorFamily("ARKIMEX 4", partial(petsc_run, "arkimex", "4"), (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8)),
+    IntegratorFamily("BDF 5", partial(petsc_run, "bdf", "5"), (1e-6, 1e-7, 3e-8, 1e-8, 1e-9)),
+    IntegratorFamily("ROSW ra34pw2", partial(petsc_run, "rosw", "ra34pw2"), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7)),
+    IntegratorFamily("ROSW rodas3", partial(petsc_run, "rosw", "rodas3"), (1e-4, 1e-5, 3e-6, 1e-6, 3e-7)),
+    IntegratorFamily("SciPy BDF", partial(scipy_run, "BDF"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
     IntegratorFamily(
-        "SciPy Radau", partial(by_scipy, "Radau"), RADAU, (*RADAU[2:5], *WAITING_TOLERANCES[:4])
+        "SciPy Radau",
+        partial(scipy_run, "Radau"),
+        RADAU_TOLERANCES,
+        (*RADAU_TOLERANCES[2:5], *WAITING_TOLERANCES[:4]),
     ),
     IntegratorFamily(
-        "SciPy LSODA", partial(by_scipy, "LSODA"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8), WAITING_TOLERANCES
+        "SciPy LSODA",
+        partial(scipy_run, "LSODA"),
+        (1e-5, 1e-6, 3e-7, 1e-7, 1e-8),
+        WAITING_TOLERANCES,
     ),
 )
-"""BDF 5 is at the edge of its stability until the tolerance is tight."""
+"""Integrators of PETSc and SciPy with their tolerances. BDF 5 is nearly unstable at loose tolerances."""
 
 
-def families() -> tuple[IntegratorFamily, ...]:
-    """All that can be run here."""
-    module = installed(CVODE_MODULE)
+def installed_families() -> tuple[IntegratorFamily, ...]:
+    """All installed integrators: FAMILIES, and CVODE if scikit-sundae is installed."""
+    module = optional_module(CVODE_MODULE)
     ladder = (1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9)
     return FAMILIES + (
-        (IntegratorFamily(CVODE, partial(by_cvode, module), ladder, WAITING_TOLERANCES),) if module else ()
+        (IntegratorFamily(CVODE, partial(cvode_run, module), ladder, WAITING_TOLERANCES),) if module else ()
     )

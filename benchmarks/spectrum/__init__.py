@@ -1,14 +1,14 @@
-"""Peers of the spectrum: dense LAPACK, ARPACK, displacement elements, Chebyshev collocation."""
+"""Peers of the study spectrum: dense LAPACK, ARPACK, displacement elements, Chebyshev collocation."""
 
 from pathlib import Path
 
 from rodsweep.bench.peers import Peers
 from rodsweep.bench.spectrum.arms import ARM_RACE
-from rodsweep.bench.spectrum.study import RACE
+from rodsweep.bench.spectrum.study import SPECTRUM_RACE
 
 from .eigensolvers import arm_contenders, contenders
 
 
 def peers(quick: bool, place: Path) -> Peers:
-    """All of them, quick or not: who is quick takes fewer of their sizes; nothing is compiled in `place`."""
-    return Peers({RACE: contenders(), ARM_RACE: arm_contenders()})
+    """All eigensolvers at all sizes. A quick study skips sizes itself; nothing is compiled in `place`."""
+    return Peers({SPECTRUM_RACE: contenders(), ARM_RACE: arm_contenders()})

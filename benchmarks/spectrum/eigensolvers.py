@@ -1,7 +1,8 @@
-"""Eigensolvers and discretisations of others: on rodsweep's pencil, and on meshes of their own.
+"""Eigensolvers of LAPACK and SciPy on rodsweep's pencil, and on further discretisations of the rod.
 
-Each takes a rod and a size, the order of the elements or the intervals of a collocation, and gives the
-leading eigenvalues, WANTED_MODES and one more, for a pair may straddle the end, largest real part first.
+Every solver takes a rod and a size, which is the order of the elements or the number of intervals of a
+collocation. It returns the WANTED_MODES + 1 leading eigenvalues, largest real part first: the last wanted
+eigenvalue may belong to a complex pair.
 """
 
 from collections.abc import Callable
@@ -14,55 +15,58 @@ import scipy.sparse.linalg
 
 from rodsweep.arrays import Array
 from rodsweep.bench.spectrum import arms
-from rodsweep.bench.spectrum.arms import mesh_of_arm, on_arm
-from rodsweep.bench.spectrum.own import PENCIL, WANTED_MODES, leading
-from rodsweep.bench.spectrum.study import ORDERS, mesh_of
+from rodsweep.bench.spectrum.arms import mesh_of_arm, solve_next_arm
+from rodsweep.bench.spectrum.own import MODE_COUNT, PENCIL_GROUP, leading_eigenvalues
+from rodsweep.bench.spectrum.study import ORDERS, pencil_mesh
 from rodsweep.bench.study import Contender
 from rodsweep.determinant.roots.newton import refined
 from rodsweep.discretization.straight.pencil import PENCIL_NORM, assemble
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.problem import problem_of
 
-from ..lapack import Eigenvalues, inverse_spectrum, qz, whole_matrices
+from ..lapack import Eigenvalues, inverse_spectrum, qz_spectrum, whole_matrices
 
 
-def matrices_at(rod: Rod, size: int) -> tuple[Array, Array]:
-    """(A, diagonal of B) of a rod or an arm at an order, shape (unknowns, unknowns) and (unknowns,)."""
-    return whole_matrices(rod, mesh_of(size) if rod.standard else mesh_of_arm(rod, size))
+def pencil_matrices(rod: Rod, size: int) -> tuple[Array, Array]:
+    """(A, diagonal of B) of rodsweep's pencil of order `size`, shapes (unknowns, unknowns), (unknowns,)."""
+    return whole_matrices(rod, pencil_mesh(size) if rod.standard else mesh_of_arm(rod, size))
 
 
 def dense_qz(rod: Rod, size: int) -> Eigenvalues:
-    """LAPACK's QZ (ggev), eigenvalues only; s at full weight, as its rounding needs."""
-    A, B = matrices_at(rod, size)
+    """Leading eigenvalues by LAPACK's QZ (ggev). The shear unknowns are scaled to limit rounding errors."""
+    A, B = pencil_matrices(rod, size)
     scale = np.ones(len(B))
     scale[2 * len(B) // 3 :] = PENCIL_NORM.shear_weight
-    return leading(qz(A * scale[:, None] * scale, np.diag(B)), WANTED_MODES + 1)
+    return leading_eigenvalues(qz_spectrum(A * scale[:, None] * scale, np.diag(B)), MODE_COUNT + 1)
 
 
 def dense_inverse(rod: Rod, size: int) -> Eigenvalues:
-    """LAPACK's LU and geev."""
-    return leading(inverse_spectrum(*matrices_at(rod, size)), WANTED_MODES + 1)
+    """Leading eigenvalues by LAPACK's LU of A and geev of A^-1 B."""
+    return leading_eigenvalues(inverse_spectrum(*pencil_matrices(rod, size)), MODE_COUNT + 1)
 
 
 def scipy_eigs(rod: Rod, size: int) -> Eigenvalues:
-    """ARPACK through SciPy on the factorised shift-and-invert operator, with rodsweep's shift."""
-    A, B = matrices_at(rod, size)
+    """Leading eigenvalues by SciPy's ARPACK on the shift-and-invert operator with rodsweep's shift."""
+    A, B = pencil_matrices(rod, size)
     shift = problem_of(rod).shift
     factors = scipy.linalg.lu_factor(A - np.diag(shift * B), check_finite=False)
     operator = scipy.sparse.linalg.LinearOperator(
         A.shape, matvec=lambda x: scipy.linalg.lu_solve(factors, B * x, check_finite=False), dtype=float
     )
-    theta = scipy.sparse.linalg.eigs(operator, WANTED_MODES, v0=np.ones(len(B)), return_eigenvectors=False)
-    return leading(shift + 1 / theta, WANTED_MODES + 1)
+    theta = scipy.sparse.linalg.eigs(operator, MODE_COUNT, v0=np.ones(len(B)), return_eigenvectors=False)
+    return leading_eigenvalues(shift + 1 / theta, MODE_COUNT + 1)
 
 
 def lapack_on_d(rod: Rod, size: int) -> Eigenvalues:
-    """LAPACK on a coarse pencil, then Newton's method on D: what a root polisher does."""
+    """Leading eigenvalues by LAPACK on a coarse pencil, refined by Newton's method on D."""
     return np.array([refined(complex(w), rod.coefficients) for w in dense_inverse(rod, size)])
 
 
 def displacement_elements(rod: Rod, size: int) -> Eigenvalues:
-    """Spectral elements of (y, theta) alone with lumped masses, stiffnesses as they are, then geev."""
+    """Leading eigenvalues by geev on spectral elements of (y, theta) with lumped mass matrices.
+
+    The matrix contains the stiffness k2 itself, not its inverse.
+    """
     bending, couple, tip = _displacement_pieces(size)
     mu, n = rod.k2 * rod.nu + rod.F, len(tip)
     A = np.block(
@@ -72,13 +76,16 @@ def displacement_elements(rod: Rod, size: int) -> Eigenvalues:
         ]
     )
     A[n:] /= rod.gamma3
-    return leading(scipy.linalg.eigvals(A, check_finite=False), WANTED_MODES + 1)
+    return leading_eigenvalues(scipy.linalg.eigvals(A, check_finite=False), MODE_COUNT + 1)
 
 
 @lru_cache(maxsize=64)
 def _displacement_pieces(size: int) -> tuple[Array, Array, Array]:
-    """<a', b'>, <a', b> and a(1) b(1) in units of the masses, from the pencil's own pieces."""
-    mesh = mesh_of(size)
+    """Matrices of <a', b'>, <a', b> and a(1) b(1) divided by the lumped masses, (nodes, nodes) each.
+
+    a, b: shape functions. The matrices are taken from rodsweep's pencil.
+    """
+    mesh = pencil_mesh(size)
     pencil = assemble(mesh.elements, mesh.order)
     n = pencil.nodes
     whole = pencil.dense_pieces().reshape(6, 3 * n, 3 * n).transpose(0, 2, 1)
@@ -88,7 +95,7 @@ def _displacement_pieces(size: int) -> tuple[Array, Array, Array]:
 
 @lru_cache(maxsize=64)
 def _chebyshev(n: int) -> Array:
-    """The differentiation matrix at n + 1 Chebyshev points from the tip to the clamp (Trefethen's)."""
+    """Differentiation matrix, (n + 1, n + 1), at n + 1 Chebyshev points from tip to clamp (Trefethen)."""
     x = np.cos(np.pi * np.arange(n + 1) / n)
     c = np.r_[2, np.ones(n - 1), 2] * (-1) ** np.arange(n + 1)
     D = np.outer(c, 1 / c) / (x[:, None] - x + np.eye(n + 1))
@@ -96,7 +103,10 @@ def _chebyshev(n: int) -> Array:
 
 
 def chebyshev_qz(rod: Rod, size: int) -> Eigenvalues:
-    """Collocation of (y, theta) at Chebyshev points, boundary rows replaced, then QZ."""
+    """Leading eigenvalues by QZ on a collocation of (y, theta) at Chebyshev points.
+
+    Rows of the end points are replaced by the boundary conditions.
+    """
     D, one, n = _chebyshev(size), np.eye(size + 1), size + 1
     zero = np.zeros_like(one)
     mu = rod.k2 * rod.nu + rod.F
@@ -108,12 +118,14 @@ def chebyshev_qz(rod: Rod, size: int) -> Eigenvalues:
     )
     B[rows] = 0.0
     largest = np.abs(A).max(axis=1, keepdims=True)  # without it QZ finds nothing at k2 = 1e8
-    return leading(qz(A / largest, B / largest), WANTED_MODES + 1)
+    return leading_eigenvalues(qz_spectrum(A / largest, B / largest), MODE_COUNT + 1)
 
 
 def chebyshev_first_order(rod: Rod, size: int) -> Eigenvalues:
-    """The same of the first-order system in (y, theta, s, m), where no stiffness appears, on each piece of an
-    arm between two jumps.
+    """Leading eigenvalues by QZ on a Chebyshev collocation of the first-order system in (y, theta, s, m).
+
+    The first-order system contains compliances instead of stiffnesses. An arm is divided at its jumps, and
+    every segment has `size` intervals.
     """
     edges = (0.0, 1.0) if rod.standard else rod.build.breaks
     pieces = [_first_order(rod, a, b, size) for a, b in zip(edges[:-1], edges[1:], strict=True)]
@@ -128,11 +140,14 @@ def chebyshev_first_order(rod: Rod, size: int) -> Eigenvalues:
             A[rows[2:], upper[:2] - 4 * n] = -1.0
         if start < last:
             A[rows[:2], lower[2:] + 4 * n] = -1.0
-    return leading(qz(A, B), WANTED_MODES + 1)
+    return leading_eigenvalues(qz_spectrum(A, B), MODE_COUNT + 1)
 
 
 def _first_order(rod: Rod, a: float, b: float, size: int) -> tuple[Array, Array]:
-    """(A, B) of the equations at all points of the piece from a to b, from its upper end to its lower."""
+    """(A, B) of the first-order system on the segment from a to b, (4 n, 4 n) with n = size + 1 points.
+
+    The points run from the end b to the end a.
+    """
     inside = np.clip((1 + np.cos(np.pi * np.arange(size + 1) / size)) / 2, END_OF_PIECE, 1 - END_OF_PIECE)
     here = rod.local(a + (b - a) * inside)
     D = _chebyshev(size) / (b - a)
@@ -145,16 +160,20 @@ def _first_order(rod: Rod, a: float, b: float, size: int) -> tuple[Array, Array]
 
 
 INTERVALS = (10, 12, 14, 16, 18, 20, 22, 24, 28, 32, 40, 56, 80)
+"""Numbers of intervals of the Chebyshev collocations."""
 END_OF_PIECE = 1e-12
-"""Distance from a jump at which the coefficients of a piece are taken, in units of its length."""
+"""Distance from a jump, as a fraction of the segment's length, at which the coefficients at the end of a
+segment are evaluated."""
 ARM_INTERVALS = (10, 12, 14, 16, 20, 24, 32)
+"""Numbers of intervals of the Chebyshev collocation on every segment of an arm."""
 START_ORDERS = (8, 10, 11, 12, 14, 18, 24, 32, 40)
-"""Of meshes whose eigenvalues are refined on D."""
-OTHER_MESH = "other discretisations"
+"""Orders of the pencils whose eigenvalues are refined on D."""
+OTHER_MESH_GROUP = "other discretisations"
+"""Group, in a figure, of methods that do not use rodsweep's pencil."""
 
 
 class Peer(NamedTuple):
-    """What a user would write instead, and the group it belongs to in a figure."""
+    """An eigensolver with the sizes at which it is run. group: its group of curves in the figure."""
 
     name: str
     group: str
@@ -163,18 +182,18 @@ class Peer(NamedTuple):
 
 
 PEERS = (
-    Peer("dense LAPACK QZ, same pencil", PENCIL, dense_qz, ORDERS),
-    Peer("dense LAPACK LU and geev, same pencil", PENCIL, dense_inverse, ORDERS),
-    Peer("SciPy eigs (ARPACK), same pencil", PENCIL, scipy_eigs, ORDERS),
-    Peer("displacement spectral elements, geev", OTHER_MESH, displacement_elements, ORDERS),
-    Peer("Chebyshev collocation, QZ", OTHER_MESH, chebyshev_qz, INTERVALS),
-    Peer("Chebyshev, first-order system, QZ", OTHER_MESH, chebyshev_first_order, INTERVALS),
+    Peer("dense LAPACK QZ, same pencil", PENCIL_GROUP, dense_qz, ORDERS),
+    Peer("dense LAPACK LU and geev, same pencil", PENCIL_GROUP, dense_inverse, ORDERS),
+    Peer("SciPy eigs (ARPACK), same pencil", PENCIL_GROUP, scipy_eigs, ORDERS),
+    Peer("displacement spectral elements, geev", OTHER_MESH_GROUP, displacement_elements, ORDERS),
+    Peer("Chebyshev collocation, QZ", OTHER_MESH_GROUP, chebyshev_qz, INTERVALS),
+    Peer("Chebyshev, first-order system, QZ", OTHER_MESH_GROUP, chebyshev_first_order, INTERVALS),
     Peer("LAPACK on a coarse mesh, Newton on D", "roots of D", lapack_on_d, START_ORDERS),
 )
 
 
 def contenders() -> list[Contender]:
-    """All peers at all of their sizes."""
+    """All peers on a rod, at all of their sizes."""
     return [
         Contender(peer.name, str(size), peer.group, partial(peer.solve, size=size))
         for peer in PEERS
@@ -183,10 +202,10 @@ def contenders() -> list[Contender]:
 
 
 def arm_contenders() -> list[Contender]:
-    """The peers that take an arm as it is, at all of their sizes on a piece of it."""
+    """The peers that solve arms with properties that vary along the length, at all of their sizes."""
     taken = {dense_inverse: arms.ORDERS, scipy_eigs: arms.ORDERS, chebyshev_first_order: ARM_INTERVALS}
     return [
-        Contender(peer.name, str(size), peer.group, partial(on_arm, peer.solve, size))
+        Contender(peer.name, str(size), peer.group, partial(solve_next_arm, peer.solve, size))
         for peer in PEERS
         for size in taken.get(peer.solve, ())
     ]

@@ -1,4 +1,4 @@
-"""Peers of the thresholds: grids and root finding with SciPy, and continuation codes."""
+"""Peers of the study thresholds: grids and root finding with SciPy, and continuation codes."""
 
 from pathlib import Path
 
@@ -7,16 +7,18 @@ from rodsweep.bench.thresholds.study import HOPF, ONSET
 
 from ..auto import AUTO
 from .continuation import BEYOND_HOPF, PYCONT, continuation_codes
-from .spectra_by_force import MARCH, MESH_ACCURACY, contenders
+from .spectra_by_force import BRACKETING_STEP, MESH_ACCURACY, contenders
 
 SEARCHES = (
     "The peers search for the first change in 0 < F < 60 (140 for the narrow window of flutter, 74.83 to "
     f"75.98), prove nothing, and use a mesh with an error of {MESH_ACCURACY:.0e}. Grids and steps: dense "
-    f"LAPACK (LU and geev) on rodsweep's pencil at every force; steps are {MARCH:g} in F until a sign "
+    f"LAPACK (LU and geev) on rodsweep's pencil at every force; steps are {BRACKETING_STEP:g} in F until a "
+    "sign "
     "changes. Continuation codes follow u = 0 of du/dt = M(F) u, the same pencil without the unknowns "
     "without time derivative."
 )
-CODES = {
+"""Description of the peers' searches for the report."""
+CODE_NOTES = {
     AUTO: f"{AUTO} starts at F = 0; the times include the start of the program, not the compilation.",
     PYCONT: (
         f"{PYCONT} multiplies by M only. It starts where a pair already leads, and ends {BEYOND_HOPF:g} "
@@ -24,14 +26,18 @@ CODES = {
         "wrong by percents, or missing. The first vectors are random, and the results vary."
     ),
 }
+"""Remarks on the continuation codes for the report, by code."""
 
 
 def peers(quick: bool, place: Path) -> Peers:
-    """For the onset grids and searches, for the Hopf point continuation codes too."""
+    """Grids and root finding for the onset; for the Hopf point also continuation codes.
+
+    quick: fewer settings. place: directory in which AUTO-07p is compiled.
+    """
     codes, skipped = continuation_codes(place, quick)
     names = dict.fromkeys(code.method for code in codes)
     return Peers(
         contenders={ONSET: contenders(ONSET, quick), HOPF: contenders(HOPF, quick) + codes},
-        notes=(SEARCHES, *(CODES[name] for name in names)),
+        notes=(SEARCHES, *(CODE_NOTES[name] for name in names)),
         skipped=tuple(skipped),
     )

@@ -1,6 +1,6 @@
-"""The Hopf point by continuation codes: AUTO-07p, compiled into a program of its own, and PyCont-Lite.
+"""The first Hopf point by continuation codes: AUTO-07p, compiled with the equations, and PyCont-Lite.
 
-Both follow u = 0 of the ordinary differential equation du/dt = M(F) u.
+Both codes follow the equilibrium u = 0 of the ordinary differential equation du/dt = M(F) u.
 """
 
 import contextlib
@@ -17,16 +17,18 @@ from rodsweep.arrays import Array
 from rodsweep.bench.study import Contender
 from rodsweep.bench.thresholds.study import FirstThreshold, ThresholdCase
 
-from ..auto import AUTO, SKIPPED, auto_program, run_auto, table_lines
-from ..installed import installed
-from .spectra_by_force import affine
+from ..auto import AUTO, AUTO_SKIPPED, auto_program, run_auto, table_lines
+from ..installed import optional_module
+from .spectra_by_force import affine_pencil
 
 AUTO_SETTINGS = ((5.0, 1e-7), (1.0, 1e-4), (1.0, 1e-10))
-"""(step in F, EPSS)."""
+"""Settings of AUTO-07p: (step in F, EPSS, the relative tolerance of special points)."""
 PYCONT_STEPS = (0.25, 0.5)
-"""From 0.5 upwards it is chance on some rods whether it finds the Hopf point; quick runs do without 0.5."""
+"""Steps of PyCont-Lite in F. With steps of 0.5 or more, PyCont-Lite finds the Hopf point of some rods only by
+chance. Quick runs omit 0.5."""
 PYCONT = "PyCont-Lite"
-CONTINUATION = "continuation"
+CONTINUATION_GROUP = "continuation"
+"""Group of the continuation codes in the figure."""
 EQUATIONS = """
 subroutine func(ndim, u, icp, par, ijac, f, dfdu, dfdp)
   integer ndim, icp(*), ijac
@@ -49,7 +51,7 @@ subroutine stpnt(ndim, u, par, t)
   u = 0
   par(1) = 0
 end subroutine
-subroutine pvls(ndim, u, par)  ! called wherever AUTO has solved, and so with every force it looks at
+subroutine pvls(ndim, u, par)  ! AUTO calls this at every solution, hence for every force that it tries
   integer ndim
   double precision u(ndim), par(*)
   write (*, '("at", es25.16)') par(1)
@@ -61,49 +63,57 @@ end subroutine
 subroutine fopt
 end subroutine
 """
-CONSTANTS = """NDIM={unknowns}, IPS=1, IRS=0, ILP=0, ISP=1, ISW=1, MXBF=0, NPAR=1, JAC=1, IID=0
+"""Fortran subroutines of du/dt = M(F) u for AUTO-07p; they read M0, M1 and M2 from the file `matrices`."""
+AUTO_CONSTANTS = """NDIM={unknowns}, IPS=1, IRS=0, ILP=0, ISP=1, ISW=1, MXBF=0, NPAR=1, JAC=1, IID=0
 ICP=[1], UZSTOP={{1: {top!r}}}, STOP=['HB1']
 NMX=9999, NPR=0, ITMX=20, ITNW=5, EPSL=1e-9, EPSU=1e-9, EPSS={tolerance!r}
 DS={step!r}, DSMIN=1e-3, DSMAX={step!r}, IADS=0
 """
+"""Content of AUTO's constants file for a continuation in F to the first Hopf point, a format of `str.format`.
+"""
 HOPF_POINT = "3"
-"""In AUTO's file fort.7: the third word of the line of a Hopf point."""
+"""Third word of the line of a Hopf point in AUTO's table fort.7."""
 DIFFERENCE_STEP = 1e-8
-"""Of the code's differences, which are exact on a linear field, and in its search for the root."""
-CHECKED = 5
-"""The code looks for special points after so many steps."""
+"""Step of PyCont-Lite's finite differences, which are exact for a linear field, and of its root finding."""
+STEPS_BETWEEN_CHECKS = 5
+"""Number of steps after which PyCont-Lite looks for special points."""
 PYCONT_MODULE = "pycont"
-"""Of PyCont-Lite, which is an optional extra (`bench`)."""
-HEAD_START, BEYOND_HOPF = 0.1, 6.0
-"""Where it starts, as a share of the way from onset to Hopf point, and how far beyond it ends."""
+"""Import name of PyCont-Lite, which the optional extra `bench` of rodsweep installs."""
+START_FRACTION = 0.1
+"""Start of PyCont-Lite, as a fraction of the interval of F from the onset to the Hopf point."""
+BEYOND_HOPF = 6.0
+"""Distance in F beyond the Hopf point at which PyCont-Lite ends."""
 
 
 def continuation_codes(directory: Path, quick: bool) -> tuple[list[Contender], list[str]]:
-    """Those that are here, and a line for each that is not; programs are compiled in the directory."""
+    """(the installed continuation codes at their settings, a sentence for each code that is missing).
+
+    AUTO-07p is compiled in `directory`. quick: fewer steps of PyCont-Lite.
+    """
     found, skipped = [], []
     if program := auto_program(directory, EQUATIONS):
         for step, tolerance in AUTO_SETTINGS:
             by_auto = partial(hopf_by_auto, program, step, tolerance)
-            found.append(Contender(AUTO, f"step {step:g}, EPSS {tolerance:.0e}", CONTINUATION, by_auto))
+            found.append(Contender(AUTO, f"step {step:g}, EPSS {tolerance:.0e}", CONTINUATION_GROUP, by_auto))
     else:
-        skipped.append(SKIPPED)
-    if module := installed(PYCONT_MODULE):
+        skipped.append(AUTO_SKIPPED)
+    if module := optional_module(PYCONT_MODULE):
         for step in PYCONT_STEPS[: 1 if quick else None]:
             by_pycont = partial(hopf_by_pycont, module, step)
-            found.append(Contender(PYCONT, f"step {step:g}", CONTINUATION, by_pycont, slow=True))
+            found.append(Contender(PYCONT, f"step {step:g}", CONTINUATION_GROUP, by_pycont, slow=True))
     else:
         skipped.append(f"{PYCONT} is skipped: it is not installed (extra `bench`).")
     return found, skipped
 
 
-def reduced(case: ThresholdCase) -> Array:
-    """M0, M1, M2 of M(F) = M0 + F M1 + F^2 M2, shape (3, n, n).
+def matrix_polynomial(case: ThresholdCase) -> Array:
+    """M0, M1, M2 of M(F) = M0 + F M1 + F^2 M2 in du/dt = M(F) u, shape (3, n, n).
 
-    A = A0 + F A1 of the pencil, B is diagonal; what carries no time derivative is eliminated. Raises
-    ArithmeticError where the block to be eliminated depends on F, which is so for gamma3 = 0 with a finite k1
-    or k2, or is singular, for c2 = 0 < gamma3.
+    The pencil has A = A0 + F A1 and a diagonal B. Unknowns without a time derivative are eliminated. Raises
+    ArithmeticError if the eliminated block depends on F, as for gamma3 = 0 with a finite k1 or k2, or if it
+    is singular, as for c2 = 0 < gamma3.
     """
-    A0, A1, B = affine(case)
+    A0, A1, B = affine_pencil(case)
     n = int(np.count_nonzero(B))
     if A1[n:, n:].any() or not A0[n:, n:].any():
         raise ArithmeticError("the pencil does not reduce to a polynomial in F")
@@ -114,29 +124,32 @@ def reduced(case: ThresholdCase) -> Array:
 
 
 def hopf_by_auto(program: Path, step: float, tolerance: float, case: ThresholdCase) -> FirstThreshold:
-    """AUTO-07p from F = 0 in equal steps up to the first Hopf point, located to its EPSS = tolerance."""
-    pieces = reduced(case)
+    """The first Hopf point by AUTO-07p, from F = 0 in equal steps; tolerance: EPSS, of the located point."""
+    pieces = matrix_polynomial(case)
     with tempfile.TemporaryDirectory(dir=program.parent) as place:
         directory = Path(place)
         (directory / "matrices").write_bytes(pieces.transpose(0, 2, 1).tobytes())
-        constants = CONSTANTS.format(unknowns=pieces.shape[1], top=case.top, tolerance=tolerance, step=step)
+        constants = AUTO_CONSTANTS.format(
+            unknowns=pieces.shape[1], top=case.search_end, tolerance=tolerance, step=step
+        )
         said, points = run_auto(program, directory, constants), table_lines(directory)
     at = [float(line.split()[1]) for line in said.splitlines() if line.startswith("at")]
     solves = 1 + int(np.count_nonzero(np.diff(at)))
     rounded = [float(words[4]) for words in points if words[2] == HOPF_POINT]
-    # fort.7 has eleven digits of the force, the output all.
+    # fort.7 states eleven digits of the force, the standard output all digits.
     force = min(at, key=lambda F: abs(F - rounded[0])) if rounded else nan
     return FirstThreshold(force, solves)
 
 
 def hopf_by_pycont(pycont: Any, step: float, case: ThresholdCase) -> FirstThreshold:
-    """PyCont-Lite from where a pair leads already: through the onset it loses what it follows.
+    """The first Hopf point by PyCont-Lite, started beyond the onset, where a complex pair leads.
 
-    It cannot be told to stop at the first Hopf point and so is stopped soon after.
+    Started below the onset, PyCont-Lite loses the followed eigenvalue there. PyCont-Lite has no option to
+    stop at the first Hopf point; hence the run ends BEYOND_HOPF above the known Hopf point.
     """
-    M0, M1, M2 = reduced(case)
-    last = case.top if isnan(case.hopf) else case.hopf
-    start, end = case.onset + HEAD_START * (last - case.onset), min(last + BEYOND_HOPF, case.top)
+    M0, M1, M2 = matrix_polynomial(case)
+    last = case.search_end if isnan(case.hopf) else case.hopf
+    start, end = case.onset + START_FRACTION * (last - case.onset), min(last + BEYOND_HOPF, case.search_end)
     products = 0
 
     def field(u: Array, F: float) -> Array:
@@ -153,7 +166,7 @@ def hopf_by_pycont(pycont: Any, step: float, case: ThresholdCase) -> FirstThresh
         "hopf_detection": True,
         "limit_cycle_continuation": False,
     }
-    steps = ceil((end - start) / step) + CHECKED
+    steps = ceil((end - start) / step) + STEPS_BETWEEN_CHECKS
     with contextlib.redirect_stdout(io.StringIO()), np.errstate(all="ignore"):
         found = pycont.arclengthContinuation(
             field, np.zeros(len(M0)), start, step / 1e3, step, step, steps, options, 0

@@ -1,4 +1,4 @@
-"""`rs.Arm`: an arm in SI units, with its flutter range and all tasks of a rod."""
+"""`rs.Arm`: an arm in SI units, with its range of flutter thresholds and all tasks of a rod."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -12,8 +12,15 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import LOADS, SECTION_SIDES
 from ..model.units import Given
 from .answers.answer import Answer
-from .asking import job_from, known_load, tree_of
-from .options import OfBranch, OfCriticality, OfLimitCycle, OfModes, OfSpectrum, OfThresholds
+from .asking import config_tree, job_from, with_load_in_si
+from .options import (
+    BranchKeywords,
+    CriticalityKeywords,
+    LimitCycleKeywords,
+    ModesKeywords,
+    SpectrumKeywords,
+    ThresholdsKeywords,
+)
 from .solving import solve_here
 
 if TYPE_CHECKING:
@@ -21,15 +28,15 @@ if TYPE_CHECKING:
     from ..verdict.flutter import FlutterRange
     from .answers.rod_portrait import RodPortrait
 
-EXAMPLE = 'rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s", pressure="2 kPa")'
-EXCLUSIVE = (
+ARM_EXAMPLE = 'rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s", pressure="2 kPa")'
+EXCLUSIVE_QUANTITIES = (
     tuple((load,) for load in LOADS),
     SECTION_SIDES,
     (("segments",), (*SECTION_SIDES[0], *SECTION_SIDES[1])),
     (("inner_radius",), ("tip_radius",)),
 )
-"""Pairs of exclusive sets of quantities: setting a quantity of either set removes the quantities of the
-opposite set."""
+"""Pairs of sets of quantities that exclude each other: `Arm.replace` with a quantity of one set removes all
+quantities of the other set."""
 
 
 @dataclass(frozen=True, kw_only=True, init=False, repr=False)
@@ -47,28 +54,32 @@ class Arm(SlenderArm):
     InputError if the quantities describe no slender arm.
     """
 
-    __init__ = in_sentences(EXAMPLE)(SlenderArm.__init__)
+    __init__ = in_sentences(ARM_EXAMPLE)(SlenderArm.__init__)
 
     @cached_property
     def flutter(self) -> "FlutterRange":
-        """Flutter threshold and frequency in the arm's plane of motion, over the range of its drag."""
+        """Flutter threshold and frequency in the arm's plane of motion, over the uncertainty of its drag."""
         from ..verdict.flutter import flutter_range
 
         return flutter_range(self)
 
     def report(self) -> "ArmReport":
-        """Verdict, numbers with formulas and sources, and effects neglected by the model."""
+        """Report on the arm: verdict, numbers with formulas and sources, and effects that the model
+        neglects.
+        """
         from ..verdict.arm import report_on
 
         return report_on(self)
 
     @in_sentences('arm.replace(length="12 cm")')
     def replace(self, **changed: Given | None) -> "Arm":
-        """A copy with changed quantities. A force replaces a pressure; width and height replace a radius;
-        segments replace radius, width, height and length.
+        """A copy of the arm with changed quantities.
+
+        A force replaces a pressure; width and height replace a radius; segments replace radius, width, height
+        and length.
         """
         gone: dict[str, None] = {}
-        for one, other in EXCLUSIVE:
+        for one, other in EXCLUSIVE_QUANTITIES:
             for new, old in ((one, other), (other, one)):
                 if any(changed.get(name) is not None for name in new):
                     gone |= dict.fromkeys(old)
@@ -78,49 +89,51 @@ class Arm(SlenderArm):
 
     @property
     def turned(self) -> "Arm":
-        """The arm in the second plane of its rectangular section, width and height exchanged; a round arm
-        unchanged.
+        """The arm that moves in the second plane of its rectangular section: width and height are exchanged.
+
+        A round arm is returned unchanged.
         """
         return self if self.radius or self.segments else self.replace(width=self.height, height=self.width)
 
     @cached_property
     def loaded(self) -> "Arm":
-        """The arm with its load as a quantity; a load relative to flutter needs a solve for the flutter
-        threshold.
+        """The arm with its load as a pressure or force in SI units.
+
+        For a load relative to flutter, the flutter threshold is solved first.
         """
-        return known_load(self)
+        return with_load_in_si(self)
 
     @in_sentences("arm.thresholds(F_max=100)")
-    def thresholds(self, **options: Unpack[OfThresholds]) -> Answer:
+    def thresholds(self, **options: Unpack[ThresholdsKeywords]) -> Answer:
         """Loads at which the arm starts to oscillate, flutters, and becomes stable again. The arm needs no
         load.
         """
         return self._answer("thresholds", options)
 
     @in_sentences("arm.spectrum(modes=4)")
-    def spectrum(self, **options: Unpack[OfSpectrum]) -> Answer:
+    def spectrum(self, **options: Unpack[SpectrumKeywords]) -> Answer:
         """The leading eigenvalues under the arm's load."""
         return self._answer("spectrum", options)
 
     @in_sentences("arm.modes(nodes=65)")
-    def modes(self, **options: Unpack[OfModes]) -> Answer:
+    def modes(self, **options: Unpack[ModesKeywords]) -> Answer:
         """The leading modes under the arm's load, and their transient growth."""
         return self._answer("modes", options)
 
     @in_sentences("arm.cycle(harmonics=8)")
-    def limit_cycle(self, **options: Unpack[OfLimitCycle]) -> Answer:
+    def limit_cycle(self, **options: Unpack[LimitCycleKeywords]) -> Answer:
         """The limit cycle under the arm's load: period, amplitude, energy, Floquet multipliers."""
         return self._answer("limit_cycle", options)
 
     cycle = limit_cycle
 
     @in_sentences("arm.criticality(F_max=100)")
-    def criticality(self, **options: Unpack[OfCriticality]) -> Answer:
+    def criticality(self, **options: Unpack[CriticalityKeywords]) -> Answer:
         """Criticality of every Hopf point, and how its branch of cycles grows."""
         return self._answer("criticality", options)
 
     @in_sentences('arm.branch(along="F")')
-    def branch(self, **options: Unpack[OfBranch]) -> Answer:
+    def branch(self, **options: Unpack[BranchKeywords]) -> Answer:
         """The branches of cycles, stable or not, followed from every Hopf point to their ends."""
         return self._answer("branch", options)
 
@@ -139,7 +152,7 @@ class Arm(SlenderArm):
         from .answers.rod_portrait import portrait_of
 
         default = {each.name: each.default for each in fields(self)}
-        section = tree_of("thresholds", {"arm": self})["parameters"]["arm"]
+        section = config_tree("thresholds", {"arm": self})["parameters"]["arm"]
         given = {name: value for name, value in section.items() if value != default[name]}
         own = DescribedRod(arm=given, load=self.load or LOADS[0])
         return portrait_of(repr(self), PortraitRequest(rod=own, F_max=F_max, accuracy=accuracy), progress)
@@ -156,19 +169,20 @@ class Arm(SlenderArm):
         takes_load = "F" in CONFIGS[task].taken_of_a_rod(options)
         if takes_load and self.load is None:
             raise InputError(
-                f"{task} needs a load; give one by arm.replace(pressure='2 kPa'), or '1.2 of flutter'"
+                f"{task} needs a load; give one, such as arm.replace(pressure='2 kPa') or "
+                "arm.replace(pressure='1.2 of flutter')"
             )
-        solved = solve_here(job_from(tree_of(task, {"arm": self} | options)), progress=progress)
+        solved = solve_here(job_from(config_tree(task, {"arm": self} | options)), progress=progress)
         return Answer(repr(self), solved, "; ".join(filter(None, (solved.messages[0], self._plane))))
 
     @property
     def _plane(self) -> str:
-        """Warning for a rectangular section if it bends more easily out of the computed plane; else ""."""
+        """Warning for a rectangular section that bends more easily out of the plane of motion; else ""."""
         if not self.si.height > self.si.width:
             return ""
         return (
-            "it moves in the plane of its height, and flutters first in the other, at a lower load: "
-            "arm.turned"
+            "the arm moves in the plane of its height, but it flutters first in the plane of its width, at a "
+            "lower load; arm.turned moves in that plane"
         )
 
     @property

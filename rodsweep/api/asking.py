@@ -1,4 +1,4 @@
-"""Conversion of a call's keywords into the job of a config file with the same keys."""
+"""Conversion of the keyword arguments of a call into a config tree, and of the tree into a validated job."""
 
 import os
 from collections.abc import Collection, Mapping
@@ -20,22 +20,24 @@ from ..model.arm.drag import DRAGS
 from ..model.arm.quantities import LOADS, RELATIVE
 from ..model.material.build import STANDARD
 from ..solve.exclusive import signals_held
-from ..tasks.running.job import Job, job_of, memory
+from ..tasks.running.job import Job, job_of, machine_memory
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)
-DEFAULT_WORDS = {"drag": DRAGS[0], "law": STANDARD.law, "section": STANDARD.section}
-"""Default values of an arm's keys, which a config omits."""
-Tree = dict[str, Any]
-"""Keys and values as YAML would read them."""
+"""Class of an arm."""
+DEFAULT_VALUES = {"drag": DRAGS[0], "law": STANDARD.law, "section": STANDARD.section}
+"""Default values of keys of an arm; a config tree omits keys with these values."""
+ConfigTree = dict[str, Any]
+"""Config tree: keys and values as read from a YAML config."""
 
 
-def tree_of(task: str, keywords: Mapping[str, Any]) -> Tree:
-    """Config tree from keywords: each key is put into the section that knows it, or knows the nearest name.
+def config_tree(task: str, keywords: Mapping[str, Any]) -> ConfigTree:
+    """Config tree of a task from keyword arguments: every key is put into the section to which it belongs.
 
-    A whole section may be given as a mapping, as read from YAML. Raises InputError for a masked value, and
-    for a name without a near key.
+    A misspelt key is put into the section with the most similar key, so that validation names that key. A
+    whole section may be given as a mapping. Raises InputError for a masked value, and for a key that
+    resembles none.
     """
-    tree: Tree = {"task": plain_keyword("task", task)}
+    tree: ConfigTree = {"task": plain_keyword("task", task)}
     if not isinstance(task, str) or task not in CONFIGS:
         return tree
     sections = _sections(task)
@@ -52,22 +54,22 @@ def tree_of(task: str, keywords: Mapping[str, Any]) -> Tree:
     return tree
 
 
-def _write_out_arm(task: str, tree: Tree) -> None:
-    """Replaces an `rs.Arm` by the arm's quantities. The load is included only if the task takes a load."""
+def _write_out_arm(task: str, tree: ConfigTree) -> None:
+    """Replaces an `rs.Arm` in the tree by its quantities; the load only if the task takes a load."""
     parameters = tree.get("parameters", {})
     arm = parameters.get("arm")
     if isinstance(arm, SlenderArm):
         loaded = "F" in CONFIGS[task].taken_of_a_rod(tree.get(task, {}))
         names = [n for n in ArmSection.model_fields if n not in RELATIVE and (loaded or n not in LOADS)]
-        known = known_load(arm) if loaded else arm
+        known = with_load_in_si(arm) if loaded else arm
         given = {name: getattr(known, name) for name in names}
-        for name, default in DEFAULT_WORDS.items():
+        for name, default in DEFAULT_VALUES.items():
             given[name] = None if given[name] == default else given[name]
-        parameters["arm"] = {name: plain(value) for name, value in given.items() if value is not None}
+        parameters["arm"] = {name: plain_value(value) for name, value in given.items() if value is not None}
 
 
-def known_load(arm: ArmKind) -> ArmKind:
-    """The arm with its load as a quantity. A load relative to flutter starts PETSc and solves for flutter."""
+def with_load_in_si(arm: ArmKind) -> ArmKind:
+    """The arm with its load in SI units. For a load relative to flutter, the flutter threshold is solved."""
     if arm.share_of_flutter is None:
         return arm
     from ..verdict.planes import with_known_load
@@ -76,23 +78,28 @@ def known_load(arm: ArmKind) -> ArmKind:
 
 
 @signals_held
-def job_from(tree: Tree) -> Job:
-    """The validated job of a config tree; InputError, in the words of the command line, for bad input."""
+def job_from(tree: ConfigTree) -> Job:
+    """The validated job of a config tree; InputError, as on the command line, for bad input.
+
+    Raises InputError also if the results do not fit into memory.
+    """
     config = validated(with_files_read(tree, Path()))
     job = job_of(Path(config.task), config, tree)
     size = job.points.count * job.layout.bytes_per_point
-    if size > memory():
+    if size > machine_memory():
         raise InputError(
             f"the results of {job.points.count:.6g} points take {size / 1e9:.3g} GB, more than the "
-            f"{memory() / 1e9:.3g} GB of memory of this machine; `rodsweep run` writes them into a file"
+            f"{machine_memory() / 1e9:.3g} GB of memory of this machine; `rodsweep run` writes them into a "
+            "file"
         )
     return job
 
 
-def refuse_unfit(tree: Tree) -> None:
-    """Raises InputError for a config tree that `job_from` refuses, before the ranks of a run start.
+def refuse_unfit(tree: ConfigTree) -> None:
+    """Raises InputError for a config tree that `job_from` refuses, before any rank of a run starts.
 
-    Points with a load relative to flutter are left to the run, whose ranks share the search for flutter.
+    For loads relative to flutter only the config is validated, because the points need a search for flutter,
+    which the ranks of the run share.
     """
     arm = validated(with_files_read(tree, Path())).parameters.arm
     if arm is None or arm.load_axis not in RELATIVE:
@@ -100,7 +107,7 @@ def refuse_unfit(tree: Tree) -> None:
 
 
 def _sections(task: str) -> dict[str, Collection[str]]:
-    """Known keys of each section of a task by the section's name; "" is the top level."""
+    """Allowed keys of each section of a task's config, by name of the section; "" is the top level."""
     fields = CONFIGS[task].model_fields
     inner: dict[str, Any] = {name: fields[name].annotation for name in (task, "parameters")}
     inner["material"] = MaterialSection
@@ -109,15 +116,15 @@ def _sections(task: str) -> dict[str, Collection[str]]:
 
 
 def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str | None:
-    """Name of the section with a given key; None if no section has the key."""
+    """Name of the section that has the key `name`; None if no section has it."""
     return next((section for section, known in sections.items() if name in known), None)
 
 
 def _meant(name: str, sections: Mapping[str, Collection[str]]) -> str:
-    """The known key nearest to an unknown one.
+    """The allowed key that is most similar to the unknown key `name`.
 
-    A quantity of an arm given outside its section yields any known key: validation then names the right
-    section. Raises InputError with a list of all keys if no key is near.
+    For a quantity of an arm, which belongs into another section, any allowed key is returned: validation then
+    names the right section. Raises InputError with a list of all keys if no key is similar.
     """
     known = [key for keys in sections.values() for key in keys]
     close = nearest(name, known)
@@ -127,7 +134,7 @@ def _meant(name: str, sections: Mapping[str, Collection[str]]) -> str:
 
 
 class AxisRange(TypedDict):
-    """A range of values in the form of a config."""
+    """An axis of a sweep as a range: the keys of a range in a config."""
 
     start: float | str
     stop: float | str
@@ -137,59 +144,62 @@ class AxisRange(TypedDict):
 
 @in_sentences("rs.linspace(0, 10, num=11)")
 def linspace(start: float | str, stop: float | str, num: int) -> AxisRange:
-    """`num` equally spaced values from start to stop, as an axis of a sweep; quantities of an arm such as "2
-    kPa" too.
+    """An axis of a sweep with `num` equally spaced values from start to stop.
+
+    For a quantity of an arm, start and stop have units, as "2 kPa".
     """
     return _range(start, stop, num, "linear")
 
 
 @in_sentences("rs.logspace(10, 1e6, num=31)")
 def logspace(start: float | str, stop: float | str, num: int) -> AxisRange:
-    """`num` values from start to stop with equal ratios, as an axis of a sweep.
+    """An axis of a sweep with `num` values from start to stop in equal ratios.
 
-    `start` and `stop` are the end values, as for NumPy's `geomspace`, not exponents.
+    start and stop are the end values, as for NumPy's `geomspace`, not exponents.
     """
     return _range(start, stop, num, "log")
 
 
 def _range(start: float | str, stop: float | str, num: int, spacing: str) -> AxisRange:
-    """A range in the form of a config; InputError for a masked value."""
+    """An axis of a sweep as a range; InputError for a masked value."""
     for name, value in (("start", start), ("stop", stop), ("num", num)):
         if np.ma.is_masked(value):
-            raise InputError(f"{name} is masked, so it is not a number")
+            raise InputError(f"{name} is masked, so it is not a number; give a number")
     return {"start": start, "stop": stop, "num": num, "spacing": spacing}
 
 
-def plain(value: Any) -> Any:
-    """A value in Python types: arrays and tuples become lists, NumPy scalars numbers, paths text.
+def plain_value(value: Any) -> Any:
+    """A value in the types of a YAML config: arrays and tuples become lists, NumPy scalars numbers, paths
+    text.
 
-    pint quantities and arrays of them become text with their unit. Raises ValueError for masked values.
+    pint quantities become texts with units, and arrays of pint quantities lists of texts. Raises ValueError
+    for masked values.
     """
     if isinstance(value, dict):
-        return {key: plain(item) for key, item in value.items()}
+        return {key: plain_value(item) for key, item in value.items()}
     if isinstance(value, list | tuple | range):
-        return [plain(item) for item in value]
+        return [plain_value(item) for item in value]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if hasattr(value, "to_base_units"):  # a pint quantity; np.asarray would drop its unit
-        return _with_unit(plain(value.magnitude), f"{value.units:~C}")
+        return _with_unit(plain_value(value.magnitude), f"{value.units:~C}")
     if np.ma.is_masked(value):
-        raise ValueError("a value is masked, so it is not a number; leave it out")
+        raise ValueError("a value of the array is masked, so it is not a number; leave it out")
     if hasattr(value, "__array__"):
         return np.asarray(value).tolist()
     return value
 
 
 def plain_keyword(key: str, value: Any) -> Any:
-    """`plain` of the value of a keyword; InputError, naming the key, for a masked value."""
+    """The value of the keyword `key` in the types of a YAML config; InputError for a masked value."""
     try:
-        return plain(value)
+        return plain_value(value)
     except ValueError as error:
         raise InputError(f"{key}: {error}") from None
 
 
 def _with_unit(value: Any, unit: str) -> Any:
-    """Appends a unit to a number, or to each number of a list; without a unit the value is unchanged."""
+    """Text of a number with a unit, or list of such texts for a list; the value itself if `unit` is empty."""
     if isinstance(value, list):
         return [_with_unit(item, unit) for item in value]
     return f"{value!r} {unit}" if unit else value

@@ -1,4 +1,4 @@
-"""Result files as xarray Datasets, and Datasets in the form that figures and tables read."""
+"""Result files as xarray Datasets, and Datasets as the views that figures and tables read."""
 
 import json
 import os
@@ -23,21 +23,22 @@ from ..results.run.journal import journal_directory
 from ..solve.exclusive import one_at_a_time
 
 ENGINE = "h5netcdf"
+"""Backend with which xarray reads result files."""
 
 
 @one_at_a_time
 @in_sentences('rs.open("RESULT.h5")')
 def open_result(path: str | Path) -> xr.Dataset:
-    """Reads a whole result file into memory. For a running sweep, the points done so far are included.
+    """Reads a whole result file into memory, including the points that a running sweep has solved so far.
 
-    Raises InputError if the file is no result, is damaged, or was changed by another program.
+    Raises InputError if the file is no result file, is damaged, or was changed by another program.
     """
-    path = file_path(path, 'rs.open("RESULT.h5")')
+    path = named_file_path(path, 'rs.open("RESULT.h5")')
     return read_unfolded(path, lambda: _opened(path))
 
 
-def file_path(given: object, example: str) -> Path:
-    """Path of a file named by the user; InputError, with an example, if `given` is no file name."""
+def named_file_path(given: object, example: str) -> Path:
+    """Path of a file named by the user; InputError, with `example`, if `given` is no file name."""
     if not isinstance(given, str | os.PathLike) or not isinstance(name := os.fspath(given), str):
         raise InputError(f"{short(given)} is not the name of a file; write it as in {example}")
     if not name or "\0" in name:
@@ -53,26 +54,31 @@ def _opened(path: Path) -> xr.Dataset:
     for variable in data.variables.values():
         variable.attrs = {name: cleaned(value) for name, value in variable.attrs.items()}
     data.attrs = {name: cleaned(value) for name, value in data.attrs.items()}
-    data = ordered(data, header.layout, header.config)
+    data = in_layout_order(data, header.layout, header.config)
     if journal_directory(path).is_dir():
         recent = journalled_points(header, data["status"].values.ravel())
         for name in data.variables.keys() & recent.dtype.fields.keys():
             put_in(data[name].values, str(name), recent)
         data.attrs |= journalled_reasons(header)
-        data = sealed(data)
-    return selectable(data)
+        data = with_checksums(data)
+    return with_arm_selection(data)
 
 
-def selectable(data: xr.Dataset) -> xr.Dataset:
-    """Makes the quantities of an arm selectable along an axis, such as F by pressure."""
+def with_arm_selection(data: xr.Dataset) -> xr.Dataset:
+    """The Dataset with an index for every quantity of an arm along an axis, so that `sel` accepts the
+    quantity.
+    """
     for name in STORED_ALONG:
         if name in data.coords and data[name].dims == (STORED_ALONG[name],) and name not in data.xindexes:
             data = data.set_xindex(name)
     return data
 
 
-def ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
-    """The Dataset with its variables in the order of the layout. HDF5 stores variables alphabetically."""
+def in_layout_order(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
+    """The Dataset with its variables in the order of the layout, as HDF5 stores variables alphabetically.
+
+    config: the config as a tree of keys.
+    """
     declared = (*layout.variables, *beside_points(config, "point" not in data.dims))
     places = {name: i for i, name in enumerate([*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in declared)])}
     names = sorted(data.variables, key=lambda name: places.get(str(name), len(places)))
@@ -82,7 +88,7 @@ def ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Data
 
 
 def _loaded(path: Path, header: ResultHeader) -> xr.Dataset:
-    """A whole file as read by xarray; InputError if values or dimensions differ from the checksums."""
+    """A whole result file as read by xarray; InputError if values or dimensions differ from its checksums."""
     digests = json.loads(header.attributes[SEAL_ATTRIBUTE])["variables"]
     with reading(path):
         try:
@@ -90,16 +96,15 @@ def _loaded(path: Path, header: ResultHeader) -> xr.Dataset:
                 data = stored.load()
         except Exception as error:  # xarray and its engine raise many types on foreign attributes
             raise ValueError(reason_of(error)) from error
-        found = json.loads(sealed(data).attrs[SEAL_ATTRIBUTE])["variables"]
+        found = json.loads(with_checksums(data).attrs[SEAL_ATTRIBUTE])["variables"]
         for name, digest in digests.items():
             if found.get(name) != digest:
                 raise ValueError(f"its variable {name} was changed after rodsweep wrote it")
     return data
 
 
-def sealed(data: xr.Dataset) -> xr.Dataset:
-    """Adds checksums. After xarray has written this Dataset to a file, readers recognise by the checksums
-    that the file is complete."""
+def with_checksums(data: xr.Dataset) -> xr.Dataset:
+    """The Dataset with checksums as an attribute. By these, readers recognise a complete file of xarray."""
     variables = {
         str(name): variable_digest(
             v.dtype, v.shape, map(str, v.dims), v.attrs, [np.ascontiguousarray(v.values)]
@@ -110,8 +115,11 @@ def sealed(data: xr.Dataset) -> xr.Dataset:
     return data.assign_attrs({SEAL_ATTRIBUTE: json.dumps(digests)})
 
 
-def view_of(data: xr.Dataset, path: Path) -> View:
-    """A Dataset in the form read by `show` and `plot`; InputError if the result is not complete."""
+def view_of_dataset(data: xr.Dataset, path: Path) -> View:
+    """A Dataset as the view that `show` and `plot` read; InputError if the Dataset is no complete result.
+
+    path: name of the result for messages.
+    """
     try:
         layout = layout_of(json.loads(data.attrs["config_resolved"]))
         status = data["status"]
@@ -126,9 +134,9 @@ def view_of(data: xr.Dataset, path: Path) -> View:
         dimensions = (*points, *variable.extra)
         if variable.name not in data or data[variable.name].dims != dimensions:
             raise InputError(
-                f"the data are not whole: {variable.name} should be there with the dimensions "
-                f"{', '.join(dimensions)}; give all of them, with at={{...}} for one value, "
-                "or draw a selection by xarray's own plot"
+                f"the data are not a whole result: they lack {variable.name} with the dimensions "
+                f"{', '.join(dimensions)}; give the whole result and select points with at={{...}}, or draw "
+                "a selection with xarray's own plot"
             )
     variables = {str(name): array.values for name, array in data.variables.items()}
     typed = {

@@ -1,22 +1,22 @@
-"""Keyword arguments of a rod's tasks, for editors and type checkers.
+"""Keyword arguments of the task methods of `rs.Rod` and `rs.Arm`, for editors and type checkers.
 
-`rodsweep.config` defines meanings, ranges and defaults; a test compares these names with the config.
+`rodsweep.config` defines the meaning, the range and the default of each keyword.
 """
 
 from typing import Literal, TypedDict
 
 
-class OfEveryTask(TypedDict, total=False):
-    """Options of every task."""
+class TaskKeywords(TypedDict, total=False):
+    """Keyword arguments that every task accepts."""
 
     accuracy: float
     title: str
     progress: bool | None
-    """Whether to display progress; None displays progress only in a terminal or a notebook. No config key."""
+    """Whether to display progress; None: only in a terminal or a notebook. No key of a config."""
 
 
-class OfSpectrum(OfEveryTask, total=False):
-    """Keys of the section `spectrum`."""
+class SpectrumKeywords(TaskKeywords, total=False):
+    """Keyword arguments of the task spectrum: the keys of the section `spectrum` of a config."""
 
     modes: int
     method: Literal["determinant", "krylov_schur"]
@@ -27,16 +27,16 @@ class OfSpectrum(OfEveryTask, total=False):
     longitudinal: bool
 
 
-class OfThresholds(OfEveryTask, total=False):
-    """Keys of the section `thresholds`."""
+class ThresholdsKeywords(TaskKeywords, total=False):
+    """Keyword arguments of the task thresholds: the keys of the section `thresholds` of a config."""
 
     F_max: float
     crossings: int
     certify: bool
 
 
-class OfModes(OfEveryTask, total=False):
-    """Keys of the section `modes`."""
+class ModesKeywords(TaskKeywords, total=False):
+    """Keyword arguments of the task modes: the keys of the section `modes` of a config."""
 
     modes: int
     nodes: int
@@ -44,16 +44,16 @@ class OfModes(OfEveryTask, total=False):
     certify: bool
 
 
-class OfCriticality(OfEveryTask, total=False):
-    """Keys of the section `criticality`."""
+class CriticalityKeywords(TaskKeywords, total=False):
+    """Keyword arguments of the task criticality: the keys of the section `criticality` of a config."""
 
     F_max: float
     crossings: int
     certify: bool
 
 
-class OfBranch(OfEveryTask, total=False):
-    """Keys of the section `branch`."""
+class BranchKeywords(TaskKeywords, total=False):
+    """Keyword arguments of the task branch: the keys of the section `branch` of a config."""
 
     along: str
     start: float
@@ -63,8 +63,8 @@ class OfBranch(OfEveryTask, total=False):
     certify: bool
 
 
-class OfLimitCycle(OfEveryTask, total=False):
-    """Keys of the section `limit_cycle`."""
+class LimitCycleKeywords(TaskKeywords, total=False):
+    """Keyword arguments of the task limit_cycle: the keys of the section `limit_cycle` of a config."""
 
     method: Literal["collocation", "integration"]
     amplitude: float

@@ -1,4 +1,4 @@
-"""`rs.Rod`: one rod, with every task as a method."""
+"""`rs.Rod`: one rod in dimensionless units, with every task as a method."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -22,8 +22,15 @@ from ..model.material.build import STANDARD
 from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_axes
 from .answers.answer import Answer
-from .asking import job_from, known_load, plain, plain_keyword, tree_of
-from .options import OfBranch, OfCriticality, OfLimitCycle, OfModes, OfSpectrum, OfThresholds
+from .asking import config_tree, job_from, plain_keyword, plain_value, with_load_in_si
+from .options import (
+    BranchKeywords,
+    CriticalityKeywords,
+    LimitCycleKeywords,
+    ModesKeywords,
+    SpectrumKeywords,
+    ThresholdsKeywords,
+)
 from .solving import solve_here
 
 if TYPE_CHECKING:
@@ -64,17 +71,17 @@ class SoftRod:
             if name not in PARAMETERS:
                 left = [other for other in (*PARAMETERS, "arm") if other not in given]
                 hint = hint_of(name, left if nearest(name, left) else (*PARAMETERS, "arm"))
-                raise InputError(f"unknown key parameters.{name}; {hint}")
+                raise InputError(f"a rod has no parameter {name}; {hint}")
         material = {"law": law, "section": section, "profile": profile}
         if arm is not None:
             if not isinstance(arm, SlenderArm):
                 raise InputError(f"arm = {short(arm)} is not an arm; write it as in {ARM_EXAMPLE}")
-            given = parameters_of(known_load(arm)) | given
+            given = parameters_of(with_load_in_si(arm)) | given
             beside = {name: value for name, value in material.items() if value is not None}
             material = material_of(arm) | beside
         for name in REQUIRED:
             if name not in given:
-                raise InputError(f"parameters.{name} is missing; give {words(REQUIRED, 'and')}")
+                raise InputError(f"{name} is missing; a rod needs {words(REQUIRED, 'and')}, or an arm")
         values = {name: given.get(name, DEFAULTS.get(name)) for name in PARAMETERS}
         self._values = {name: _number(name, value) for name, value in values.items() if value is not None}
         self._material = _material(material)
@@ -85,49 +92,49 @@ class SoftRod:
 
     @property
     def parameters(self) -> dict[str, float]:
-        """The parameters' values by name."""
+        """Values of the parameters by name."""
         return dict(self._values)
 
     @in_sentences("rod.replace(F=40)")
     def replace(self, **changed: float) -> "SoftRod":
-        """A copy with new values of some parameters, or of law, section and profile."""
+        """A copy of the rod with new values of some parameters, or of law, section or profile."""
         values: dict[str, Any] = self._values | self._given_material | changed
         return SoftRod(**values)
 
     @property
     def _given_material(self) -> dict[str, Any]:
-        """The keys of the material that differ from their defaults."""
+        """The keys of the section `material` that differ from their defaults, with their values."""
         return {} if self._material is None else self._material.model_dump(exclude_defaults=True)
 
     @in_sentences("rod.spectrum(modes=4)")
-    def spectrum(self, **options: Unpack[OfSpectrum]) -> Answer:
+    def spectrum(self, **options: Unpack[SpectrumKeywords]) -> Answer:
         """The `modes` leading eigenvalues (4 by default), growth_rate + i frequency in 1/tau2."""
         return self._answer("spectrum", options)
 
     @in_sentences("rod.thresholds(F_max=100)")
-    def thresholds(self, **options: Unpack[OfThresholds]) -> Answer:
+    def thresholds(self, **options: Unpack[ThresholdsKeywords]) -> Answer:
         """Forces up to `F_max` at which the rod starts to oscillate, flutters, and becomes stable again."""
         return self._answer("thresholds", options)
 
     @in_sentences("rod.modes(nodes=65)")
-    def modes(self, **options: Unpack[OfModes]) -> Answer:
+    def modes(self, **options: Unpack[ModesKeywords]) -> Answer:
         """The leading modes with adjoint modes, and the transient growth."""
         return self._answer("modes", options)
 
     @in_sentences("rod.cycle(harmonics=8)")
-    def limit_cycle(self, **options: Unpack[OfLimitCycle]) -> Answer:
+    def limit_cycle(self, **options: Unpack[LimitCycleKeywords]) -> Answer:
         """The limit cycle of the rod: period, amplitude, energy and Floquet multipliers."""
         return self._answer("limit_cycle", options)
 
     cycle = limit_cycle
 
     @in_sentences("rod.criticality(F_max=100)")
-    def criticality(self, **options: Unpack[OfCriticality]) -> Answer:
+    def criticality(self, **options: Unpack[CriticalityKeywords]) -> Answer:
         """Criticality of every Hopf point up to `F_max`, and how its branch of cycles grows."""
         return self._answer("criticality", options)
 
     @in_sentences('rod.branch(along="F")')
-    def branch(self, **options: Unpack[OfBranch]) -> Answer:
+    def branch(self, **options: Unpack[BranchKeywords]) -> Answer:
         """The branches of cycles, stable or not, followed in `along` from every Hopf point to their ends."""
         return self._answer("branch", options)
 
@@ -151,7 +158,7 @@ class SoftRod:
     if not TYPE_CHECKING:  # hidden from type checkers, which should report a misspelt task
 
         def __getattr__(self, name: str) -> Callable[..., Answer]:
-            """The method of a task that this class does not define; AttributeError for unknown names."""
+            """Method of a task without a method of its own in this class; AttributeError if there is none."""
             if name not in CONFIGS:
                 known = [task for task, config in CONFIGS.items() if not config.of_several_rods]
                 raise AttributeError(f"a rod has no {name!r}; its tasks are {', '.join(known)}")
@@ -176,7 +183,7 @@ class SoftRod:
         taken = CONFIGS[task].taken_of_a_rod(options)
         names = [name for name in (*taken, *OPTIONAL_PARAMETERS) if name in self._values]
         values: dict[str, Any] = {name: self._values[name] for name in names}
-        tree = tree_of(task, values | self._given_material | options)
+        tree = config_tree(task, values | self._given_material | options)
         solved = solve_here(job_from(tree), progress=progress)
         return Answer(repr(self), solved, solved.messages[0])
 
@@ -195,7 +202,7 @@ class SoftRod:
 
 
 def _material(given: Mapping[str, Any]) -> MaterialSection | None:
-    """The section `material` of a rod, or None without keys; InputError for an unknown law."""
+    """The validated section `material` of a rod, None if no key is given; InputError for bad values."""
     tree = {
         name: plain_keyword(f"material.{name}", value) for name, value in given.items() if value is not None
     }
@@ -211,11 +218,11 @@ def _material(given: Mapping[str, Any]) -> MaterialSection | None:
 
 
 def _number(name: str, value: Any) -> float:
-    """Value of a parameter as a float; InputError if it is no number."""
+    """Value of the parameter `name` as a float; InputError if the value is no number."""
     try:
-        return as_number(plain(value))
+        return as_number(plain_value(value))
     except ValueError as error:
-        raise InputError(f"parameters.{name}: {error}") from None
+        raise InputError(f"the parameter {name} of the rod: {error}") from None
 
 
 _KEYWORDS = [

@@ -1,7 +1,7 @@
-"""Results of solved points: their arrays at once, their Dataset when it is first used.
+"""Results of solved points as arrays, from which the xarray Dataset is made only when it is first used.
 
-Making a Dataset, with its checksums, the text of its config and the versions of all libraries, takes longer
-than a spectrum.
+The Dataset has checksums, the text of the config and the versions of all libraries; making it takes longer
+than solving a spectrum.
 """
 
 import json
@@ -19,56 +19,56 @@ from ..results.file.validation import FORMAT, PROGRAM
 from ..results.file.view import View
 from ..results.layouts.variables import Filled
 from ..solve.status import PointStatus
-from ..tasks.running.in_memory import blas_kernels, stored, view_in_memory
+from ..tasks.running.in_memory import blas_kernels, stored_variables, view_in_memory
 from ..tasks.running.job import Job, attributes_of
-from .dataset import ordered, sealed, selectable, view_of
+from .dataset import in_layout_order, view_of_dataset, with_arm_selection, with_checksums
 
 
 class Result(Protocol):
-    """A result in the two forms that an answer needs."""
+    """A result in the two forms that an `Answer` needs: a Dataset and a view."""
 
     @property
     def dataset(self) -> xr.Dataset:
-        """The result as read by xarray from a file."""
+        """The Dataset that xarray would read from the result file."""
 
     @property
     def view(self) -> View:
-        """The result as tables read it, with the attributes `task` and `config_resolved`."""
+        """The view that tables read, with the attributes `task` and `config_resolved`."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoredResult:
-    """A result given as a Dataset, from which tables read it."""
+    """A result given as a Dataset, from which the view is made."""
 
     dataset: xr.Dataset
 
     @property
     def view(self) -> View:
-        """The Dataset as tables read it."""
-        return view_of(self.dataset, Path(str(self.dataset.attrs.get("title", "data"))))
+        """The view of the Dataset that tables read."""
+        return view_of_dataset(self.dataset, Path(str(self.dataset.attrs.get("title", "data"))))
 
 
 @dataclass(frozen=True, kw_only=True)
 class SolvedPoints:
-    """Solved points of a job. A pickle or a deep copy has the Dataset in their place."""
+    """Results of all points of a job. A pickle or a deep copy is a `StoredResult` with the Dataset."""
 
     job: Job
     plan: Plan = field(repr=False)
     """Plan of the results, without the attributes of a file."""
     statuses: Sequence[PointStatus]
     values: Mapping[str, np.ndarray] = field(repr=False)
-    """Variables of the layout, shape (points, own dimensions)."""
+    """Variables of the layout by name, shape (points, own dimensions)."""
     filled: Sequence[Filled] = field(repr=False)
-    """Further variables of the whole file."""
+    """Variables of the file that do not belong to single points."""
     history: Mapping[str, Any]
     """Attributes that say when, where and with which options the points were solved."""
     messages: Sequence[str]
-    """Message of each point solved on its own."""
+    """Message of each point; "" for points of stretches, which are solved together."""
 
     @cached_property
     def dataset(self) -> xr.Dataset:
-        """The Dataset of the points, as read from a file."""
-        coordinates, variables = stored(self.plan, self.values, self.filled)
+        """The Dataset of the points, as xarray would read it from a result file."""
+        coordinates, variables = stored_variables(self.plan, self.values, self.filled)
         header = {
             "program": PROGRAM,
             "format": FORMAT,
@@ -77,11 +77,11 @@ class SolvedPoints:
         }
         attributes = attributes_of(self.job, self.statuses, blas_kernels())
         whole = xr.Dataset(variables, coordinates, header | attributes | dict(self.history))
-        return selectable(sealed(ordered(whole, self.plan.layout, self.plan.config)))
+        return with_arm_selection(with_checksums(in_layout_order(whole, self.plan.layout, self.plan.config)))
 
     @cached_property
     def view(self) -> View:
-        """The points as tables read them."""
+        """The view of the points that tables read."""
         return view_in_memory(self.job, self.plan, self.values, self.filled)
 
     def __reduce__(self) -> tuple[type[StoredResult], tuple[xr.Dataset]]:

@@ -1,4 +1,4 @@
-"""Solves all points of a job in sequence in this process, without files and without MPI."""
+"""Solution of all points of a job in sequence in this process, without files and without MPI."""
 
 import socket
 import sys
@@ -18,38 +18,40 @@ from ..solve.backend.kept import forget_all
 from ..solve.exclusive import solving
 from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
 from ..sweep.stop import NoClaims, RankListener, StopRequest
-from ..tasks.protocol import AllPoints, Arrays, Solver
+from ..tasks.protocol import JointVariables, NamedArrays, Solver
 from ..tasks.running.failures import FailureReasons, parameters_in_words
-from ..tasks.running.in_memory import blas, view_in_memory
+from ..tasks.running.in_memory import blas_pool, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
-from ..tasks.running.unforeseen import Note, guarded
-from ..watch import part, reporting_to
+from ..tasks.running.unforeseen import PointNote, guarded_solver
+from ..watch import reporting_to, solve_part
 from .solved import SolvedPoints
 
 Display = ProgressReporter | SilentProgress
+"""Progress display, or its silent substitute."""
 _warm: set[str] = set()
-"""Tasks warmed up in this process: compilation happens once."""
+"""Tasks that are already compiled in this process."""
 
 
 @solving
-def solve_here(job: Job, note: Note | None = None, progress: bool | None = None) -> SolvedPoints:
-    """All points of a job.
+def solve_here(job: Job, note: PointNote | None = None, progress: bool | None = None) -> SolvedPoints:
+    """Solves all points of a job in this process.
 
-    note: called with an exception that no solver foresees; the point then fails. Without `note` the exception
-    is raised. progress: whether to display progress. Raises InputError and EnvironmentIncomplete if this
-    process cannot solve.
+    note: called with every unforeseen exception, and the point then has the status `failed`; None to raise
+    the exception. progress: whether to display progress; None: only in a terminal or a notebook. Raises
+    InputError for another `progress`, and EnvironmentIncomplete if PETSc or SLEPc is missing.
     """
-    shown = display(progress, job.points.count, job.name)
+    shown = progress_display(progress, job.points.count, job.name)
     require_solvers()
     solver = job.solver()
     started = now()
     if note is not None:
-        solver = guarded(solver, job.layout, note)
+        solver = guarded_solver(solver, job.layout, note)
     plan = plan_in_memory(job, solver.statuses)
     if job.config.task not in _warm:
         solver.warm_up()
         _warm.add(job.config.task)
-    with blas().limit(limits=1, user_api="blas"):  # as in the command: threads change the order of sums
+    # One thread, as in the command: threads change the order of sums.
+    with blas_pool().limit(limits=1, user_api="blas"):
         shown(0)
         try:
             values, messages, reasons = _solved(job, solver, plan, shown)
@@ -74,7 +76,7 @@ def solve_here(job: Job, note: Note | None = None, progress: bool | None = None)
 
 
 def _history(started: str, reasons: Sequence[str]) -> dict[str, Any]:
-    """Attributes of a solve that ends now; reasons: why points failed."""
+    """Attributes of a result whose solve ends now; started: time of its start; reasons: why points failed."""
     from ..solve.backend import petsc
 
     return {
@@ -91,8 +93,8 @@ def _history(started: str, reasons: Sequence[str]) -> dict[str, Any]:
 def _solved(
     job: Job, solver: Solver, plan: Plan, shown: Display
 ) -> tuple[dict[str, np.ndarray], list[str], list[str]]:
-    """(variables of the layout, shape (points, own dimensions); messages of points solved on their own;
-    reasons why points failed).
+    """(variables of the layout by name, shape (points, own dimensions); message of each point; reasons why
+    points failed).
     """
     reasons = FailureReasons(lambda index: parameters_in_words(job.points.values(index)))
     count = job.points.count
@@ -122,26 +124,31 @@ def _solved(
     )
 
 
-def _joint(together: AllPoints, view: View, shown: Display) -> Sequence[Filled]:
-    """Variables that need all points, for example curves."""
+def _joint(together: JointVariables, view: View, shown: Display) -> Sequence[Filled]:
+    """Variables that depend on all points, for example curves; view: the solved points."""
     units = together.units(view)
-    results = dict[int, Arrays]()
+    results = dict[int, NamedArrays]()
     while units is not None and (wanted := units.wanted(results)):
         name = units.where(wanted[0])
-        with part(name), reporting_to(listener(shown, name)):
+        with solve_part(name), reporting_to(progress_listener(shown, name)):
             results[wanted[0]] = together.solve(units, wanted[0])
     return together.variables(view, units, results)
 
 
 def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int, Any]]:
-    """Every point's index with its outcome; along a chain each point starts from the previous solution."""
+    """Solves and yields (index, outcome) of all points; along a chain each starts from the previous
+    solution.
+    """
     done = 0
 
     @contextmanager
     def reported() -> Iterator[None]:
-        """Names the next point to the display, and to the listeners of the caller."""
+        """Marks the reports in the `with` block as reports of the next point."""
         name = f"point {done + 1} of {count}" if count > 1 else ""
-        with part(name, (done / count, (done + 1) / count)), reporting_to(listener(shown, name)):
+        with (
+            solve_part(name, (done / count, (done + 1) / count)),
+            reporting_to(progress_listener(shown, name)),
+        ):
             yield
 
     if solver.chained is None:
@@ -161,10 +168,11 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
             yield index, outcome
 
 
-def display(progress: bool | None, total: int | None, title: str) -> Display:
-    """Progress display for `total` points, which appears after a second.
+def progress_display(progress: bool | None, total: int | None, title: str) -> Display:
+    """Progress display of a solve, which appears after a second.
 
-    progress: True or False; None displays only in a terminal or a notebook. InputError for any other type.
+    progress: whether to display; None: only in a terminal or a notebook. total: number of points, None if
+    unknown. Raises InputError for another `progress`.
     """
     if not (progress is None or isinstance(progress, bool)):
         raise InputError(f"progress = {progress!r} is not allowed; it should be True, False or None")
@@ -172,8 +180,10 @@ def display(progress: bool | None, total: int | None, title: str) -> Display:
     return ProgressReporter(total, title, live=True) if shown else SilentProgress()
 
 
-def listener(shown: Display, name: str) -> RankListener:
-    """Listener that displays the position of the solve `name`; Ctrl-C raises KeyboardInterrupt."""
+def progress_listener(shown: Display, name: str) -> RankListener:
+    """Listener that shows the position of the solve `name` in the display. Ctrl-C raises
+    KeyboardInterrupt.
+    """
     return RankListener(
         NoClaims(lambda place: shown.place(place.words, place.share or 0.0)), StopRequest(), lambda: name
     )

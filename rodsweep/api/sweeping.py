@@ -1,4 +1,4 @@
-"""`rs.sweep`: a task over a grid or a list of points, here or on many ranks."""
+"""`rs.sweep`: a task over a grid or a list of points, in this process or on many MPI ranks."""
 
 import os
 import shutil
@@ -17,16 +17,16 @@ from ..config.document.call_arguments import in_sentences
 from ..config.document.reading import yaml_of
 from ..errors import EnvironmentIncomplete, InputError
 from ..tasks.running.unforeseen import describe_unforeseen, log_file
-from .asking import Tree, job_from, refuse_unfit, tree_of
+from .asking import ConfigTree, config_tree, job_from, refuse_unfit
 from .dataset import open_result
-from .solving import Display, display, solve_here
+from .solving import Display, progress_display, solve_here
 
-COMPUTED = (0, 1)
-"""Exit statuses of a complete run: all points succeeded, or some did not."""
-REFUSED: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentIncomplete}
-"""Exception for each exit status of a refused run."""
-MOST_QUOTED = 2000
-"""Maximum length, in characters, of a quoted standard error: enough for its last exception."""
+COMPLETE_STATUSES = (0, 1)
+"""Exit statuses of a complete run: 0 if all points succeeded, 1 if some failed."""
+REFUSAL_OF_STATUS: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentIncomplete}
+"""Exception to be raised for each exit status of a refused run."""
+MAX_QUOTED_LENGTH = 2000
+"""Maximum number of quoted characters of a run's standard error, enough for the last traceback."""
 
 
 @in_sentences('rs.sweep("spectrum", F=[20, 30], k1=1e4, k2=100, gamma3=0.01)')
@@ -55,15 +55,17 @@ def sweep(
     """
     if ranks is not None and (isinstance(ranks, bool) or not isinstance(ranks, int) or ranks < 1):
         raise InputError(f"ranks = {ranks!r} is not allowed; it should be a whole number, 1 or above")
-    tree = tree_of(task, keywords)
+    tree = config_tree(task, keywords)
     if ranks is not None:
         refuse_unfit(tree)
-        return _on_ranks(task, tree, ranks, strict, display(progress, None, task))
+        return _on_ranks(task, tree, ranks, strict, progress_display(progress, None, task))
     return solve_here(job_from(tree), None if strict else _warn, progress).dataset
 
 
 def _warn(indices: Sequence[int], error: Exception) -> None:
-    """Issues a RuntimeWarning with the traceback of an unforeseen exception."""
+    """Issues a RuntimeWarning with the traceback of an unforeseen exception; indices: of the failed
+    points.
+    """
     first = indices[0] + 1
     last = indices[-1] + 1
     points = f"point {first}" if first == last else f"points {first} to {last}"
@@ -71,7 +73,7 @@ def _warn(indices: Sequence[int], error: Exception) -> None:
     warnings.warn(f"{points}: {describe_unforeseen(error)}\n{trace}", RuntimeWarning, stacklevel=2)
 
 
-def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -> xr.Dataset:
+def _on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Display) -> xr.Dataset:
     """The Dataset made by `rodsweep run` on `ranks` ranks in a temporary directory."""
     points = tree["parameters"].get("points")
     if points is not None:
@@ -86,7 +88,7 @@ def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -
             status, errors = _run_shown(words, place, shown)
         except OSError as error:
             raise EnvironmentIncomplete(f"{words[0]} cannot be started: {error.strerror}") from None
-        if status not in COMPUTED:
+        if status not in COMPLETE_STATUSES:
             raise _failure(words[0], status, errors, begun=output.exists())
         if (log := log_file(output)).exists():
             warnings.warn(log.read_text(encoding="utf-8"), RuntimeWarning, stacklevel=2)
@@ -94,7 +96,9 @@ def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -
 
 
 def _run_shown(words: list[str], place: str, shown: Display) -> tuple[int, str]:
-    """Runs a command in a directory and shows the progress; returns exit status and standard error."""
+    """Runs a command in the directory `place` and shows its progress; returns (exit status, standard
+    error).
+    """
     # os.environ, as this process was started: a started MPI adds variables to the C environment only.
     run = subprocess.Popen(
         words, cwd=place, env=dict(os.environ), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
@@ -116,18 +120,21 @@ def _run_shown(words: list[str], place: str, shown: Display) -> tuple[int, str]:
 
 
 def _failure(launcher: str, status: int, errors: str, begun: bool) -> Exception:
-    """Exception for an incomplete run; begun: whether the ranks created the result file."""
+    """Exception for a run that did not complete; begun: whether the ranks had created the result file.
+
+    status: exit status of the launcher. errors: standard error of the run.
+    """
     lines = [line for line in errors.splitlines() if line.startswith("rodsweep: ")]
     if lines:
-        return REFUSED.get(status, RuntimeError)(lines[0].removeprefix("rodsweep: "))
+        return REFUSAL_OF_STATUS.get(status, RuntimeError)(lines[0].removeprefix("rodsweep: "))
     if begun or "Traceback" in errors:
-        return RuntimeError(errors[-MOST_QUOTED:])
+        return RuntimeError(errors[-MAX_QUOTED_LENGTH:])
     output = " ".join(errors.split()) or f"exit status {status}"
-    return EnvironmentIncomplete(f"{launcher} did not start the ranks: {output[-MOST_QUOTED:]}")
+    return EnvironmentIncomplete(f"{launcher} did not start the ranks: {output[-MAX_QUOTED_LENGTH:]}")
 
 
 def _mpiexec() -> str:
-    """The launcher beside this Python, or on the search path; EnvironmentIncomplete if there is none."""
+    """Path of mpiexec, beside this Python or on the search path; EnvironmentIncomplete if there is none."""
     beside = shutil.which("mpiexec", path=str(Path(sys.executable).parent))
     found = beside or shutil.which("mpiexec")
     if found is None:

@@ -1,4 +1,4 @@
-"""Speed against error of rodsweep itself; all methods are timed in turn in one run.
+"""Benchmarks: speed against error of rodsweep, with all methods timed in turn in one run.
 
-The peers of rodsweep are in a folder outside the package, from which `rodsweep.bench.peers` imports them.
+Other codes, the peers, are in a folder outside the package, from which `rodsweep.bench.peers` imports them.
 """

@@ -22,81 +22,91 @@ from types import ModuleType
 from ..errors import InputError
 from .study import Contender, Measurement
 
-PACKAGE = "benchmarks"
-"""Name of the folder in a checkout; also its package name if the folder is elsewhere."""
-CHECKOUT = Path(__file__).parents[2]
-"""Folder that contains pyproject.toml, if rodsweep runs from a checkout."""
-LEFT_OUT = {
+PEER_PACKAGE_NAME = "benchmarks"
+"""Name of the folder of peers in a checkout; also its package name wherever the folder is."""
+CHECKOUT_FOLDER = Path(__file__).parents[2]
+"""Root folder of the checkout, if rodsweep runs from a checkout."""
+PEER_NAMES = {
     "spectrum": "LAPACK, ARPACK and Chebyshev collocation",
     "thresholds": "grids and root finding with SciPy, AUTO-07p and PyCont-Lite",
     "limit_cycle": "further integrators of PETSc, those of SciPy, CVODE and AUTO-07p",
 }
-"""Names of the peers by study, for users without the folder of peers."""
-Section = Callable[[int], tuple[list[str], list[Measurement]]]
-"""A comparison with its own tables: from the number of rounds to (blocks of text, measurements)."""
+"""Names of the peers in words by study, for a report without peers."""
+PeerSection = Callable[[int], tuple[list[str], list[Measurement]]]
+"""Comparison with tables of its own: function from the number of rounds to (blocks of text, measurements)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Peers:
-    """The peers of one study."""
+    """Everything that peers contribute to one study."""
 
     contenders: Mapping[str, Sequence[Contender]] = field(default_factory=dict)
     """Methods of each race, by the name of the race, with settings from the coarsest to the finest; the study
     defines the races and their cases."""
-    sections: Sequence[Section] = ()
-    """Further comparisons."""
+    sections: Sequence[PeerSection] = ()
+    """Comparisons beside the races of the study."""
     notes: Sequence[str] = ()
-    """Sentences on the contenders, for the introduction."""
+    """Sentences on the contenders, for the introduction of the report."""
     skipped: Sequence[str] = ()
     """A sentence for each peer that is not installed."""
 
     def of(self, race: str) -> list[Contender]:
-        """Contenders of one race; empty if no peer takes part."""
+        """Contenders of a race, by the name of the race; empty if no peer takes part."""
         return list(self.contenders.get(race, ()))
 
 
 NO_PEERS = Peers()
+"""Contribution of a study without peers."""
 
 
 def peer_package(directory: Path | None) -> ModuleType | None:
-    """The package in a folder of peers, by default the checkout's, or None; InputError if it has no peers."""
+    """The Python package in a folder of peers; InputError if the folder is no such package.
+
+    directory: None for the folder of the running checkout; without a checkout the result is None.
+    """
     if directory is not None:
         return _loaded(directory)
-    own = CHECKOUT / PACKAGE
-    there = (CHECKOUT / "pyproject.toml").is_file() and (own / "__init__.py").is_file()
+    own = CHECKOUT_FOLDER / PEER_PACKAGE_NAME
+    there = (CHECKOUT_FOLDER / "pyproject.toml").is_file() and (own / "__init__.py").is_file()
     return _loaded(own) if there else None
 
 
 def _loaded(directory: Path) -> ModuleType:
-    refusal = InputError(f"--peers {directory} must be the folder `{PACKAGE}` of a checkout of rodsweep")
+    refusal = InputError(
+        f"--peers {directory} must be the folder `{PEER_PACKAGE_NAME}` of a checkout of rodsweep"
+    )
     start = directory.resolve() / "__init__.py"
-    known = sys.modules.get(PACKAGE)
+    known = sys.modules.get(PEER_PACKAGE_NAME)
     if known is not None and known.__file__ and Path(known.__file__).resolve() == start:
         return known
-    spec = spec_from_file_location(PACKAGE, start, submodule_search_locations=[str(start.parent)])
+    spec = spec_from_file_location(PEER_PACKAGE_NAME, start, submodule_search_locations=[str(start.parent)])
     if not start.is_file() or spec is None or spec.loader is None:
         raise refusal
     package = module_from_spec(spec)
-    sys.modules[PACKAGE] = package  # before its modules are imported, which look for it there
+    sys.modules[PEER_PACKAGE_NAME] = package  # before its modules are imported, which look for it there
     spec.loader.exec_module(package)
     if not hasattr(package, "versions"):
         raise refusal
     return package
 
 
-def peers_of(package: ModuleType | None, study: str, quick: bool, place: Path) -> Peers:
-    """The installed peers of a study; programs are compiled in the directory `place`."""
-    module = f"{PACKAGE}.{study}"
+def study_peers(package: ModuleType | None, study: str, quick: bool, place: Path) -> Peers:
+    """Contribution of the installed peers to a study; programs are compiled in the directory `place`.
+
+    package: from `peer_package`. quick: fewer settings.
+    """
+    module = f"{PEER_PACKAGE_NAME}.{study}"
     if package is None or find_spec(module) is None:
         return NO_PEERS
     found: Peers = import_module(module).peers(quick, place)
     return found
 
 
-def left_out(studies: Sequence[str]) -> str:
-    """Sentence on the peers missing from the studies and on how to get them; "" if none are missing."""
-    missing = "; ".join(f"{name}: {LEFT_OUT[name]}" for name in studies if name in LEFT_OUT)
+def peers_left_out(studies: Sequence[str]) -> str:
+    """Sentence that names the peers of studies run without the folder of peers; "" if they have no peers."""
+    missing = "; ".join(f"{name}: {PEER_NAMES[name]}" for name in studies if name in PEER_NAMES)
     return missing and (
-        f"The peers are left out ({missing}): they are in the folder `{PACKAGE}` of a checkout of rodsweep, "
-        f"which `--peers CHECKOUT/{PACKAGE}` names."
+        f"The peers are left out ({missing}): they are in the folder `{PEER_PACKAGE_NAME}` of a checkout of "
+        "rodsweep, "
+        f"which `--peers CHECKOUT/{PEER_PACKAGE_NAME}` names."
     )

@@ -1,4 +1,4 @@
-"""Results of a benchmark: methods timed in turn on cases, their errors, and tables in Markdown."""
+"""Benchmarks in general: methods timed in turn on cases, their errors, and tables in Markdown."""
 
 import resource
 import time
@@ -16,13 +16,18 @@ from ..post.work_precision import draw_work_precision
 from ..results.file.measurements import Table
 
 Outcome = TypeVar("Outcome")
+"""Type of the result of a timed function."""
 SHORT_RUN_SECONDS = 0.02
-"""Duration in seconds below which the time of a run depends on the caches left by the previous run."""
+"""Duration, in s, below which the time of a run depends on the processor caches left by the previous run."""
 
 
 @dataclass(frozen=True, slots=True)
 class Contender:
-    """A method at one setting: `run` takes a case, once if it is slow. group: methods that share a colour."""
+    """A method at one setting, which takes part in a race.
+
+    group: methods of a group share a colour in the figure. run: function from a case to a result. slow:
+    whether the function runs only once, instead of in every round.
+    """
 
     method: str
     setting: str
@@ -33,11 +38,11 @@ class Contender:
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """A method at one setting on one case: median seconds of a run, and its relative error.
+    """Time and error of a method at one setting on one case.
 
-    The error is nan if no error applies, and inf if the method failed; `failure` is the reason.
-    least_seconds: minimum over all rounds, less sensitive to further loads on the machine. extra: further
-    numbers by name.
+    seconds: median over the rounds. error: relative; nan if no error applies, inf if the method failed, for
+    the reason `failure`. least_seconds: minimum over the rounds, less sensitive to other programs on the
+    machine. extra: further numbers by name.
     """
 
     case: str
@@ -55,8 +60,8 @@ class Measurement:
 class Study:
     """Result of one benchmark.
 
-    unit: meaning of a run, as in "ms a point". target: the error to be reached. undrawn: measurements without
-    a curve in the figure.
+    text: report in Markdown. measurements: drawn in the figure. unit: unit of work of a run, as in "ms a
+    point". target: error at which methods are compared. undrawn: further measurements, for the file only.
     """
 
     name: str
@@ -68,7 +73,7 @@ class Study:
 
     @property
     def drawable(self) -> bool:
-        """Whether any error can be drawn against time."""
+        """Whether any measurement has a finite error, which can be drawn against time."""
         return any(isfinite(m.error) for m in self.measurements)
 
     def draw(self, output: Path) -> None:
@@ -76,12 +81,12 @@ class Study:
         draw_work_precision(columns_of(self.measurements), f"ms a {self.unit}", self.target, output)
 
     def table(self) -> Table:
-        """The measurements as columns, for the file."""
+        """All measurements as columns, for the file."""
         return columns_of([*self.measurements, *self.undrawn])
 
 
 def columns_of(measurements: Sequence[Measurement]) -> Table:
-    """Measurements as columns."""
+    """Measurements as columns by name; nan for numbers that a measurement lacks."""
     columns: Table = {
         name: [getattr(m, name) for m in measurements]
         for name in ("case", "method", "group", "setting", "seconds", "least_seconds", "error", "failure")
@@ -92,7 +97,7 @@ def columns_of(measurements: Sequence[Measurement]) -> Table:
 
 
 class TimedRuns(NamedTuple, Generic[Outcome]):
-    """Result of the first run, and processor seconds of every timed run."""
+    """Result of the first run of a function, and processor seconds of every timed run."""
 
     outcome: Outcome
     seconds: tuple[float, ...]
@@ -103,22 +108,26 @@ class TimedRuns(NamedTuple, Generic[Outcome]):
 
 
 def race(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> list[TimedRuns[Outcome]]:
-    """Times all runs in turn; rounds: number of timed rounds of each run.
+    """Times functions in turn, round by round; rounds: number of timed rounds of each function.
 
-    The first run loads and compiles, and counts only for runs without rounds. A short run is made twice in a
-    row and the second one is timed, so that the caches do not depend on the previous method.
+    A first call of every function, which may load and compile, is timed only if the function has no rounds. A
+    short function is called twice in a row and the second call is timed, so that the processor caches do not
+    depend on the previous function.
     """
     first = [_timed(run) for run in runs]
     seconds: list[list[float]] = [[] for _ in runs]
-    for i in in_turn(rounds):
+    for i in timing_order(rounds):
         if first[i].median < SHORT_RUN_SECONDS:
             runs[i]()
         seconds[i] += _timed(runs[i]).seconds
     return [TimedRuns(a.outcome, tuple(more) or a.seconds) for a, more in zip(first, seconds, strict=True)]
 
 
-def in_turn(rounds: Sequence[int]) -> Iterator[int]:
-    """Indices of the runs in the order of timing: round by round, so that slow spells affect all methods."""
+def timing_order(rounds: Sequence[int]) -> Iterator[int]:
+    """Indices of functions in the order of timing, round by round, so that slow periods affect all functions.
+
+    rounds: number of rounds of each function.
+    """
     for turn in range(max(rounds)):
         yield from (i for i, most in enumerate(rounds) if turn < most)
 
@@ -130,13 +139,13 @@ def _timed(run: Callable[[], Outcome]) -> TimedRuns[Outcome]:
 
 
 def processor_seconds() -> float:
-    """Processor seconds of this process and of the programs started by it."""
+    """Processor time, in s, used so far by this process and by the finished programs that it started."""
     programs = resource.getrusage(resource.RUSAGE_CHILDREN)
     return time.process_time() + programs.ru_utime + programs.ru_stime
 
 
-def failsafe(run: Callable[[Any], Outcome], case: Any) -> Outcome | Exception:
-    """Result of a method on a case, or the exception raised by it."""
+def result_or_error(run: Callable[[Any], Outcome], case: Any) -> Outcome | Exception:
+    """Result of the function `run` on a case, or the exception that it raised."""
     try:
         with np.errstate(all="ignore"):
             return run(case)
@@ -145,26 +154,26 @@ def failsafe(run: Callable[[Any], Outcome], case: Any) -> Outcome | Exception:
 
 
 class JudgedCase(NamedTuple):
-    """A case with its name; judge: function from an outcome to error and other fields of Measurement."""
+    """A case of a tournament; judge: function from a result to `error` and further fields of Measurement."""
 
     name: str
     case: Any
     judge: Callable[[Any], dict[str, Any]]
 
 
-def contest(
+def measure_case(
     name: str, case: Any, contenders: Sequence[Contender], rounds: int, judge: Callable[[Any], dict[str, Any]]
 ) -> list[Measurement]:
-    """Measurements of all contenders on one case."""
-    return tournament([JudgedCase(name, case, judge)], contenders, rounds)
+    """Measurements of all contenders on one case, timed in turn; arguments as in `JudgedCase`."""
+    return measure_cases([JudgedCase(name, case, judge)], contenders, rounds)
 
 
-def tournament(
+def measure_cases(
     entries: Sequence[JudgedCase], contenders: Sequence[Contender], rounds: int
 ) -> list[Measurement]:
     """Measurements of all contenders on all cases, timed in turn."""
     pairs = [(entry, contender) for entry in entries for contender in contenders]
-    runs = [partial(failsafe, contender.run, entry.case) for entry, contender in pairs]
+    runs = [partial(result_or_error, contender.run, entry.case) for entry, contender in pairs]
     raced = race(runs, [0 if contender.slow else rounds for _, contender in pairs])
     measurements = []
     for (entry, c), timed in zip(pairs, raced, strict=True):
@@ -176,7 +185,9 @@ def tournament(
     return measurements
 
 
-def grouped(measurements: Iterable[Measurement], *names: str) -> dict[tuple[str, ...], list[Measurement]]:
+def grouped_by_fields(
+    measurements: Iterable[Measurement], *names: str
+) -> dict[tuple[str, ...], list[Measurement]]:
     """Measurements grouped by the values of the named fields, in order of appearance."""
     groups: dict[tuple[str, ...], list[Measurement]] = {}
     for m in measurements:
@@ -190,28 +201,32 @@ def every_nth_setting(contenders: Iterable[Contender], stride: int) -> list[Cont
 
 
 def by_method(contenders: Iterable[Contender]) -> dict[str, list[Contender]]:
-    """Settings of each method, in their order."""
+    """Contenders of each method, by its name, in their order."""
     methods: dict[str, list[Contender]] = {}
     for contender in contenders:
         methods.setdefault(contender.method, []).append(contender)
     return methods
 
 
-def middle(values: Iterable[float]) -> float:
-    """Median of the values without nan; nan if all are nan."""
+def nan_median(values: Iterable[float]) -> float:
+    """Median of the values that are not nan; nan if all are nan."""
     numbers = [value for value in values if not isnan(value)]
     return float(median(numbers)) if numbers else nan
 
 
 class PrintedNumber(float):
-    """A number that is printed as "" if it is nan."""
+    """A number that is formatted as "" if it is nan."""
 
     def __format__(self, form: str) -> str:
         return "" if isnan(self) else super().__format__(form)
 
 
-def table(head: str, line: str, rows: Iterable[Mapping[str, object]]) -> str:
-    """Table in Markdown from its head and the format of a row, such as "{method} | {seconds:.2f}"."""
+def markdown_table(head: str, line: str, rows: Iterable[Mapping[str, object]]) -> str:
+    """Table in Markdown.
+
+    head: titles of the columns, separated by |. line: format of a row, such as "{method} | {seconds:.2f}".
+    rows: values of each row by name.
+    """
     lines = [f"| {head} |", "|" + "---|" * (head.count("|") + 1)]
     for row in rows:
         cells = {
@@ -221,6 +236,6 @@ def table(head: str, line: str, rows: Iterable[Mapping[str, object]]) -> str:
     return "\n".join(lines)
 
 
-def plural(count: int, noun: str) -> str:
+def count_text(count: int, noun: str) -> str:
     """A count with a regular noun: "1 round", "2 rounds"."""
     return f"{count} {noun}{'s' * (count != 1)}"

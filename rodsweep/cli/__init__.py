@@ -1,4 +1,4 @@
-"""The command `rodsweep`: it joins the packages and reads the arguments and environment variables.
+"""The command `rodsweep`: entry point, exit statuses and error messages of the command line.
 
 Commands: run, merge, snapshot, check, show, plot, report, portrait, explore, export, schema, arm,
 bench.
@@ -33,7 +33,7 @@ for _command in (explore, export, plot, portrait, report):
     commands.add_command(_command)
 
 LONGEST_MESSAGE = 350
-"""Maximum length of an error message, in characters."""
+"""Maximum length of an error message, in characters; longer messages lose their middle."""
 
 
 def _one_line(message: str) -> str:
@@ -70,7 +70,9 @@ def main() -> None:
         message = f"{error.filename or 'standard output'}: {error.strerror}"
     except MemoryError:
         code = 3
-        message = "there is not enough memory"
+        message = (
+            "the memory of this machine is not sufficient; use fewer points, or fewer ranks on this machine"
+        )
     except Exception:
         traceback.print_exc()
         code = BUG_STATUS
@@ -83,9 +85,10 @@ def main() -> None:
 
 
 def _prepare_streams() -> None:
-    """Opens /dev/null for standard streams that were closed before the start, as `>&-` does.
+    """Opens /dev/null for standard streams that were closed before the start, as by `>&-` in a shell.
 
-    The next file opened would take the number of such a stream, and messages of C libraries would go into it.
+    Otherwise the next opened file would get the file descriptor of such a stream, and C libraries would write
+    their messages into this file.
     """
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
@@ -98,7 +101,9 @@ def _prepare_streams() -> None:
 
 
 def _drop_what_cannot_be_written() -> None:
-    """Redirects streams that cannot be flushed to /dev/null: Python's flush at exit would end with 120."""
+    """Redirects standard streams that cannot be flushed to /dev/null; otherwise Python would exit with
+    120.
+    """
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()

@@ -1,4 +1,4 @@
-"""Options of the commands `arm` and `portrait`: quantities with units, segments, the law, parameters."""
+"""Options of the commands `arm` and `portrait`: quantities of an arm, its material, parameters of a rod."""
 
 from collections.abc import Callable, Collection
 from typing import Any
@@ -9,7 +9,7 @@ from ..model.arm.quantities import QUANTITIES, UNITS
 from ..model.arm.segments import EXAMPLE
 from ..model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 
-REMARKS = {
+HELP_REMARKS = {
     "length": ", by default the sum of the segments",
     "young": ", and of segments without one",
     "radius": "; or give --width and --height, or --segment",
@@ -17,8 +17,8 @@ REMARKS = {
     "fluid_density": ", for the Reynolds number; by default 1000 kg/m^3",
     "density_difference": ", for its weight",
 }
-"""Remarks that follow a quantity's meaning in `--help`."""
-OF_MATERIAL: dict[str, dict[str, Any]] = {
+"""Remarks that follow the meaning of a quantity in the help text of its option."""
+MATERIAL_OPTIONS: dict[str, dict[str, Any]] = {
     "--segment": {
         "multiple": True,
         "metavar": "SEGMENT",
@@ -27,20 +27,24 @@ OF_MATERIAL: dict[str, dict[str, Any]] = {
     "--law": {"metavar": "LAW", "help": "Constitutive law, linear or neo_hookean; by default linear."},
     "--section": {
         "metavar": "SECTION",
-        "help": "Whether the section of rubber is fixed or swelling as the arm shortens; by default fixed.",
+        "help": "Cross-section of a rubber arm: fixed, or swelling as the arm shortens; by default fixed.",
     },
 }
-"""Options of shape and material that are no quantities."""
+"""Settings of `click.option` for the options of shape and material that are no quantities."""
 Command = Callable[..., Any]
+"""Function of a command."""
 
 
 def arm_options(left_out: Collection[str] = (), is_needed: bool = True) -> Callable[[Command], Command]:
-    """A decorator that adds options of all quantities but some; is_needed: whether a command needs an arm."""
+    """Decorator that adds an option for each quantity of an arm except `left_out`, and for its material.
+
+    is_needed: whether the command requires the needed quantities of an arm.
+    """
 
     def add_options(command: Command) -> Command:
         for name in reversed([name for name in UNITS if name not in left_out]):
             command = _quantity_option(name, is_needed and QUANTITIES[name].needed)(command)
-        for option, settings in reversed(OF_MATERIAL.items()):
+        for option, settings in reversed(MATERIAL_OPTIONS.items()):
             command = click.option(option, **settings)(command)
         return command
 
@@ -48,15 +52,15 @@ def arm_options(left_out: Collection[str] = (), is_needed: bool = True) -> Calla
 
 
 def _quantity_option(name: str, required: bool) -> Callable[[Command], Command]:
-    """The option of a quantity."""
+    """Decorator that adds the option of one quantity of an arm."""
     meaning = QUANTITIES[name].meaning
-    help_text = f"{meaning[0].upper()}{meaning[1:]}{REMARKS.get(name, '')}."
+    help_text = f"{meaning[0].upper()}{meaning[1:]}{HELP_REMARKS.get(name, '')}."
     option = "--" + name.replace("_", "-")
     return click.option(option, name, metavar="QUANTITY", required=required, help=help_text)
 
 
 def parameter_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Adds an option, not required, for every parameter of a rod but the force, which is found."""
+    """Decorator that adds an option for every parameter of a rod except F. No option is required."""
     for name in reversed([name for name in (*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS) if name != "F"]):
         parameter = PARAMETERS[name]
         meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"

@@ -8,12 +8,16 @@ from rich.console import Console
 from ..errors import InputError
 from ..model.arm.quantities import UNITS
 
-STYLES = {"headline": "bold", "warning": "yellow"}
-"""Styles of the printed lines by their kind."""
+LINE_STYLES = {"headline": "bold", "warning": "yellow"}
+"""Text styles of the printed lines, by kind of line."""
 
 
 def describe_arm(given: dict[str, str | None], poisson: float, segments: tuple[str, ...]) -> None:
-    """Prints the report on an arm of these quantities and law; InputError names the option."""
+    """Prints the report on an arm.
+
+    given: values of the options by name of the quantity or law, None if not given. Raises InputError in terms
+    of the options.
+    """
     from ..model.arm.arm import SlenderArm
     from ..verdict.arm import report_on
 
@@ -24,16 +28,19 @@ def describe_arm(given: dict[str, str | None], poisson: float, segments: tuple[s
         raise InputError(as_options(str(error))) from None
     console = Console(highlight=False, soft_wrap=True)
     for line, kind in report.lines():
-        console.print(line, markup=False, style=STYLES.get(kind, ""))
+        console.print(line, markup=False, style=LINE_STYLES.get(kind, ""))
 
 
-NAMES = "|".join((*UNITS, "segments"))
-QUANTITY_IN_SENTENCE = re.compile(rf"^({NAMES})|(?<= and )({NAMES})(?= = | are )")
-"""A quantity at the beginning of a sentence, or the second of two that are given."""
+QUANTITY_NAMES = "|".join((*UNITS, "segments"))
+"""Regular expression of all names of quantities."""
+QUANTITY_IN_SENTENCE = re.compile(rf"^({QUANTITY_NAMES})|(?<= and )({QUANTITY_NAMES})(?= = | are )")
+"""Regular expression of a quantity's name at the beginning of a sentence or before " = " and " are "."""
 
 
 def as_options(sentence: str) -> str:
-    """A sentence in which names of quantities are replaced by names of options."""
+    """The sentence of an error with names of options, such as --tip-radius, instead of names of
+    quantities.
+    """
     named = QUANTITY_IN_SENTENCE.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)
     named = named.replace("--segments", "--segment")
     return named if named.startswith("--") else f"--{named}"

@@ -1,4 +1,6 @@
-"""Work of all ranks before the result file is created: variables without points, data of all points."""
+"""Computations shared by all ranks before the result file exists: flutter forces, variables without
+points.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -18,15 +20,15 @@ from ..tasks.protocol import Task
 
 @dataclass(slots=True)
 class _SharedWork:
-    """Work divided among the ranks, which ends early when a rank receives a stop signal."""
+    """Computations divided among the ranks, which end early when any rank receives a stop signal."""
 
     team: Team
     stop: StopRequest
     skipped: bool = False
-    """Whether this rank has left out an item."""
+    """Whether this rank has omitted an item after a stop signal."""
 
     def in_order(self, items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
-        """Results for all items, in order, on every rank; None for an omitted item."""
+        """Results of `work` for all items, in order, on every rank; None for an omitted item."""
         return self.team.in_order(items, lambda item: self._unless_stopped(work, item))
 
     def _unless_stopped(self, work: Callable[[Any], Any], item: Any) -> Any:
@@ -35,19 +37,25 @@ class _SharedWork:
 
     @property
     def stopped(self) -> bool:
-        """Whether any rank has left out an item; all ranks ask together."""
+        """Whether any rank has omitted an item. Collective: all ranks call together."""
         return any(self.team.exchange(self.skipped))
 
 
-def planned_beforehand(plan: Plan, task: Task, team: Team, stop: StopRequest) -> Plan | None:
-    """The plan with constants computed by all ranks together; None if a stop signal came first."""
+def with_shared_constants(plan: Plan, task: Task, team: Team, stop: StopRequest) -> Plan | None:
+    """The plan of a file with the variables that depend on no point, computed by all ranks together.
+
+    None if a stop signal came before the computation ended.
+    """
     shared = _SharedWork(team, stop)
     found = task.constants(shared.in_order)
     return None if shared.stopped else replace(plan, constants=lambda: found)
 
 
-def flutter_beforehand(config: Config, team: Team, stop: StopRequest) -> FlutterForces | None:
-    """Flutter forces of rods with a relative load, searched by all ranks together; None after a stop."""
+def shared_flutter_forces(config: Config, team: Team, stop: StopRequest) -> FlutterForces | None:
+    """Flutter force of every rod whose load is relative to flutter, searched by all ranks together.
+
+    None if a stop signal came before the search ended.
+    """
     rods = team.on_first(lambda: flutter_rods(config))
     if not all(rod.standard for rod in rods):  # PETSc must start on all ranks together
         team.require_on_all_ranks(require_solvers)
@@ -56,8 +64,11 @@ def flutter_beforehand(config: Config, team: Team, stop: StopRequest) -> Flutter
     return None if shared.stopped else dict(zip(rods, found, strict=True))
 
 
-def say_stopped(team: Team, stop: StopRequest) -> None:
-    """Prints, on the first rank, that a stop came before the file was created; all ranks call together."""
+def report_stop(team: Team, stop: StopRequest) -> None:
+    """Prints, on the first rank, that a signal stopped the run before the result file was created.
+
+    Collective: all ranks call together.
+    """
     signal = max(team.exchange(stop.name))
     if team.first:
-        click.echo(f"stopped by {signal}; no point is computed yet, the same command begins again")
+        click.echo(f"stopped by {signal}; no point is computed yet, the same command starts again")

@@ -1,4 +1,4 @@
-"""The command `bench`: runs the benchmarks, prints text, writes numbers and figures."""
+"""The command `bench`: runs the benchmarks, prints their tables, writes numbers and figures."""
 
 import platform
 import sys
@@ -12,9 +12,9 @@ from ..errors import EnvironmentIncomplete
 from ..results.file.provenance import cpu_name, now, provenance
 from ..solve.backend import petsc
 
-MEASURED = (sys.executable, "-m", f"{__package__}.measured")
-"""Command line of the runs that the benchmark of the sweep measures."""
-HEADING = """# Performance
+MEASURED_COMMAND = (sys.executable, "-m", f"{__package__}.measured")
+"""Words that start `rodsweep` in the runs measured by the benchmark of the sweep."""
+REPORT_HEADING = """# Performance
 
 Speed against error of rodsweep, measured on one machine in one run of `rodsweep bench`. The peers, which a
 user might choose instead, are in the folder `benchmarks` of a checkout. Times are processor times, but clock
@@ -24,13 +24,15 @@ equal accuracy. An HDF5 file beside the text has every number with all settings.
 
 
 def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path | None) -> None:
-    """Runs a benchmark, or all; writes OUTPUT (Markdown), OUTPUT.h5 and OUTPUT_STUDY.png.
+    """Runs benchmarks; writes `output` (Markdown), a file .h5 beside it and a figure _STUDY.png of each
+    study.
 
-    directory: folder of the peers, by default the folder `benchmarks` of the running checkout.
+    what: name of the study, None for all. directory: folder of the peers, None for the folder `benchmarks` of
+    the running checkout.
     """
     try:
         from ..bench.limit_cycle.study import limit_cycle_study
-        from ..bench.peers import Peers, left_out, peer_package, peers_of
+        from ..bench.peers import Peers, peer_package, peers_left_out, study_peers
         from ..bench.spectrum.study import spectrum_study
         from ..bench.study import Study
         from ..bench.sweep.study import sweep_study
@@ -45,18 +47,18 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
         "spectrum": spectrum_study,
         "thresholds": thresholds_study,
         "limit_cycle": limit_cycle_study,
-        "sweep": lambda quick, _: sweep_study(quick, MEASURED),
+        "sweep": lambda quick, _: sweep_study(quick, MEASURED_COMMAND),
     }
     package = peer_package(directory)
     names = [what] if what else list(studies)
     tables = {}
-    blocks = [HEADING, where_and_when(package.versions() if package else {})]
-    if package is None and (sentence := left_out(names)):
+    blocks = [REPORT_HEADING, machine_line(package.versions() if package else {})]
+    if package is None and (sentence := peers_left_out(names)):
         blocks.append(sentence)
     click.echo("\n\n".join(blocks[1:]))
     for name in names:
         with TemporaryDirectory(prefix="rodsweep-bench-") as place:
-            study = studies[name](quick, peers_of(package, name, quick, Path(place)))
+            study = studies[name](quick, study_peers(package, name, quick, Path(place)))
         tables[name] = study.table()
         blocks += [f"## {name}", study.text]
         click.echo("\n" + "\n\n".join(blocks[-2:]))
@@ -66,16 +68,16 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
             blocks.append(f"![Errors against time, {name}]({figure.name})")
         # After each study, so that nothing measured is lost with the next.
         output.write_text("\n\n".join(blocks) + "\n")
-        write_measurements(output.with_suffix(".h5"), tables, machine())
+        write_measurements(output.with_suffix(".h5"), tables, machine_attributes())
 
 
-def machine() -> dict[str, str]:
-    """Processor, date and versions, as attributes of a file."""
+def machine_attributes() -> dict[str, str]:
+    """Processor, date and versions, as attributes of the file of measurements."""
     return {"processor": cpu_name(), "created": now()} | provenance() | petsc.versions()
 
 
-def where_and_when(peers: Mapping[str, str]) -> str:
-    """Machine, date and versions, including the peers' versions, in one line."""
+def machine_line(peers: Mapping[str, str]) -> str:
+    """Processor, date and versions in one line of text. peers: versions of the peers by name."""
     versions = petsc.versions() | {k.removesuffix("_version"): v for k, v in provenance().items()}
     shown = {name: versions[name] for name in ("rodsweep", "petsc", "slepc", "numpy", "python")}
     where = ", ".join(f"{name} {its}" for name, its in (shown | dict(peers)).items())

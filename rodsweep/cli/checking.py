@@ -1,4 +1,4 @@
-"""Output of `rodsweep check`: the points, modelled and neglected effects, and the cost."""
+"""Output of `rodsweep check`: points, modelled and neglected effects, expected cost."""
 
 from dataclasses import replace
 
@@ -9,13 +9,14 @@ from rich.table import Table
 from ..config.arm.axes import SLENDER
 from ..config.arm.quantities import given_text
 from ..config.arm.section import ArmSection
+from ..discretization.elements.resolution import RESOLUTION
 from ..model.arm.neglected import wall_effect
 from ..post.summary import print_lines
 from ..post.summary.arm.validity import plane_lines, validity_sentence
 from ..post.summary.ranges import span
 from ..sweep.cost_estimate import MAX_SAMPLE
 from ..sweep.points.points import Points
-from ..tasks.arm.points import NoRod, same_rods
+from ..tasks.arm.points import NoRodStatus, rod_numbers
 from ..tasks.arm.validity import ArmValidity
 from ..tasks.running.job import Job
 from ..verdict.checks import wall_check
@@ -23,7 +24,7 @@ from ..wording import counted
 
 
 def describe_job(job: Job) -> None:
-    """Prints the description of a valid config."""
+    """Prints the points, the modelled effects and the expected cost of a valid config."""
     console = Console(highlight=False, markup=False)
     console.print(f"{job.path}: valid. {job.config.title}".rstrip())
     console.print(job.task.headline())
@@ -31,7 +32,7 @@ def describe_job(job: Job) -> None:
         print_lines(console, [arms])
     print_lines(console, _arm_lines(job) if job.quantities else [])
     table = Table("part", "modelled", "why", box=None, pad_edge=False)
-    for part, is_modelled, why in job.task.parts():
+    for part, is_modelled, why in job.task.check_rows():
         table.add_row(part, "yes" if is_modelled else "no", why)
     console.print(table)
     cost = job.task.cost()
@@ -39,15 +40,16 @@ def describe_job(job: Job) -> None:
         low, high = cost.unknowns
         console.print(f"unknowns per point: {low} to {high} expected, for accuracy {job.config.accuracy:g}")
     console.print(
-        f"expected: {cost.seconds:.3g} s on one rank (divide by the ranks; first use compiles for some "
-        f"seconds more), {cost.memory / 1e6:.0f} MB of memory per rank, "
+        f"expected: {cost.seconds:.3g} s on one rank (divide by the number of ranks; the first run compiles "
+        f"for some seconds more), {cost.memory / 1e6:.0f} MB of memory per rank, "
         f"{job.points.count * job.layout.bytes_per_point / 1e6:.3g} MB of results"
     )
     if cost.too_large:
         sampled = min(MAX_SAMPLE, job.points.count)
         console.print(
-            f"warning: about {cost.too_large} of {sampled} sampled points need more unknowns than the limit "
-            "and will end with status failed"
+            f"warning: {cost.too_large} of {sampled} sampled points need more than the "
+            f"{RESOLUTION.most_unknowns} unknowns allowed and will end with status failed; use a smaller F, "
+            "fewer modes or a lower accuracy"
         )
 
 
@@ -64,12 +66,12 @@ def _arm_lines(job: Job) -> list[str]:
         *plane_lines({variable.name: np.asarray(values) for variable, values in job.quantities}),
         f"the arm as a rod: {', '.join(made)} s",
         *_uncovered_lines(job.points),
-        f"{validity}; the run judges inertia by how fast the arm moves",
+        f"{validity}; the run also judges inertia, from the frequency at which the arm moves",
     ]
 
 
 def _material_text(arm: ArmSection) -> str:
-    """Segments and law of an arm, as the end of a list."""
+    """Segments and law of an arm in words, appended to the list of its quantities."""
     segments = "".join(f"; segment {text}" for text in arm.segments or ())
     laws = [value.replace("_", "-") for value in (arm.law, arm.section and f"{arm.section} section") if value]
     return f"{segments}; {', '.join(laws)}" if laws else segments
@@ -92,14 +94,14 @@ def _wall_lines(arm: ArmSection) -> list[str]:
 
 
 def _uncovered_lines(points: Points) -> list[str]:
-    """Lines on the number of different rods, and on points without a rod, with the reasons."""
+    """Lines on the number of different rods, and on the points to which no rod corresponds, with reasons."""
     lines = list[str]()
-    rods = same_rods(points)
+    rods = rod_numbers(points)
     if rods is not None:
         there = rods if points.coverage is None else rods[points.coverage == SLENDER]
         different = counted(len(np.unique(there)), "different rod")
-        lines.append(f"{different} at {len(there)} points: each is solved once")
-    for status in NoRod:
+        lines.append(f"{different} at {len(there)} points: equal rods are solved once")
+    for status in NoRodStatus:
         number = 0 if points.coverage is None else int((points.coverage == status).sum())
         if number:
             lines.append(f"{status.name} at {number} of {points.count} points: {status.sentence}")

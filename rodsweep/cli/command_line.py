@@ -1,4 +1,4 @@
-"""Commands and options of `rodsweep`."""
+"""Commands and options of `rodsweep`, except the commands of `rodsweep.cli.page_commands`."""
 
 import sys
 from pathlib import Path
@@ -12,7 +12,8 @@ from .arm_options import arm_options
 from .file_names import link_target, result_file, with_ending
 from .launchers import rank_variables
 
-FILE = click.Path(path_type=Path)
+FILE_TYPE = click.Path(path_type=Path)
+"""Type of arguments and options that name a file."""
 overrides_option = click.option(
     "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Override a key, e.g. parameters.F.num=50."
 )
@@ -29,11 +30,11 @@ def commands(context: click.Context) -> None:
 
 
 @commands.command()
-@click.argument("config", type=FILE)
+@click.argument("config", type=FILE_TYPE)
 @click.option(
     "-o",
     "--output",
-    type=FILE,
+    type=FILE_TYPE,
     help="Result file; by default CONFIG's name with .h5, in the working directory.",
 )
 @overrides_option
@@ -57,7 +58,10 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
     from .run.running import run_config
 
     if options["fresh"] and options["extend"]:
-        raise InputError("--fresh and --extend are both given: one replaces the file, the other adds to it")
+        raise InputError(
+            "--fresh and --extend are both given; give one of them: --fresh replaces the file, --extend adds "
+            "points to it"
+        )
     part = shard_of(shard)
     suffix = f"-{part.number}-of-{part.of}.h5" if part.of > 1 else ".h5"
     output = result_file(output or Path(config.stem + suffix))
@@ -67,8 +71,8 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
 
 
 @commands.command()
-@click.argument("output", type=FILE)
-@click.argument("shards", type=FILE, nargs=-1, required=True, metavar="SHARD...")
+@click.argument("output", type=FILE_TYPE)
+@click.argument("shards", type=FILE_TYPE, nargs=-1, required=True, metavar="SHARD...")
 def merge(output: Path, shards: tuple[Path, ...]) -> None:
     """Put the points of all SHARD files into OUTPUT: parts of a sweep, or grids that form a larger grid."""
     from ..results.file.combination.merge import merge as merge_files
@@ -89,8 +93,8 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
 
 
 @commands.command()
-@click.argument("file", type=FILE)
-@click.option("-o", "--output", type=FILE, help="By default FILE's name with -snapshot before .h5.")
+@click.argument("file", type=FILE_TYPE)
+@click.option("-o", "--output", type=FILE_TYPE, help="By default FILE's name with -snapshot before .h5.")
 def snapshot(file: Path, output: Path | None) -> None:
     """Write the finished points of the result FILE, without disturbing the run."""
     from ..results.file.recent import write_snapshot
@@ -101,7 +105,7 @@ def snapshot(file: Path, output: Path | None) -> None:
 
 
 @commands.command()
-@click.argument("config", type=FILE)
+@click.argument("config", type=FILE_TYPE)
 @overrides_option
 def check(config: Path, overrides: tuple[str, ...]) -> None:
     """Validate CONFIG and print the points, the modelled effects and the expected cost, without computing."""
@@ -112,7 +116,7 @@ def check(config: Path, overrides: tuple[str, ...]) -> None:
 
 
 @commands.command()
-@click.argument("file", type=FILE)
+@click.argument("file", type=FILE_TYPE)
 @click.option("--statuses", is_flag=True, help="List all statuses of the task, not only those present.")
 def show(file: Path, statuses: bool) -> None:
     """Print a summary of the result FILE: headline numbers, statuses, accuracy, cost."""
@@ -135,11 +139,13 @@ def schema() -> None:
 @commands.command()
 @click.argument("what", type=click.Choice(["spectrum", "thresholds", "limit_cycle", "sweep"]), required=False)
 @click.option("--quick", is_flag=True, help="Fewer rounds, for a first impression.")
-@click.option("-o", "--output", type=FILE, help="Markdown file; the numbers (.h5) and figures go beside it.")
+@click.option(
+    "-o", "--output", type=FILE_TYPE, help="Markdown file; the numbers (.h5) and figures go beside it."
+)
 @click.option(
     "--peers",
     "directory",
-    type=FILE,
+    type=FILE_TYPE,
     help="Folder of the peers timed beside rodsweep; by default `benchmarks` of the running checkout.",
 )
 def bench(what: str | None, quick: bool, output: Path | None, directory: Path | None) -> None:

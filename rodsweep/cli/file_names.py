@@ -1,4 +1,4 @@
-"""File names on the command line: targets of links, default names, and endings."""
+"""File names on the command line: targets of symbolic links, default names, and endings."""
 
 import errno
 import os
@@ -7,11 +7,11 @@ from pathlib import Path
 from ..errors import InputError
 
 RESULT_ENDINGS = (".h5", ".hdf5", ".nc")
-"""Endings of result files."""
+"""Allowed endings of the names of result files."""
 
 
 def result_file(path: Path) -> Path:
-    """The result file of a given name, links resolved; InputError for a directory or another ending."""
+    """Path of a result file, symbolic links resolved; InputError for a directory or a wrong ending."""
     endings = ", ".join(RESULT_ENDINGS)
     if path.is_dir() or not path.name:
         raise InputError(f"{path} is a directory; name a file for results, which ends in {endings}")
@@ -21,14 +21,14 @@ def result_file(path: Path) -> Path:
 
 
 def with_ending(file: Path, ending: str) -> Path:
-    """The name of `file` with a different ending, in the same folder; InputError for a directory."""
+    """Path of `file` with a different ending, in the same folder; InputError for a directory."""
     if file.is_dir():
         raise InputError(f"{file} is a directory; name a file")
     return file.with_name(file.stem + ending)
 
 
 def link_target(path: Path) -> Path:
-    """Target of a link, where the journal and the lock of a result are; all paths but links unchanged.
+    """Target of a symbolic link; any other path unchanged. The journal of a result is beside the target.
 
     Raises InputError for a link that leads to itself.
     """

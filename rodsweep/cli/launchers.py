@@ -1,4 +1,4 @@
-"""Rank of a process before MPI is started, from the environment variables of launchers."""
+"""Rank of a process before MPI is started, from the environment variables of launchers such as mpiexec."""
 
 import os
 

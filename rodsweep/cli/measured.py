@@ -1,4 +1,5 @@
-"""The command as started by `rodsweep bench sweep`: notes each rank's memory, and can skip all solves.
+"""The command `rodsweep` as started by `rodsweep bench sweep`: records each rank's peak memory, and can
+replace all solves.
 
     python -m rodsweep.cli.measured DIRECTORY KIND WORDS...
 
@@ -15,25 +16,26 @@ from pathlib import Path
 
 import numpy as np
 
-from ..bench.sweep.launch import FIRST_RANK, KILLED, OTHER_RANKS, SOLVED
+from ..bench.sweep.launch import FIRST_RANK_PREFIX, KILLED, OTHER_RANKS_PREFIX, SOLVED
 from ..tasks import TASKS
 from ..tasks.protocol import Solver
 from ..tasks.spectrum import SpectrumTask
 from . import main
 from .launchers import prints_messages
 
-OUTCOMES = 4096
-"""Number of random outcomes, taken by the points in turn. Compression does not look back this far."""
+OUTCOME_COUNT = 4096
+"""Number of different random outcomes. The points use the outcomes in turn; the compression of the file
+detects no repetition at this distance."""
 
 
 @dataclass(frozen=True, slots=True)
 class InstantSpectra(SpectrumTask):
-    """The task spectrum with random outcomes from a table, so that all measured time belongs to the sweep.
+    """The task spectrum with random eigenvalues from a table, so that all measured time belongs to the sweep.
 
-    All outcomes are stable: a sweep refines each change of stability, of which random ones have many.
+    All eigenvalues are stable: a sweep locates every change of stability, which takes time.
 
-    killed: directory in which the rank of the last point notes its memory before the kill; None for a run
-    without a kill.
+    killed: directory in which the rank of the last point records its peak memory before the process is
+    killed; None for a run without a kill.
     """
 
     killed: Path | None = None
@@ -43,7 +45,7 @@ class InstantSpectra(SpectrumTask):
         from ..solve.spectrum.status import SpectrumStatus
 
         points = self.points
-        parts = np.random.default_rng(1).standard_normal((OUTCOMES, 3, self.config.spectrum.modes))
+        parts = np.random.default_rng(1).standard_normal((OUTCOME_COUNT, 3, self.config.spectrum.modes))
         outcomes = [
             Spectrum(
                 status=SpectrumStatus.ok,
@@ -61,18 +63,18 @@ class InstantSpectra(SpectrumTask):
         def solve(index: int) -> Spectrum:
             points.rod(index)
             if self.killed and index == points.count - 1:
-                note_memory(self.killed)
+                record_memory(self.killed)
                 os.kill(os.getpid(), signal.SIGKILL)
-            return outcomes[index % OUTCOMES]
+            return outcomes[index % OUTCOME_COUNT]
 
         return replace(SpectrumTask.solver(self), warm_up=lambda: None, solve=solve, stretched=None)
 
 
-def note_memory(directory: Path) -> None:
-    """Writes the peak memory of this rank so far into the directory."""
-    (directory / f"{FIRST_RANK if prints_messages() else OTHER_RANKS}-{os.getpid()}").write_text(
-        str(peak_memory())
-    )
+def record_memory(directory: Path) -> None:
+    """Writes the peak memory of this rank in bytes into a file of the directory."""
+    (
+        directory / f"{FIRST_RANK_PREFIX if prints_messages() else OTHER_RANKS_PREFIX}-{os.getpid()}"
+    ).write_text(str(peak_memory()))
 
 
 def peak_memory() -> int:
@@ -89,7 +91,7 @@ def peak_memory() -> int:
 
 
 def run_measured() -> None:
-    """Runs the command given by the arguments."""
+    """Runs `rodsweep` with the arguments of this process, and records the peak memory at the end."""
     directory, kind, *words = sys.argv[1:]
     notes = Path(directory)
     if kind != SOLVED:
@@ -98,7 +100,7 @@ def run_measured() -> None:
     try:
         main()
     finally:
-        note_memory(notes)
+        record_memory(notes)
 
 
 if __name__ == "__main__":

@@ -11,18 +11,20 @@ from ..model.arm.quantities import UNITS
 from ..model.parameters import PARAMETERS
 from .arm_options import arm_options, parameter_options
 from .file_names import link_target, with_ending
-from .portrait_rod import LEFT_OUT, rod_from, showing
+from .portrait_rod import QUANTITIES_WITHOUT_OPTION, rod_of_options, solve_with_progress
 
-PORT = click.IntRange(0, 65535)
-FILE = click.Path(path_type=Path)
+PORT_TYPE = click.IntRange(0, 65535)
+"""Type of an option that names a TCP port."""
+FILE_TYPE = click.Path(path_type=Path)
+"""Type of arguments and options that name a file."""
 
 
 @click.command()
-@click.argument("files", type=FILE, nargs=-1, required=True, metavar="FILE...")
+@click.argument("files", type=FILE_TYPE, nargs=-1, required=True, metavar="FILE...")
 @click.option(
     "-o",
     "--output",
-    type=FILE,
+    type=FILE_TYPE,
     help="Figure file (.png, .pdf, .svg; .gif or .mp4 for an animation); by default FILE's name.",
 )
 @click.option(
@@ -89,14 +91,14 @@ def _values(at: tuple[str, ...]) -> dict[str, str]:
     for text in at:
         name, equals, value = text.partition("=")
         if not equals:
-            raise InputError(f"--at {printable(text)} must be a parameter with a number, such as k1=150")
+            raise InputError(f"--at {printable(text)} must be NAME=VALUE, such as k1=150 or 'length=12 cm'")
         found[name.strip()] = value.strip()
     return found
 
 
 @click.command()
-@click.argument("file", type=FILE)
-@click.option("-o", "--output", type=FILE, help="A .csv or .tsv file; by default FILE's name with .csv.")
+@click.argument("file", type=FILE_TYPE)
+@click.option("-o", "--output", type=FILE_TYPE, help="A .csv or .tsv file; by default FILE's name with .csv.")
 @click.option("--table", metavar="NAME", help="Table to write: points, or a list such as crossings.")
 @click.option("--columns", metavar="A,B,C", help="Columns to write, in this order; by default all.")
 @click.option("--units", is_flag=True, help="Put units into the headings: F_onset [k3/L^2].")
@@ -116,8 +118,8 @@ def export(
 
 
 @click.command()
-@click.argument("files", type=FILE, nargs=-1, required=True, metavar="FILE...")
-@click.option("-o", "--output", type=FILE, help="A .html file; by default FILE's name with .html.")
+@click.argument("files", type=FILE_TYPE, nargs=-1, required=True, metavar="FILE...")
+@click.option("-o", "--output", type=FILE_TYPE, help="A .html file; by default FILE's name with .html.")
 def report(files: tuple[Path, ...], output: Path | None) -> None:
     """Write one HTML page about the result FILEs, to share: answer, figures, tables, config, provenance."""
     from ..post.report import require_page, write_report
@@ -131,13 +133,13 @@ def report(files: tuple[Path, ...], output: Path | None) -> None:
 
 @click.command()
 @parameter_options
-@arm_options(LEFT_OUT, is_needed=False)
+@arm_options(QUANTITIES_WITHOUT_OPTION, is_needed=False)
 @click.option("--poisson", type=float, help="Poisson's ratio of the arm; by default 0.5.")
 @click.option("--profile", metavar="FILE", help="A CSV file with factors along the rod, as material.profile.")
 @click.option("--F-max", "F_max", type=float, default=200.0, show_default=True, help="Largest force.")
 @click.option("--accuracy", type=float, help="Relative accuracy; by default the accuracy of each task.")
 @click.option(
-    "-o", "--output", type=FILE, default=Path("portrait.png"), show_default=True,
+    "-o", "--output", type=FILE_TYPE, default=Path("portrait.png"), show_default=True,
     help="A .png, .pdf or .svg file, or a .html page with tables.",
 )  # fmt: skip
 def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any) -> None:
@@ -158,8 +160,8 @@ def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any)
     material = {name: options[name] for name in ("law", "section", "profile")}
     quantities = {name: value for name, value in options.items() if name in (*UNITS, "poisson")}
     quantities["segments"] = options["segment"] or None
-    rod = rod_from(parameters, quantities, material)
-    with showing(ProgressReporter(None, "portrait", "solved"), solved_view) as solve:
+    rod = rod_of_options(parameters, quantities, material)
+    with solve_with_progress(ProgressReporter(None, "portrait", "solved"), solved_view) as solve:
         results = rod_results(PortraitRequest(rod=rod, F_max=F_max, accuracy=accuracy), solve)
     click.echo(paragraph(results))
     click.echo(write_portrait(results, output))
@@ -168,7 +170,7 @@ def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any)
 @click.command()
 @click.argument("source", type=click.Path(path_type=Path), required=False, metavar="[FILE | CONFIG]")
 @click.option(
-    "--port", type=PORT, default=0, show_default=True, help="Port of the page; 0 chooses a free port."
+    "--port", type=PORT_TYPE, default=0, show_default=True, help="Port of the page; 0 chooses a free port."
 )
 @click.option("--open", "is_opened", is_flag=True, help="Open the page in the browser.")
 def explore(source: Path | None, port: int, is_opened: bool) -> None:

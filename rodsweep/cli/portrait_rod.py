@@ -1,4 +1,4 @@
-"""The rod of the command `portrait` from its options, and the progress of the solves of its portrait."""
+"""The rod described by the options of the command `portrait`, and the progress display of its solves."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -19,16 +19,18 @@ if TYPE_CHECKING:
     from ..tasks.rod_portrait import Solve
     from ..tasks.running.job import Job
 
-LEFT_OUT = (*LOADS, "fluid_density", "density_difference")
-"""Quantities of an arm without an option: the load is found, and densities do not enter the model."""
+QUANTITIES_WITHOUT_OPTION = (*LOADS, "fluid_density", "density_difference")
+"""Quantities of an arm without an option: the portrait varies the load, and the model has no densities."""
 
 
-def rod_from(
+def rod_of_options(
     parameters: Mapping[str, float | None], quantities: Mapping[str, Any], material: Mapping[str, str | None]
 ) -> "DescribedRod":
-    """The rod of the options, each None where it is not given; InputError for options that describe no rod.
+    """The rod described by options; InputError for options that describe no rod.
 
-    quantities: of an arm, with poisson and segments. Parameters given beside an arm replace its own.
+    parameters: parameters of the rod. quantities: quantities of an arm, poisson and segments. material: law,
+    section and profile. Values of omitted options are None. A parameter given beside an arm replaces the
+    arm's parameter.
     """
     from ..config.axes import DEFAULTS, REQUIRED
     from ..model.arm.arm import SlenderArm
@@ -56,20 +58,20 @@ def rod_from(
 
 
 def _read(material: Mapping[str, Any]) -> Any:
-    """The section `material` of a config, its profile read from the file."""
+    """The section `material` of a config, with the profile read from its file."""
     from ..config.material import with_profile_read
 
     return with_profile_read({"material": dict(material)}, Path())["material"]
 
 
 def _given(options: Mapping[str, Any]) -> dict[str, Any]:
-    """The options that are given."""
+    """Options with a value that is not None."""
     return {name: value for name, value in options.items() if value is not None}
 
 
 @contextmanager
-def showing(shown: "ProgressReporter", solve: "Solve") -> "Iterator[Solve]":
-    """Gives `solve` with its progress: the number of solved jobs, and the position of a long solve."""
+def solve_with_progress(shown: "ProgressReporter", solve: "Solve") -> "Iterator[Solve]":
+    """Yields `solve` with a progress display: number of solved jobs, and position of a long solve."""
     numbers = count(1)
 
     def show(place: SolvePosition) -> None:

@@ -129,7 +129,10 @@ class Axes(LinearAxes):
         beside = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
         count = arm.count(math.prod(axis.size for axis in beside.values()))
         if self.over and count > MOST_POINTS:
-            raise ValueError(f"parameters.arm makes a grid of {count} points; it may have {MOST_POINTS}")
+            raise ValueError(
+                f"parameters.arm makes a grid of {count} points, more than the {MOST_POINTS} allowed; use "
+                "fewer values"
+            )
         if not self.over:
             arm.grid_axes()
 

@@ -86,7 +86,9 @@ class PageContents:
 
     def show_point(self, state: PageState, F: float) -> None:
         """Marks the point of the state in all pictures, and updates address, config and Python lines."""
-        at = F * load_axis(state).factor
+        axis = load_axis(state)
+        at = F * axis.factor
+        self.controls.show_largest_load(state, axis)
         self.growth.move_point(at)
         self.branches.move_point(at)
         load = SCALES[state.tab][state.load]

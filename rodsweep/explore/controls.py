@@ -8,9 +8,10 @@ from bokeh.models import Column, InlineStyleSheet, Select, Slider, TabPanel, Tab
 from bokeh.models.css import StyleSheet
 
 from ..post.summary.arm.arm import word
-from .scales import SCALES, ControlScale
+from .scales import SCALES, ControlScale, PictureAxis
 from .state import ACROSS, LAW_NAMES, TABS, PageState
 
+LARGEST_FORCE = "Largest force F (k3/L^2)"
 STEPS = 400
 """Number of steps of a slider from end to end."""
 Changed = Callable[..., None]
@@ -86,7 +87,7 @@ class Controls:
         self.law = choice(title="Law of the material", name="law", options=list(LAW_NAMES.items()))
         self.across = choice(title="Second parameter of the diagram", name="across")
         self.F_max = TextInput(
-            title="Largest force F (k3/L^2)", name="F_max", sizing_mode="stretch_width", stylesheets=sheets
+            title=LARGEST_FORCE, name="F_max", sizing_mode="stretch_width", stylesheets=sheets
         )
         for key, widget in (("law", self.law), ("across", self.across), ("F_max", self.F_max)):
             widget.on_change("value", partial(self._choice_changed, key))
@@ -107,6 +108,11 @@ class Controls:
             self.F_max.value = state.F_max
         finally:
             self._is_shown = False
+
+    def show_largest_load(self, state: PageState, axis: PictureAxis) -> None:
+        """Says, for an arm, at which pressure the force is the largest one. axis: of the load."""
+        pressure = f": {state.largest_force() * axis.factor:.4g} kPa" if state.tab == "arm" else ""
+        self.F_max.title = LARGEST_FORCE + pressure
 
     def _field_changed(self, name: str, text: str) -> None:
         self._changed(values={name: text})

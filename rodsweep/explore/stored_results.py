@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..api.dataset import view_of
+from ..api.dataset import view_of_dataset
 from ..arrays import Array
 from ..model.parameters import PARAMETERS
 from ..post.branch_curves import RodBranches
@@ -150,7 +150,7 @@ class StoredResults:
         if words_of(point["status"]) == "missing":
             return None
         stop = float(json.loads(self.data.attrs["config_resolved"])["branch"]["stop"])
-        return drawn_branches(RodBranches(view_of(self.data, self.path), rod), stop) | self._found()
+        return drawn_branches(RodBranches(view_of_dataset(self.data, self.path), rod), stop) | self._found()
 
     def _found(self) -> Found:
         return {"status": "ok", "sentence": "", "source": f"stored in {self.path.name}"}

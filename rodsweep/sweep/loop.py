@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..watch import Stopped, reporting_to
+from ..watch import SolveStopped, reporting_to
 from .claims import FirstRankClaims, OtherRankClaims
 from .handout import GIVE_BACK_AFTER, NO_WORK_LEFT, Handout, RankReport, chunk_seconds
 from .points.ranges import IndexRange
@@ -75,7 +75,7 @@ def sweep(team: Team, todo: Handout, loop: Loop, shown: ProgressSink, stop: Stop
     current point, or within the point if more than `stop.GRACE_SECONDS` seconds are needed.
     """
     claims = FirstRankClaims(team, todo, stop, shown.place) if team.first else OtherRankClaims(team, stop)
-    with suppress(Stopped), reporting_to(RankListener(claims, stop)):
+    with suppress(SolveStopped), reporting_to(RankListener(claims, stop)):
         loop.prepare()
     shown(0)
     return _RankLoop(team, claims, loop, shown, stop).share()
@@ -137,7 +137,7 @@ class _RankLoop:
             try:
                 with reporting_to(RankListener(self.claims, self.stop, partial(self.loop.name, at))):
                     self._solve(at, before)
-            except Stopped:
+            except SolveStopped:
                 self.ended = True
             if self.stop:  # the unit may be unfinished, so it does not count as solved
                 break

@@ -12,7 +12,7 @@ from contextlib import suppress
 from types import FrameType
 from typing import Protocol
 
-from ..watch import MakePosition, SolvePosition, Stopped
+from ..watch import MakePosition, SolvePosition, SolveStopped
 
 POLL_SECONDS = 0.05
 """Seconds between two polls for messages and stop requests during a solve."""
@@ -117,4 +117,4 @@ class RankListener:
             self.next_poll = now + POLL_SECONDS
             self.claims.between_points()
             if self.stop.is_due:
-                raise Stopped
+                raise SolveStopped

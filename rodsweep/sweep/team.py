@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any, TypeVar
 
-from ..errors import BUG_STATUS, EnvironmentIncomplete, Refusal, not_importable
+from ..errors import BUG_STATUS, EnvironmentIncomplete, Refusal, import_refusal
 
 T = TypeVar("T")
 S = TypeVar("S")
@@ -24,14 +24,15 @@ class Team:
         try:
             from mpi4py import MPI
         except ImportError as error:
-            raise not_importable("mpi4py", error) from error
+            raise import_refusal("mpi4py", error) from error
         self.MPI = MPI
         self.comm = MPI.COMM_WORLD.Dup()
         self.rank: int = self.comm.Get_rank()
         self.size: int = self.comm.Get_size()
         if self.size > 1 and MPI.Query_thread() < MPI.THREAD_MULTIPLE:
             raise EnvironmentIncomplete(
-                "this MPI was started without MPI_THREAD_MULTIPLE, which rodsweep needs"
+                "MPI does not provide the thread level MPI_THREAD_MULTIPLE, which rodsweep needs on several "
+                "ranks; use an MPI built with thread support, or one rank"
             )
 
     @property

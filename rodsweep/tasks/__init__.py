@@ -1,4 +1,4 @@
-"""One module per task: connects config and points with solver and variables.
+"""One module per task: a task connects config and points with a solver and the variables of the file.
 
 A new task needs a module of the same name here, in `rodsweep.config`, `rodsweep.results.layouts`,
 `rodsweep.post.summary` and `rodsweep.post.figures`, and an entry in the registry of each package.
@@ -26,4 +26,5 @@ TASKS: dict[str, Callable[[Any, Points], Task]] = {
     "criticality": CriticalityTask,
     "branch": BranchTask,
 }
-"""Constructors of the tasks from config and points. Raise InputError for what only the task recognises."""
+"""Constructor of each task, from (config, points). Raises InputError for errors that only the task
+detects."""

@@ -10,8 +10,8 @@ from ..config.task.branch import BranchConfig
 from ..results.layouts.branch import followed_variables, special_variables
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_branches
-from .parts import NonlinearTask, before_crushed, each_point
-from .protocol import Part, Solver
+from .parts import NonlinearTask, crushing_clause, points_clause
+from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
     from ..solve.branch.branch_curve import BranchCurve, BranchPoint
@@ -22,22 +22,22 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class BranchTask(NonlinearTask):
-    """Branches of cycles and their special points."""
+    """The task branch: branches of cycles of every rod, with their special points."""
 
     config: BranchConfig
 
     def headline(self) -> str:
         options = self.config.branch
         along = options.along
-        short = before_crushed(self.config) * (options.along == "F")
+        short = crushing_clause(self.config) * (options.along == "F")
         ends = f"from {options.start:g} to {options.stop:g}"
-        return each_point(self.points, f"followed in {along} {ends}{short}")
+        return points_clause(self.points, f"followed in {along} {ends}{short}")
 
-    def asked(self) -> list[Part]:
+    def option_rows(self) -> list[CheckRow]:
         options = self.config.branch
         kept = f"at most {options.cycles} cycles and {options.special} special points of a rod are stored"
         return [
-            self.AXIAL,
+            self.AXIAL_DRAG_ROW,
             ("branches born at Hopf points", True, kept),
             ("unstable cycles", True, "with all their Floquet multipliers"),
             ("branches without mirror symmetry", True, "from the symmetry breakings on those branches"),
@@ -46,7 +46,7 @@ class BranchTask(NonlinearTask):
         ]
 
     def searched(self) -> dict[str, np.ndarray]:
-        """Ends of the followed parameter, (2,)."""
+        """Smallest and largest value of the followed parameter, (2,), by its name."""
         options = self.config.branch
         return {options.along: np.array([options.start, options.stop])}
 
@@ -66,19 +66,25 @@ class BranchTask(NonlinearTask):
             statuses=tuple(BranchStatus),
             warm_up=warm_up,
             solve=lambda index: solve_branches(self.points.rod(index), request, workspace),
-            record=lambda index, result: record(result, options.along, options.cycles, options.special),
+            record=lambda index, result: branch_values(
+                result, options.along, options.cycles, options.special
+            ),
         )
 
 
-def record(result: "BranchesOfRod", along: str, points: int, special: int) -> dict[str, Any]:
-    """All branches of a rod as variables of the file; points, special: lengths of the two lists."""
+def branch_values(result: "BranchesOfRod", along: str, points: int, special: int) -> dict[str, Any]:
+    """Variables of the file for all branches of a rod.
+
+    along: the followed parameter. points: length of the list of cycles. special: length of the list of
+    special points.
+    """
     every = [(number, point) for number, curve in enumerate(result.curves, 1) for point in curve.points]
     cycles = [_cycle(point, along) | {"branch": number} for number, point in every]
     starts = [0]
     for curve in result.curves:
         starts.append(starts[-1] + len(curve.points))
     after = {crossing.at: crossing for crossing in result.crossings}
-    others = meetings(result.curves)
+    others = branches_at_breakings(result.curves)
     specials = [
         _special(one, starts[number - 1], after.get(one.at))
         | {"special_branch": number, "special_meets": others.get((number, place), -1)}
@@ -95,8 +101,12 @@ def record(result: "BranchesOfRod", along: str, points: int, special: int) -> di
     return values | {"seconds": result.seconds, "status": result.status}
 
 
-def meetings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
-    """Branches that meet at symmetry breakings: {(branch, index of special point): second branch}."""
+def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
+    """For every symmetry breaking, the second branch that begins or ends there.
+
+    Keys: (number of a branch from 1, index of the symmetry breaking among its special points). Values: number
+    of the second branch.
+    """
     numbers = {}
     for number, curve in enumerate(curves, 1):
         for breaking, place in ((curve.breaking, 0), (curve.end_breaking, len(curve.special) - 1)):
@@ -107,13 +117,13 @@ def meetings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
 
 
 def _cycle(point: "BranchPoint", along: str) -> dict[str, Any]:
-    """A cycle of a branch as variables of the file."""
+    """Variables of the file for one cycle of a branch followed in the parameter `along`."""
     own = {f"branch_{along}": "at", f"branch_{along}_error": "at_error", "unstable_multipliers": "unstable"}
     variables = [v for v in followed_variables(along) if v.name != "branch"]
     return recorded(variables, point, point.measures, point.errors, names=own)
 
 
-FIELD_NAMES = {
+SPECIAL_POINT_FIELDS = {
     "special_tip_y_max_error": "size_error",
     "special_amplitude_coefficient_error": "coefficient_error",
 }
@@ -121,7 +131,11 @@ FIELD_NAMES = {
 
 
 def _special(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict[str, Any]:
-    """A special point as variables of the file. start: index of the first cycle of its branch."""
+    """Variables of the file for one special point.
+
+    start: index, among all cycles of the rod, of the first cycle of the point's branch. hopf: crossing of the
+    straight rod at the point, None if the point is no Hopf point.
+    """
     beside = {
         "special_point": start + point.after + 1 if point.after >= 0 else 0,
         "special_reason": int(point.reason or 0),
@@ -129,4 +143,4 @@ def _special(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict
     }
     known = {*beside, "special_branch", "special_meets"}
     own = [v for v in special_variables("F") if v.name not in known]
-    return beside | recorded(own, point, prefix="special_", names=FIELD_NAMES)
+    return beside | recorded(own, point, prefix="special_", names=SPECIAL_POINT_FIELDS)

@@ -9,9 +9,9 @@ from ..config.task.criticality import CriticalityConfig
 from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_criticality
-from .parts import NonlinearTask, before_crushed, each_point
-from .protocol import Part, Solver
-from .thresholds import search_record
+from .parts import NonlinearTask, crushing_clause, points_clause
+from .protocol import CheckRow, Solver
+from .thresholds import crossing_values
 
 if TYPE_CHECKING:
     from ..solve.hopf.criticality import Criticality
@@ -19,24 +19,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class CriticalityTask(NonlinearTask):
-    """Hopf points and their normal forms."""
+    """The task criticality: Hopf points of every rod and their normal forms."""
 
     config: CriticalityConfig
 
     def headline(self) -> str:
         F_max = self.config.criticality.F_max
-        return each_point(self.points, f"searched from F = 0 to {F_max:g}{before_crushed(self.config)}")
+        return points_clause(self.points, f"searched from F = 0 to {F_max:g}{crushing_clause(self.config)}")
 
-    def asked(self) -> list[Part]:
+    def option_rows(self) -> list[CheckRow]:
         most = self.config.criticality.crossings
         return [
-            self.AXIAL,
+            self.AXIAL_DRAG_ROW,
             ("Hopf points and their normal forms", True, f"at most {most} are stored for each rod"),
             ("cycles", False, "to third order in their amplitude only; task: limit_cycle computes them"),
         ]
 
     def searched(self) -> dict[str, np.ndarray]:
-        """The largest force, (1,)."""
+        """The largest F of the search, (1,), by the name of the parameter."""
         return {"F": np.array([self.config.criticality.F_max])}
 
     def cost(self) -> Estimate:
@@ -52,13 +52,13 @@ class CriticalityTask(NonlinearTask):
             statuses=tuple(CriticalityStatus),
             warm_up=warm_up,
             solve=lambda index: solve_criticality(self.points.rod(index), request),
-            record=lambda index, result: record(result, options.crossings),
+            record=lambda index, result: criticality_values(result, options.crossings),
         )
 
 
-def record(result: "Criticality", most: int) -> dict[str, Any]:
-    """The result of a rod as variables of the file; most: length of the list of Hopf points."""
-    search = search_record(result, most, "F", "crossing_F")
+def criticality_values(result: "Criticality", most: int) -> dict[str, Any]:
+    """Variables of the file for the Hopf points of a rod; most: length of the list of Hopf points."""
+    search = crossing_values(result, most, "F", "crossing_F")
     for name in ABSENT_FROM_HOPF_SEARCH:
         del search[name]
     pairs = zip(result.coefficients, result.crossings, strict=False)

@@ -1,4 +1,4 @@
-"""Shapes and samples of cycles for a figure of a file without them: the cycles are solved again."""
+"""Shapes and samples of cycles for a figure of a file that stores none: the cycles are solved again."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,18 +13,21 @@ from ..results.file.view import View
 from ..results.layouts.limit_cycle import ENERGY, SHAPE, TIP
 from .running.job import Job, job_of
 
-SHAPES = 48
-"""Number of shapes solved per period; an animation needs about 50 frames."""
-SAMPLES = 256
-"""Number of samples of tip and energy solved per period."""
-SAME_PERIOD = 100
-"""Maximum difference of the periods of a cycle solved twice, in units of their estimated errors."""
+SHAPE_COUNT = 48
+"""Number of shapes per period; an animation needs about 50 frames."""
+SAMPLE_COUNT = 256
+"""Number of samples of the tip and of the energy per period."""
+MAX_PERIOD_DIFFERENCE = 100
+"""Maximum difference between the stored period and the period solved again, in units of their estimated
+errors. Beyond it the two cycles count as different."""
 
 
 def with_shapes(view: View, numbers: Sequence[int]) -> View:
-    """The file with shapes and samples of the cycles at the given points, numbered from 1; NaN at all others.
+    """A copy of the file's view with shapes and samples of the cycles at some points; NaN at all other
+    points.
 
-    InputError if a point solved again has another cycle, as is possible from a different start.
+    numbers: of the points, from 1. Raises InputError if a point solved again has a cycle different from the
+    stored one, as is possible from a different start.
     """
     shape = view.variables["status"].shape
     added: dict[str, np.ndarray] = {}
@@ -39,7 +42,7 @@ def with_shapes(view: View, numbers: Sequence[int]) -> View:
 
 
 def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
-    """The job of a point, and the variables of the point's cycle."""
+    """(job of a point, variables of the point's cycle solved again); number: of the point, from 1."""
     job = _job(view, number)
     try:
         solver = job.solver()
@@ -51,7 +54,7 @@ def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
             "limit_cycle.shapes > 0, which stores them"
         ) from None
     stored, error = (float(view.variables[name].ravel()[number - 1]) for name in ("period", "period_error"))
-    allowed = SAME_PERIOD * stored * (error + float(record["period_error"]))
+    allowed = MAX_PERIOD_DIFFERENCE * stored * (error + float(record["period_error"]))
     if not abs(float(record["period"]) - stored) <= allowed:
         raise InputError(
             f"{view.path} holds no shapes of cycles, and point {number}, solved without its neighbour, ends "
@@ -61,9 +64,14 @@ def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
 
 
 def _job(view: View, number: int) -> Job:
-    """Job of a point of the file, with the file's config, but independent of neighbouring points."""
+    """Job that solves one point of the file with the file's config, without starting from a neighbour."""
     stored = view.config["limit_cycle"]
-    options = {"shapes": SHAPES, "samples": SAMPLES, "harmonics": stored["harmonics"], "start": "hopf"}
+    options = {
+        "shapes": SHAPE_COUNT,
+        "samples": SAMPLE_COUNT,
+        "harmonics": stored["harmonics"],
+        "start": "hopf",
+    }
     if stored["start"] != "hopf":
         options |= {"start": "mode", "amplitude": stored["amplitude"], "most_periods": stored["most_periods"]}
     tree = {

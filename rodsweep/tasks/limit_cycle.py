@@ -1,4 +1,4 @@
-"""The task limit_cycle: beating of the nonlinear rod at every point, or return to the straight rod."""
+"""The task limit_cycle: the limit cycle of the nonlinear rod at every point, or its return to rest."""
 
 from dataclasses import dataclass, replace
 from math import isfinite, nan
@@ -28,23 +28,25 @@ from ..sweep.points.chains import ChainedWork, Chains
 from ..sweep.points.grid import refuse_outside
 from ..wording import counted
 from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
-from .parts import arms_line, count_of, each_point, material_parts, rod_parts
-from .protocol import InOrder, Part, Solver, Task, on_this_rank
+from .parts import arms_line, material_check_rows, points_clause, points_text, rod_check_rows
+from .protocol import CheckRow, OrderedMap, Solver, Task, on_this_rank
 
 if TYPE_CHECKING:
     from ..solve.cycle.limit_cycle import Cycle, CycleRequest
 
-OF_THE_SWEEP = ("method", "along", "direction", "time")
-"""Options of the sweep, not of a cycle: the method, the order of the points, the units of the file."""
-MULTIPLIERS = {f"multiplier_{part}": f"multipliers_{part}" for part in ("real", "imag")}
-"""Names of variables by the field of a cycle, where the two names differ."""
+SWEEP_OPTIONS = ("method", "along", "direction", "time")
+"""Options of the task that concern the sweep or the file; all others belong to the request for a cycle."""
+MULTIPLIER_FIELDS = {f"multiplier_{part}": f"multipliers_{part}" for part in ("real", "imag")}
+"""Field of `_StoredMultipliers` by name of the variable, where the two names differ."""
 FINITE_STIFFNESS = Range(isfinite, "a finite number")
+"""Values of k2 for which tau1 exists."""
 POSITIVE_DRAG = Range(lambda value: value > 0, "a number above 0")
+"""Values of gamma3 for which tau1 exists."""
 
 
 @dataclass(frozen=True, slots=True)
 class LimitCycleTask(Task):
-    """Limit cycles on their points."""
+    """The task limit_cycle: a limit cycle, or a status without cycle, at every point."""
 
     config: LimitCycleConfig
 
@@ -64,7 +66,9 @@ class LimitCycleTask(Task):
         return Chains(self.points.shape, axis, options.direction == "up")
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Times of samples, shapes and transients; material coordinates of the nodes of shapes. All (n,)."""
+        """Times of samples, shapes and transients, and material coordinates of shapes, by dimension; all
+        (n,).
+        """
         options = self.config.limit_cycle
         extents = {"sample": options.samples, "shape": options.shapes}
         times = {name: np.arange(count) / count for name, count in extents.items() if count}
@@ -72,8 +76,8 @@ class LimitCycleTask(Task):
             times["transient"] = np.linspace(0.0, 1.0, options.transient)
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
 
-    def constants(self, in_order: InOrder = on_this_rank) -> tuple[Filled, ...]:
-        """Hopf points of the lines through the points."""
+    def constants(self, in_order: OrderedMap = on_this_rank) -> tuple[Filled, ...]:
+        """Hopf points of the straight rod on the lines through the points."""
         lines = hopf_lines_of(self.points)
         if lines:
             require_solvers()
@@ -86,19 +90,21 @@ class LimitCycleTask(Task):
         if options.start == "hopf":
             start = "the Hopf point below its force"
         if chains is None:
-            return each_point(self.points, f"started from {start}")
+            return points_clause(self.points, f"started from {start}")
         chained = f"{counted(chains.count, 'chain')} of {chains.length}"
         return (
-            f"{count_of(self.points)} in {chained}, {options.direction} in {self.config.along}: each starts "
-            f"from its neighbour's cycle; the first point, and a point whose neighbour has no cycle, starts "
-            f"from {start}; at most {counted(chains.count, 'rank')} can share the work"
+            f"{points_text(self.points)} in {chained}, {options.direction} in {self.config.along}: each "
+            "starts from its neighbour's cycle; the first point, and a point whose neighbour has no cycle, "
+            f"starts from {start}; at most {counted(chains.count, 'rank')} can share the work"
         )
 
     def arms(self) -> str:
         return arms_line(self.config, self.points.of_rods, self._first_mesh)
 
     def _first_mesh(self) -> Elements | None:
-        """The largest first mesh of the motions, or of the branches from Hopf points."""
+        """The largest of the first meshes of all points: of motions in time, or of branches from Hopf
+        points.
+        """
         from ..solve.cycle.transient.motion_mesh import MOTION_MESH, coarse_mesh, motion_mesh
 
         options = self.config.limit_cycle
@@ -107,13 +113,13 @@ class LimitCycleTask(Task):
         accuracy = self.config.accuracy if options.method == "integration" else MOTION_MESH.accuracy
         return largest_first_mesh(self.points, lambda rod: motion_mesh(rod, accuracy))
 
-    def parts(self) -> list[Part]:
+    def check_rows(self) -> list[CheckRow]:
         options = self.config.limit_cycle
         gamma1 = np.unique(self.points.of_rods["gamma1"])[:5]
         marched = options.method == "integration"
         return [
-            *rod_parts(self.points.of_rods),
-            *material_parts(self.config, self.points.of_rods),
+            *rod_check_rows(self.points.of_rods),
+            *material_check_rows(self.config, self.points.of_rods),
             ("axial drag", True, f"gamma1 = {', '.join(f'{value:g}' for value in gamma1)}"),
             ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
             ("energy budget", True, "means and fluctuations over a cycle"),
@@ -123,12 +129,15 @@ class LimitCycleTask(Task):
             ("tip from the start to the cycle", False, f"limit_cycle.method: {options.method}")
             if marched
             else self._stored("tip from the start to the cycle", "transient", TRANSIENT),
-            ("period in tau1 too", options.time == "tau1", f"limit_cycle.time: {options.time}"),
+            ("period in units of tau1", options.time == "tau1", f"limit_cycle.time: {options.time}"),
             ("gravity, inertia, motion out of the plane", False, "not part of the overdamped problem"),
         ]
 
-    def _stored(self, what: str, option: str, variables: tuple[Variable, ...]) -> Part:
-        """Text on variables that are stored only on request: number and memory."""
+    def _stored(self, what: str, option: str, variables: tuple[Variable, ...]) -> CheckRow:
+        """Row of `check` on variables stored only on request, with their number and memory.
+
+        what: description of the variables. option: option of limit_cycle with their number per point.
+        """
         options = self.config.limit_cycle
         each: int = getattr(options, option)
         if not each:
@@ -181,20 +190,20 @@ class LimitCycleTask(Task):
         )
 
     def request(self) -> "CycleRequest":
-        """Request for every cycle."""
+        """The request, the same at every point, from which `solve_cycle` solves a cycle."""
         from ..solve.cycle.limit_cycle import CycleRequest
 
-        options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
+        options = self.config.limit_cycle.model_dump(exclude=set(SWEEP_OPTIONS))
         return CycleRequest(accuracy=self.config.accuracy, **options)
 
     def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:
-        """A Cycle as variables of the file: fields, measures and errors."""
+        """Variables of the file for the cycle of one point; point: parameters by name."""
         options = self.config.limit_cycle
         found = cycle.multipliers
         stored = _StoredMultipliers(
             np.full(STORED_MULTIPLIERS, complex(nan, nan)) if found is None else found
         )
-        values = recorded(CYCLE, stored, cycle.errors, cycle.measures, cycle, names=MULTIPLIERS)
+        values = recorded(CYCLE, stored, cycle.errors, cycle.measures, cycle, names=MULTIPLIER_FIELDS)
         if options.time == "tau1":  # t/tau1 = (t/tau2) k2/gamma3
             values[PERIOD_TAU1.name] = cycle.measures.period * point["k2"] / point["gamma3"]
         if options.samples:
@@ -207,12 +216,12 @@ class LimitCycleTask(Task):
 
 
 class _StoredMultipliers(NamedTuple):
-    """The Floquet multipliers of a cycle as stored, complex, (STORED_MULTIPLIERS,)."""
+    """The stored Floquet multipliers of a cycle, (STORED_MULTIPLIERS,), NaN if none were computed."""
 
     multipliers: Complex
 
 
 def _along(variables: tuple[Variable, ...], arrays: np.ndarray | None) -> dict[str, Any]:
-    """Arrays by name of variable; NaN if the cycle has no arrays."""
+    """Values of variables by name, from arrays in the same order; NaN for every variable without arrays."""
     names = [variable.name for variable in variables]
     return dict.fromkeys(names, np.nan) if arrays is None else dict(zip(names, arrays, strict=True))

@@ -1,4 +1,4 @@
-"""The task modes: leading modes with their adjoints, and transient growth of the non-normal operator."""
+"""The task modes: leading modes with their adjoint modes, and transient growth of the non-normal operator."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,8 +17,8 @@ from ..results.layouts.variables import Filled, recorded
 from ..sweep.cost_estimate import Estimate, estimate_modes, estimate_spectra
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from .hopf.force_changes import force_changes
-from .parts import ProvedTask, count_of
-from .protocol import Part, Solver
+from .parts import ProvedTask, points_text
+from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
     from ..solve.modes.leading_modes import Modes
@@ -26,26 +26,26 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ModesTask(ProvedTask):
-    """Modes on their points."""
+    """The task modes: leading modes and transient growth at every point."""
 
     config: ModesConfig
 
-    not_proved: ClassVar[str] = "modes may be missed"
-    counted_along: ClassVar[str] = "point"
+    uncertified_risk: ClassVar[str] = "modes may be missed"
+    count_location: ClassVar[str] = "point"
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Material coordinates of the modes' nodes, shape (nodes,)."""
+        """Material coordinates u of the nodes at which modes are stored, (nodes,), by dimension."""
         return {"u": lobatto_points(self.config.modes.nodes)}
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Forces at which the rods change stability; not searched for arms that are not uniform."""
+        """Forces at which the rods change stability; empty for arms that are not uniform or of rubber."""
         return force_changes(self.points, values) if self.config.standard else ()
 
     def headline(self) -> str:
         options = self.config.modes
-        return f"{count_of(self.points)}, {options.modes} leading modes each, on {options.nodes} nodes"
+        return f"{points_text(self.points)}, {options.modes} leading modes each, on {options.nodes} nodes"
 
-    def asked(self) -> list[Part]:
+    def option_rows(self) -> list[CheckRow]:
         growth = self.config.modes.growth
         why = "in the norm of the dissipation" if growth else "modes.growth: false"
         return [
@@ -80,12 +80,12 @@ class ModesTask(ProvedTask):
             statuses=tuple(SpectrumStatus),
             warm_up=lambda: solve_modes(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), first),
             solve=lambda index: solve_modes(self.points.rod(index), request),
-            record=lambda index, result: record(result, options.growth),
+            record=lambda index, result: mode_values(result, options.growth),
         )
 
 
-def record(result: "Modes", growth: bool) -> dict[str, Any]:
-    """Modes as variables of the file; growth: whether transient growth was computed."""
+def mode_values(result: "Modes", growth: bool) -> dict[str, Any]:
+    """Variables of the file for the modes of one rod; growth: whether transient growth was computed."""
     vectors = result.vectors
     values = recorded(EACH_MODE + EACH_POINT, vectors.resolution, result, result.spectrum)
     values |= recorded(MODE_NUMBERS, vectors)

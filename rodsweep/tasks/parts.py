@@ -1,4 +1,4 @@
-"""The output of `check` common to all tasks, and the common base of tasks with a certificate."""
+"""Rows and sentences of `check` that all tasks share, and the base class of tasks with a certificate."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
@@ -17,39 +17,43 @@ from ..solve.changes.anchors import ANCHORS
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.points import Points
 from ..wording import counted
-from .protocol import Part, Task
+from .protocol import CheckRow, Task
 
 
 @dataclass(frozen=True, slots=True)
 class ProvedTask(Task):
-    """A task whose completeness can be proved by a certificate."""
+    """Base class of tasks whose list of modes or crossings a certificate can prove complete."""
 
-    not_proved: ClassVar[str]
-    """Consequence of a missing certificate."""
-    counted_along: ClassVar[str] = ""
-    """Where modes are counted: at every "point", or along each "line" of rods."""
-    left_out: ClassVar[tuple[str, str]] = (
+    uncertified_risk: ClassVar[str]
+    """Consequence of a missing certificate, as `check` prints it."""
+    count_location: ClassVar[str] = ""
+    """Where the certificate counts modes: "point", at every point, or "line", at some rods of each line."""
+    never_modelled: ClassVar[tuple[str, str]] = (
         "gravity, inertia, nonlinear motion",
         "not part of the linear overdamped problem",
     )
-    """(effects that no option of the task models, reason)."""
+    """(effects that the task never models, reason), as `check` prints them."""
 
     @abstractmethod
-    def asked(self) -> list[Part]:
-        """Parts requested by the task's options."""
+    def option_rows(self) -> list[CheckRow]:
+        """Rows of `check` on what the task's options request."""
 
     @property
     def moved(self) -> dict[str, np.ndarray]:
-        """Values of the parameters of the task's rods, each of any shape."""
+        """All values of each parameter that occur in the task, by name: of points, searches and lines.
+
+        Arrays of any shape.
+        """
         return self.points.of_rods | self.searched() | self.coordinates()
 
     def arms(self) -> str:
         return arms_line(self.config, self.moved, self.first_mesh)
 
     def first_mesh(self) -> Elements | None:
-        """The largest first mesh of the eigenvalues of the rods; None without a rod.
+        """The largest of the meshes on which the solves of all points begin; None without a rod.
 
-        By default rods are searched along a line, `searched`, for places where eigenvalues cross the axis.
+        By default the mesh of a search along the parameter in `searched` for eigenvalues on the imaginary
+        axis.
         """
         accuracy = mesh_accuracy(ANCHORS.place_accuracy, vectors=False)
 
@@ -59,69 +63,83 @@ class ProvedTask(Task):
         return largest_first_mesh(self.points, mesh_of, self.searched())
 
     def searched(self) -> dict[str, np.ndarray]:
-        """Values, (n,), of the searched parameter, by name; empty for tasks that search no parameter."""
+        """Limits of the searched range, (1,) or (2,), by name of the parameter; empty without a search."""
         return {}
 
     def certificate(self) -> tuple[bool, str]:
-        """(whether completeness is proved, the proof or the reason for its absence)."""
+        """(whether the run proves completeness, method of the proof or reason for its absence)."""
         task = self.config.task
         if not getattr(self.config, task).certify:
-            return False, f"{task}.certify: false; {self.not_proved}"
+            return False, f"{task}.certify: false; {self.uncertified_risk}"
         proof = "winding number of D"
-        if self.counted_along == "line" and not self.config.standard:
+        if self.count_location == "line" and not self.config.standard:
             proof += " at some rods, estimated in part; between them slopes of the eigenvalues"
-        if self.counted_along == "point" and self._varies:
+        if self.count_location == "point" and self._varies:
             proof += ", estimated in part"
         return True, proof
 
     @property
     def _varies(self) -> bool:
-        """Whether D has no closed form, because a rod varies along the length."""
+        """Whether the characteristic determinant D has no closed form, because an arm varies along its
+        length.
+        """
         tapers = self.points.by_name.get("taper", np.ones(1))
         return self.config.build.profile is not None or bool((tapers != 1).any())
 
-    def parts(self) -> list[Part]:
-        what, why = self.left_out
-        parts = [*rod_parts(self.moved), *material_parts(self.config, self.moved), *self.asked()]
+    def check_rows(self) -> list[CheckRow]:
+        what, why = self.never_modelled
+        parts = [
+            *rod_check_rows(self.moved),
+            *material_check_rows(self.config, self.moved),
+            *self.option_rows(),
+        ]
         return [*parts, ("certificate", *self.certificate()), (what, False, why)]
 
 
 @dataclass(frozen=True, slots=True)
 class NonlinearTask(ProvedTask):
-    """A task of cycles near Hopf points, or on branches from Hopf points."""
+    """Base class of tasks on cycles: near Hopf points, or on branches from Hopf points."""
 
-    not_proved: ClassVar[str] = "Hopf points may be missed"
-    left_out: ClassVar[tuple[str, str]] = (
+    uncertified_risk: ClassVar[str] = "Hopf points may be missed"
+    never_modelled: ClassVar[tuple[str, str]] = (
         "gravity, inertia, motion out of the plane",
         "not part of the overdamped problem",
     )
-    AXIAL: ClassVar[Part] = ("axial drag", True, "parameters.gamma1; it changes cycles, but no Hopf point")
+    AXIAL_DRAG_ROW: ClassVar[CheckRow] = (
+        "axial drag",
+        True,
+        "parameters.gamma1; it changes cycles, but no Hopf point",
+    )
 
 
-def before_crushed(config: Config) -> str:
-    """Clause on the crushing force, at which a search over F ends; empty if no force crushes the arm."""
+def crushing_clause(config: Config) -> str:
+    """Clause that states that a search over F ends below the crushing force; empty if no force crushes the
+    arm.
+    """
     if config.standard:
         return ", or to just below k1"
     crushed = np.isfinite(config.build.constitutive_law.largest_load)
     return ", or to just below the force that crushes the weakest section" * bool(crushed)
 
 
-def count_of(points: Points) -> str:
-    """The number of points and the shape of their grid."""
+def points_text(points: Points) -> str:
+    """The number of points and the shape of their grid in words: "50 points (5 x 10)"."""
     shape = " x ".join(str(n) for n in points.shape) if points.axes else "a list"
     if points.over:
         shape = f"{shape}: {' x '.join(points.over)}"
     return f"{counted(points.count, 'point')} ({shape})"
 
 
-def each_point(points: Points, clause: str) -> str:
-    """The number of points with a clause about each of them, as in "each searched from F = 0 to 200"."""
-    return f"{count_of(points)}, {'each ' * (points.count > 1)}{clause}"
+def points_clause(points: Points, clause: str) -> str:
+    """The number of points with a clause on each point: "50 points (a list), each searched from ..."."""
+    return f"{points_text(points)}, {'each ' * (points.count > 1)}{clause}"
 
 
-def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
-    """What `check` lists: each deformation and the rotational drag, and whether the given values, of any
-    shape, include it."""
+def rod_check_rows(columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
+    """Rows of `check` on stretch, shear and rotational drag.
+
+    columns: values of the rods' parameters by name, arrays of any shape.
+    """
     dragged = bool((columns["gamma3"] > 0).any())
     return [
         *(_deformation(p, columns[p.name]) for p in PARAMETERS.values() if p.rigid),
@@ -129,10 +147,11 @@ def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
     ]
 
 
-def material_parts(config: Config, columns: Mapping[str, np.ndarray]) -> list[Part]:
-    """Quantities that vary along the arm, and the law; empty for uniform arms of linear material.
+def material_check_rows(config: Config, columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
+    """Rows of `check` on quantities that vary along the arm, and on the constitutive law.
 
-    columns: values of the rods' parameters, arrays of any shape.
+    Empty for uniform arms of linear material. columns: values of the rods' parameters by name, arrays of any
+    shape.
     """
     if config.standard:
         return []
@@ -146,9 +165,9 @@ def material_parts(config: Config, columns: Mapping[str, np.ndarray]) -> list[Pa
 def arms_line(
     config: Config, columns: Mapping[str, np.ndarray], first_mesh: Callable[[], Elements | None]
 ) -> str:
-    """Variation and law of an arm that is not uniform or of rubber, and the first mesh; empty for other arms.
+    """Line of `check` on the shape, the law and the first mesh of arms that are not uniform or of rubber.
 
-    columns: as in `material_parts`, arrays of any shape.
+    Empty for all other arms. columns: values of the rods' parameters by name, arrays of any shape.
     """
     if config.standard:
         return ""
@@ -165,7 +184,7 @@ def arms_line(
 
 
 def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
-    """Quantities that vary along the arms, in words; empty for uniform arms."""
+    """Tapers and profiles of the arms, in words; empty for uniform arms."""
     tapers = columns.get("taper", np.ones(1))
     ratios = "a cone of radius ratio" if len(np.unique(tapers)) == 1 else "cones of radius ratios"
     ends = " to ".join(f"{end:g}" for end in np.unique([tapers.min(), tapers.max()]))
@@ -177,8 +196,9 @@ def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def _profile(config: Config, profile: Profile) -> str:
-    """A profile in words. The profile of a cone in SI units is made by rodsweep, from the drag at each
-    radius."""
+    """A profile in words. For a cone in SI units, rodsweep itself makes a profile of the drag at each
+    radius.
+    """
     if config.stated_build is None and config.parameters.arm is not None and config.parameters.arm.tapering:
         return "the drag of each local radius"
     jumps = len(profile.u) - len(profile.breaks)
@@ -192,7 +212,7 @@ def _law(config: Config) -> str:
     return f"{law} with a swelling section" if config.build.section == "swelling" else law
 
 
-def _deformation(parameter: Parameter, values: np.ndarray) -> Part:
+def _deformation(parameter: Parameter, values: np.ndarray) -> CheckRow:
     name = parameter.name
     what = parameter.meaning.removesuffix(" stiffness")
     rigid = np.isinf(values)

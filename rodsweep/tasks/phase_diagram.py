@@ -1,4 +1,4 @@
-"""The task phase_diagram: states of the rod over two parameters, row by row."""
+"""The task phase_diagram: stability of the straight rod, and stable cycles, over two parameters."""
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -12,8 +12,8 @@ from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_diagram
 from .diagram.curves import DiagramCurves
 from .diagram.records import cycles_record
 from .parts import ProvedTask
-from .protocol import Part, Solver
-from .thresholds import search_record
+from .protocol import CheckRow, Solver
+from .thresholds import crossing_values
 
 if TYPE_CHECKING:
     from ..solve.changes.diagram.rows import DiagramRow, RowRequest
@@ -21,27 +21,27 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class PhaseDiagramTask(ProvedTask):
-    """A phase diagram. Its points are the rows; each row is a line of values of the first parameter."""
+    """The task phase_diagram. A point of the task is a row: a line of rods over the first parameter."""
 
     config: PhaseDiagramConfig
 
-    not_proved: ClassVar[str] = "crossings may be missed"
-    counted_along: ClassVar[str] = "line"
+    uncertified_risk: ClassVar[str] = "crossings may be missed"
+    count_location: ClassVar[str] = "line"
 
     @property
     def line(self) -> np.ndarray:
-        """Values along every row, shape (values,)."""
+        """Values of the parameter that varies along every row, (values,)."""
         return self.config.parameters.axes[self.config.plane[0]].array()
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """The values along every row, shape (values,), by the name of their parameter."""
+        """Values of the parameter that varies along every row, (values,), by its name."""
         return {self.config.plane[0]: self.line}
 
     def headline(self) -> str:
         line, row = self.config.plane
         return f"{self.points.count} rows, one for each {row}, of {len(self.line)} values of {line} each"
 
-    def asked(self) -> list[Part]:
+    def option_rows(self) -> list[CheckRow]:
         options = self.config.phase_diagram
         curves = "followed from row to row" if options.curves else "phase_diagram.curves: false"
         criticality = "phase_diagram.criticality adds it"
@@ -69,12 +69,12 @@ class PhaseDiagramTask(ProvedTask):
         ]
 
     def searched(self) -> dict[str, np.ndarray]:
-        """Ends of the rows, (2,)."""
+        """First and last value of the parameter that varies along the rows, (2,), by its name."""
         return {self.config.plane[0]: self.line[[0, -1]]}
 
-    def parts(self) -> list[Part]:
-        """Parts of a linear task; with cycles, the nonlinear motion too."""
-        linear = ProvedTask.parts(self)
+    def check_rows(self) -> list[CheckRow]:
+        """Rows of `check`: those of a linear task, and the nonlinear motion if cycles are requested."""
+        linear = ProvedTask.check_rows(self)
         if not self.config.phase_diagram.cycles:
             return linear
         nonlinear = ("nonlinear motion", True, "of the cycles; in the plane, geometrically exact")
@@ -104,7 +104,7 @@ class PhaseDiagramTask(ProvedTask):
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
             solve=lambda index: solve_row(self.rod(index), request),
-            record=lambda index, result: record(result, request.name, request.crossings),
+            record=lambda index, result: row_values(result, request.name, request.crossings),
             together=curves if options.curves else None,
         )
         if not options.cycles:
@@ -127,11 +127,11 @@ class PhaseDiagramTask(ProvedTask):
         )
 
     def rod(self, index: int) -> Rod:
-        """A rod of a row. The parameter that varies along the row is neutral: F = 0, or k1 = inf."""
+        """The rod of a row, without effect of the parameter that varies along the row: F = 0, or k1 = inf."""
         return self.points.rod(index, gamma1=self.config.gamma1)
 
     def row_request(self) -> "RowRequest":
-        """Request for every row."""
+        """The request, the same for every row, from which a row is solved."""
         from ..solve.changes.diagram.rows import RowRequest
 
         options = self.config.phase_diagram
@@ -145,9 +145,12 @@ class PhaseDiagramTask(ProvedTask):
         )
 
 
-def record(result: "DiagramRow", line: str, most: int) -> dict[str, Any]:
-    """A row as variables of the file; line: the row's parameter, most: length of the list of crossings."""
+def row_values(result: "DiagramRow", line: str, most: int) -> dict[str, Any]:
+    """Variables of the file for one row.
+
+    line: parameter that varies along the row. most: length of the list of crossings.
+    """
     classes = {"class": result.motion, "unstable_count": result.unstable_count}
-    changes = search_record(result.changes, most, line, "crossing_at")
+    changes = crossing_values(result.changes, most, line, "crossing_at")
     certified = result.changes.transitions.proved_to_the_end
     return classes | changes | {"certified": certified, "seconds": result.seconds}

@@ -1,4 +1,4 @@
-"""Interface between a task and the commands `check` and `run`, which know no further details of a task."""
+"""Interfaces of a task and its solver, through which `check` and `run` use all tasks alike."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
@@ -15,69 +15,79 @@ from ..sweep.points.chains import ChainedWork, Chains, State
 from ..sweep.points.points import Points
 from ..sweep.points.stretches import SolveStretch, Stretches
 
-Arrays = dict[str, np.ndarray]
-"""Result of a unit of work, arrays by name."""
-InOrder = Callable[[Sequence[Any], Callable[[Any], Any]], list[Any]]
-"""Maps a function over items, in their order, possibly sharing the work among ranks."""
-Around = Callable[[int, State, Callable[[], tuple[Any, State]]], tuple[Any, State]]
-"""Wraps the solve of a point: from index, starting state and solve to (outcome, neighbour's state)."""
-Part = tuple[str, bool, str]
-"""(part, whether it is modelled, reason): a row of the table printed by `check`."""
+NamedArrays = dict[str, np.ndarray]
+"""Arrays by name: the result of a unit of joint work."""
+OrderedMap = Callable[[Sequence[Any], Callable[[Any], Any]], list[Any]]
+"""Function (items, function) -> results in the order of the items; the work may be shared among ranks."""
+SolveWrapper = Callable[[int, State, Callable[[], tuple[Any, State]]], tuple[Any, State]]
+"""Wrapper of the solve of a point: (index, starting state, solve) -> (outcome, state for the next point)."""
+CheckRow = tuple[str, bool, str]
+"""Row of the table printed by `check`: (effect or result, whether it is modelled, reason)."""
 
 
 class Units(Protocol):
-    """Work on all points, divided into units. The object is sent to all ranks; the wanted units may depend on
-    results.
-    """
+    """Units of work of joint variables, numbered from 0. The object is sent to all ranks."""
 
-    def wanted(self, results: Mapping[int, Arrays]) -> list[int]:
-        """Units still wanted: the ones needed next come first; empty once all results are known."""
+    def wanted(self, results: Mapping[int, NamedArrays]) -> list[int]:
+        """Numbers of the units still to be solved, most urgent first; empty if no unit is left.
+
+        results: results of the finished units, by number.
+        """
 
     def where(self, unit: int) -> str:
-        """Name of a unit in words."""
+        """Description of a unit in words, for the progress display and the log."""
 
 
-class AllPoints(Protocol):
-    """Variables that need all points, for example curves. The object exists on every rank."""
+class JointVariables(Protocol):
+    """Computes variables that depend on all points, for example curves. Every rank has such an object."""
 
     def units(self, view: View) -> Any:
-        """The work as `Units`, from the file with all points; None if nothing is done in units."""
+        """The units of work; None if no work is divided into units. view: the file with all points."""
 
     def starts(self, units: Any, wanted: Sequence[int]) -> dict[int, Any]:
-        """Starting data for units, kept on this rank and useful to every rank."""
+        """Starting data that this rank has for the wanted units, to be sent to all ranks."""
 
     def take(self, starts: Mapping[int, Any]) -> None:
-        """Keeps starting data of a different rank."""
+        """Keeps starting data received from a different rank."""
 
-    def solve(self, units: Any, unit: int) -> Arrays:
-        """Result of a unit."""
+    def solve(self, units: Any, unit: int) -> NamedArrays:
+        """Solves a unit of work; returns its result."""
 
-    def nothing(self) -> Arrays:
-        """Result of a unit whose solver raised an unforeseen exception."""
+    def empty_result(self) -> NamedArrays:
+        """Empty result, for a unit of work whose solver raised an unforeseen exception."""
 
-    def variables(self, view: View, units: Any, results: Mapping[int, Arrays]) -> Sequence[Filled]:
-        """Variables of the file from the results of all wanted units; called on the first rank."""
+    def variables(self, view: View, units: Any, results: Mapping[int, NamedArrays]) -> Sequence[Filled]:
+        """The joint variables for the result file; called on the first rank only.
+
+        view: the file with all points. results: results of all units, by number.
+        """
 
 
 @dataclass(frozen=True, slots=True)
 class Solver:
-    """Functions by which every rank solves points; `solve` returns an outcome with status and message."""
+    """Functions with which every rank solves the points of a task."""
 
     statuses: Sequence[PointStatus]
+    """All statuses that a point can have."""
     warm_up: Callable[[], object]
     """Triggers compilation and fills caches before any point is timed."""
     solve: Callable[[int], Any]
+    """Solves the point with an index; returns an outcome with the attributes `status` and `message`."""
     record: Callable[[int, Any], dict[str, Any]]
-    """Converts an index and its outcome into variables of the file."""
-    together: AllPoints | None = None
-    """Variables that need all points; None for tasks without joint variables."""
+    """Converts the index and the outcome of a point into values of the file's variables by name."""
+    together: JointVariables | None = None
+    """Computes the variables that depend on all points; None for tasks without such variables."""
     chained: ChainedWork | None = None
-    """Replaces `solve` if points start from a neighbour's solution."""
+    """Chains of points that start from their neighbours' solutions; replaces `solve`. None without chains."""
     stretched: tuple[Stretches, SolveStretch] | None = None
-    """Replaces `solve` if neighbours are solved together; takes flat indices."""
+    """(stretches of neighbouring points, function that solves the points of a stretch by their flat indices);
+    replaces `solve`. None without stretches."""
 
-    def within(self, around: Around, together: SolveStretch | None = None, **changed: Any) -> "Solver":
-        """The solver with `around` wrapped about every point's solve, and with `together` for stretches."""
+    def within(self, around: SolveWrapper, together: SolveStretch | None = None, **changed: Any) -> "Solver":
+        """A copy whose solve of every point is wrapped by `around`, with changed fields.
+
+        together: function that solves a stretch instead of the present function, if the solver has stretches.
+        """
         chained = self.chained
         stretched = self.stretched
         if chained is not None:
@@ -95,13 +105,13 @@ class Solver:
 
 
 def on_this_rank(items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
-    """Applies the work to all items on this rank."""
+    """Results of `work` for all items, computed on this rank alone."""
     return [work(item) for item in items]
 
 
 @dataclass(frozen=True, slots=True)
 class Task(ABC):
-    """A task with points. The task is sent to all ranks and starts PETSc only when `solver` is called."""
+    """A task of a config on its points. The object is sent to all ranks; only `solver` starts PETSc."""
 
     config: Any
     """The config, of the task's own class."""
@@ -118,15 +128,15 @@ class Task(ABC):
         return None
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Coordinates of extra dimensions of the layout, shape (extent,), by name."""
+        """Coordinates, (extent,), of the layout's dimensions beside the points, by dimension."""
         return {}
 
-    def constants(self, in_order: InOrder = on_this_rank) -> tuple[Filled, ...]:
-        """Variables that depend on no point. in_order: shares slow work among ranks."""
+    def constants(self, in_order: OrderedMap = on_this_rank) -> tuple[Filled, ...]:
+        """Variables of the file that depend on the config alone. in_order: shares slow work among ranks."""
         return ()
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Variables computed from all points at once, without units of work.
+        """Variables of the file computed from the results of all points, on the first rank alone.
 
         values: variables of the points by name, shape (points, own dimensions), readable by slices.
         """
@@ -134,15 +144,18 @@ class Task(ABC):
 
     @abstractmethod
     def headline(self) -> str:
-        """One line: the number of points and the request for each point."""
+        """Line of `check` with the number of points and the request for each point."""
 
     def arms(self) -> str:
-        """A line on arms not uniform or of rubber: variation, law, first mesh; empty for all other arms."""
+        """Line of `check` on the shape, the law and the first mesh of arms that are not uniform or of rubber.
+
+        Empty for all other arms.
+        """
         return ""
 
     @abstractmethod
-    def parts(self) -> list[Part]:
-        """Modelled and neglected parts."""
+    def check_rows(self) -> list[CheckRow]:
+        """Rows of the table, printed by `check`, of modelled and neglected effects."""
 
     @abstractmethod
     def cost(self) -> Estimate:
@@ -150,4 +163,4 @@ class Task(ABC):
 
     @abstractmethod
     def solver(self) -> Solver:
-        """The solver of the points; starts PETSc."""
+        """The functions that solve the points. Starts PETSc."""

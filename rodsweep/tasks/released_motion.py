@@ -1,4 +1,4 @@
-"""A rod bent by the tip and released: bent shape, and the motion after the release."""
+"""A rod whose tip is moved aside and released: shape before the release, and motion after it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -10,20 +10,21 @@ from ..arrays import Array
 from ..discretization.elements.quadrature import lobatto_points
 from ..solve.exclusive import solving
 from .limit_cycle import LimitCycleTask
-from .running.in_memory import blas
+from .running.in_memory import blas_pool
 from .running.job import Job
 
-NODES = 33
-"""Lobatto nodes of each shape."""
-FRAMES = 32
-"""Shapes per return of the tip; an animation interpolates between them."""
+NODE_COUNT = 33
+"""Number of Lobatto nodes of each shape."""
+FRAMES_PER_RETURN = 32
+"""Number of shapes per return of the tip; an animation interpolates between the shapes."""
 MOTION_ACCURACY = 1e-5
-"""Accuracy of the mesh of the shapes, as of motions of the task limit_cycle."""
+"""Relative accuracy of the mesh on which the bent shape is computed, as of motions of the task
+limit_cycle."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReleasedMotion:
-    """Motion of a released rod, and where the motion ends."""
+    """Motion of a rod after its tip is released, and the limit cycle or rest at which the motion ends."""
 
     status: str
     """Status of the task limit_cycle."""
@@ -32,21 +33,23 @@ class ReleasedMotion:
     message: str
     """Message of the task limit_cycle."""
     cycle: Mapping[str, Any]
-    """Variables of the cycle by name."""
+    """Variables of the task limit_cycle by name."""
     step: float
-    """Time between two shapes, tau2."""
+    """Time between two shapes, in tau2."""
     x: Array
-    """x of the shapes, (frames, nodes), in L."""
+    """Coordinates x of the shapes in L, (frames, nodes)."""
     y: Array
-    """y of the shapes, (frames, nodes), in L."""
+    """Coordinates y of the shapes in L, (frames, nodes)."""
     is_whole: bool
-    """Whether the shapes go on until the end is known."""
+    """Whether the shapes cover the whole motion up to the cycle or to rest."""
 
 
 @solving
 def bent_shape(job: Job, tip: tuple[float, float] | None) -> Array:
-    """Shape (x, y) in L, (2, NODES), of the only rod of a job, with the tip held at a place, in L; the
-    straight rod for None."""
+    """Shape (x, y) in L, (2, NODES), of the only rod of a job.
+
+    tip: position (x, y) in L at which the tip is held; None for the straight rod.
+    """
     from ..discretization.beam import Beam
     from ..solve.cycle.transient.motion_mesh import motion_mesh, near_rod
     from ..solve.motion.held_tip import held_by_tip
@@ -54,22 +57,24 @@ def bent_shape(job: Job, tip: tuple[float, float] | None) -> Array:
     rod = job.points.rod(0)
     beam = Beam(near_rod(rod), motion_mesh(rod, MOTION_ACCURACY))
     z = np.zeros(beam.unknowns) if tip is None else held_by_tip(beam, *tip)
-    shape: Array = beam.shape(z)[:2] @ beam.mesh.evaluation(lobatto_points(NODES)).T
+    shape: Array = beam.shape(z)[:2] @ beam.mesh.evaluation(lobatto_points(NODE_COUNT)).T
     return shape
 
 
 @solving
 def released_motion(job: Job, tip: tuple[float, float]) -> ReleasedMotion | None:
-    """The motion of the only rod of a job of the task limit_cycle from a tip at (x, y) in L.
+    """Motion of the only rod of a job of the task limit_cycle after the release of its tip.
 
-    None where the integration failed before its first step.
+    tip: position (x, y) of the tip before the release, in L. None if the integration fails before its first
+    step.
     """
     from ..solve.cycle.limit_cycle import solve_cycle
 
     task = job.task
     assert isinstance(task, LimitCycleTask)
-    with blas().limit(limits=1, user_api="blas"):  # as in the command: threads change the order of sums
-        cycle = solve_cycle(job.points.rod(0), replace(task.request(), tip=tip, frames=FRAMES))
+    # One thread, as in the command: threads change the order of sums.
+    with blas_pool().limit(limits=1, user_api="blas"):
+        cycle = solve_cycle(job.points.rod(0), replace(task.request(), tip=tip, frames=FRAMES_PER_RETURN))
     if cycle.motion is None:
         return None
     x, y = cycle.motion.shapes

@@ -1,4 +1,4 @@
-"""All results of a portrait: thresholds, criticality, branches, modes, three cycles."""
+"""Solves all results of a portrait of one rod: thresholds, criticality, branches, modes, three cycles."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,29 +18,33 @@ from ..results.layouts.thresholds import CROSSING_KINDS
 from .running.in_memory import solved_view
 from .running.job import Job, job_of
 
-CYCLE_PLACES = (0.1, 0.5, 0.9)
-"""Forces of the three cycles, as fractions of the length of all ranges with a stable cycle."""
-SHAPES = 12
-"""Times per period at which a shape is solved; more cannot be told apart in a small panel."""
-LARGE_START = 0.5
-"""Tip deflection, in L, of a start from which the rod comes to a cycle beside a stable straight rod."""
-MODE_KINDS = ("onset", "hopf")
+CYCLE_FRACTIONS = (0.1, 0.5, 0.9)
+"""Forces of the three cycles, as fractions of the total length of all ranges of F with a stable cycle."""
+SHAPE_COUNT = 12
+"""Number of shapes per period of each cycle; a small panel has no room for more."""
+LARGE_DEFLECTION = 0.5
+"""Tip deflection in L of a start that leads to a stable cycle even if the straight rod is stable too."""
+MODE_THRESHOLD_KINDS = ("onset", "hopf")
 """Kinds of thresholds; the leading mode is solved at the first threshold of each kind."""
 F_MAX = 200.0
-"""Default of the largest force, as of the task thresholds."""
+"""Default of the largest force, the same as of the task thresholds."""
 Solve = Callable[[Job], View]
+"""Function that solves the only point of a job."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PortraitRequest:
-    """A rod, the largest force, and the accuracy, or None for the default of each task."""
+    """Request for a portrait: the rod, the largest force, and the relative accuracy.
+
+    accuracy: None for the default of each task.
+    """
 
     rod: DescribedRod
     F_max: float = F_MAX
     accuracy: float | None = None
 
     def job(self, task: str, options: Mapping[str, Any], F: float | None = None) -> Job:
-        """Job of a task for this rod, at a force if the task takes a force."""
+        """Job of a task for this rod; options: of the task; F: force, None for tasks that vary the force."""
         names = (*CONFIGS[task].taken_of_a_rod(options), *OPTIONAL_PARAMETERS)
         own = self.rod.parameters
         values: dict[str, Any] = {name: own[name] for name in names if name in own and name != "F"}
@@ -53,10 +57,10 @@ class PortraitRequest:
 
 
 def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResults:
-    """Solves all results of a portrait. solve: function that solves the only point of a job.
+    """Solves all results of a portrait; solve: function that solves the only point of a job.
 
-    Raises InputError if the parameters describe no rod. For a result that cannot be solved, the reason is
-    kept.
+    A result that cannot be solved is missing, and `RodResults.missing` has the reason. Raises InputError if
+    the parameters describe no rod.
     """
     F_max = {"F_max": request.F_max}
     views = {"thresholds": solve(request.job("thresholds", F_max))}
@@ -95,10 +99,13 @@ def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResu
 
 
 def _cycle(solved: Callable[[str, Mapping[str, Any], float], View | None], F: float) -> View | None:
-    """The limit cycle at a force, started from the Hopf point, or else from a large deflection."""
+    """The limit cycle at a force, started from the Hopf point; if this fails, from a large deflection.
+
+    solved: function (task, options, F) that solves a task, None for a refusal.
+    """
     found = None
-    for start in ({"start": "hopf"}, {"start": "mode", "amplitude": LARGE_START}):
-        view = solved("limit_cycle", {**start, "shapes": SHAPES}, F)
+    for start in ({"start": "hopf"}, {"start": "mode", "amplitude": LARGE_DEFLECTION}):
+        view = solved("limit_cycle", {**start, "shapes": SHAPE_COUNT}, F)
         if view is not None and np.isfinite(view.variables["period"]).all():
             return view
         found = found or view
@@ -106,10 +113,12 @@ def _cycle(solved: Callable[[str, Mapping[str, Any], float], View | None], F: fl
 
 
 def mode_forces(thresholds: View) -> dict[str, float]:
-    """Forces at which the leading mode is drawn, by kind of threshold: the first threshold of each kind."""
+    """Force of the first threshold of each kind in MODE_THRESHOLD_KINDS, at which the leading mode is
+    drawn.
+    """
     kinds, forces = (thresholds.by_point(f"crossing_{name}")[0] for name in ("kind", "F"))
     found = {}
-    for kind in MODE_KINDS:
+    for kind in MODE_THRESHOLD_KINDS:
         places = np.flatnonzero(kinds == CROSSING_KINDS.index(kind))
         if len(places):
             found[kind] = float(forces[places[0]])
@@ -117,16 +126,16 @@ def mode_forces(thresholds: View) -> dict[str, float]:
 
 
 def cycle_forces(ranges: Sequence[Range]) -> list[float]:
-    """Forces of the three cycles, increasing, spread evenly over ranges of the force with a stable cycle.
+    """Forces of the three cycles, increasing: at CYCLE_FRACTIONS of the ranges of F with a stable cycle.
 
-    Each is rounded to three digits if that is in its range; empty without a range.
+    A force is rounded to three digits if the rounded force lies in its range. Empty without a range.
     """
     if not ranges:
         return []
     lengths = np.array([high - low for low, high in ranges])
     before = np.concatenate([[0.0], np.cumsum(lengths)])
     forces = []
-    for place in CYCLE_PLACES:
+    for place in CYCLE_FRACTIONS:
         along = place * before[-1]
         number = min(int(np.searchsorted(before, along, side="right")) - 1, len(ranges) - 1)
         low, high = ranges[number]

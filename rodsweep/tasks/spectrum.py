@@ -23,8 +23,8 @@ from ..sweep.cost_estimate import Estimate, estimate_followed, estimate_spectra,
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.stretches import Stretches, StretchResult, stretches_along_longest_axis
 from .hopf.force_changes import force_changes
-from .parts import ProvedTask, count_of
-from .protocol import InOrder, Part, Solver, on_this_rank
+from .parts import ProvedTask, points_text
+from .protocol import CheckRow, OrderedMap, Solver, on_this_rank
 
 if TYPE_CHECKING:
     from ..solve.spectrum.search import Spectrum, SpectrumRequest
@@ -32,16 +32,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class SpectrumTask(ProvedTask):
-    """Spectra on their points."""
+    """The task spectrum: the leading eigenvalues of the straight rod at every point."""
 
     config: SpectrumConfig
 
-    not_proved: ClassVar[str] = "modes may be missed"
-    counted_along: ClassVar[str] = "point"
+    uncertified_risk: ClassVar[str] = "modes may be missed"
+    count_location: ClassVar[str] = "point"
 
     def __post_init__(self) -> None:
         if self.config.spectrum.longitudinal and np.isinf(self.points.by_name["k1"]).any():
-            raise InputError("spectrum.longitudinal needs finite k1: a rod with k1 = inf cannot stretch")
+            raise InputError(
+                "spectrum.longitudinal: true needs finite parameters.k1, because a rod with k1 = inf cannot "
+                "stretch; remove inf from k1, or spectrum.longitudinal"
+            )
 
     @property
     def _vector_nodes(self) -> int:
@@ -49,17 +52,19 @@ class SpectrumTask(ProvedTask):
 
     @property
     def stretches(self) -> Stretches | None:
-        """Stretches of neighbouring points, along which eigenvalues are followed; None without stretches."""
+        """Stretches of neighbouring points along which eigenvalues are followed; None if they are not."""
         if not self.config.follows:
             return None
         return stretches_along_longest_axis(self.points.shape, self.points.moved)
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Material coordinates of the vectors' nodes, shape (nodes,); empty without vectors."""
+        """Material coordinates u of the nodes of eigenvectors, (nodes,), by dimension; empty without
+        vectors.
+        """
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
-    def constants(self, in_order: InOrder = on_this_rank) -> tuple[Filled, ...]:
-        """Longitudinal growth rates, if requested: along the parameters on which they depend."""
+    def constants(self, in_order: OrderedMap = on_this_rank) -> tuple[Filled, ...]:
+        """Longitudinal growth rates, if requested, along the parameters on which these rates depend."""
         gamma1 = self.config.parameters.numbers.get("gamma1")
         if gamma1 is None:
             return ()
@@ -76,7 +81,10 @@ class SpectrumTask(ProvedTask):
         return tuple((variable, found[:, i].reshape(*shape, modes)) for i, variable in enumerate(variables))
 
     def _longitudinal_points(self) -> tuple[tuple[str, ...], tuple[int, ...], dict[str, np.ndarray]]:
-        """(dimensions, shape, parameters on which longitudinal rates depend, flat) of all their values."""
+        """(dimensions, shape, columns) of the points at which longitudinal rates differ.
+
+        columns: values of the parameters on which the rates depend, by name, flattened to (points,).
+        """
         points = self.points
         linear = self.config.build.constitutive_law is LINEAR
         depends_on = longitudinal_parameters(self.config.standard, linear)
@@ -89,13 +97,13 @@ class SpectrumTask(ProvedTask):
         return tuple(names), grid[0].shape, dict(zip(names, (each.ravel() for each in grid), strict=True))
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Forces at which the rods change stability; not searched for arms that are not uniform."""
+        """Forces at which the rods change stability; empty for arms that are not uniform or of rubber."""
         return force_changes(self.points, values) if self.config.standard else ()
 
     def headline(self) -> str:
-        return f"{count_of(self.points)}, {self.config.spectrum.modes} leading modes each"
+        return f"{points_text(self.points)}, {self.config.spectrum.modes} leading modes each"
 
-    def asked(self) -> list[Part]:
+    def option_rows(self) -> list[CheckRow]:
         options = self.config.spectrum
         vectors = "spectrum.vectors adds them"
         longitudinal = "they decouple; spectrum.longitudinal adds them"
@@ -119,7 +127,7 @@ class SpectrumTask(ProvedTask):
     def certificate(self) -> tuple[bool, str]:
         if self.config.spectrum.method == "determinant":
             return ProvedTask.certificate(self)
-        return False, f"spectrum.method: {self.config.spectrum.method}; {self.not_proved}"
+        return False, f"spectrum.method: {self.config.spectrum.method}; {self.uncertified_risk}"
 
     def cost(self) -> Estimate:
         options = self.config.spectrum
@@ -147,12 +155,12 @@ class SpectrumTask(ProvedTask):
             statuses=tuple(SpectrumStatus),
             warm_up=warm_up_following if stretches else warm_up,
             solve=lambda index: solve(self.points.rod(index), request),
-            record=lambda index, result: record(result),
+            record=lambda index, result: spectrum_values(result),
             stretched=(stretches, lambda indices: self._together(indices, request)) if stretches else None,
         )
 
     def _together(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> StretchResult:
-        """Results for the points of a stretch."""
+        """Results for the points of a stretch, (indices,), whose eigenvalues are followed."""
         from ..determinant.parameter_path import Path
         from ..solve.spectrum.path.stretch import Stretch, solve_stretch
         from ..solve.spectrum.status import SpectrumStatus
@@ -164,14 +172,17 @@ class SpectrumTask(ProvedTask):
         found = solve_stretch(Stretch(path, self.points.values_of(indices)[varied]), request)
         words = {status.value: status.name for status in SpectrumStatus}
         return StretchResult(
-            values=record(found),
+            values=spectrum_values(found),
             succeeded=found.status == SpectrumStatus.ok,
             message=lambda i: f"{words[int(found.status[i])]} {found.message[i]}".rstrip(),
         )
 
 
 def longitudinal_of_arm(values: dict[str, float], build: Build, modes: int) -> np.ndarray:
-    """(rates, relative errors) of an arm with these parameters, (2, modes); NaN for a crushed arm."""
+    """(longitudinal growth rates in 1/tau2, relative errors) of an arm, (2, modes); NaN for a crushed arm.
+
+    values: parameters by name.
+    """
     try:
         rod = Rod(**{"F": 0.0, "k2": np.inf, "gamma3": 0.0} | values, build=build)
     except Crushed:
@@ -179,8 +190,8 @@ def longitudinal_of_arm(values: dict[str, float], build: Build, modes: int) -> n
     return np.array(longitudinal_modes(rod, modes))
 
 
-def record(result: "Spectrum") -> dict[str, Any]:
-    """The spectrum of a point, or of several points, as variables of the file."""
+def spectrum_values(result: "Spectrum") -> dict[str, Any]:
+    """Variables of the file for the spectrum of a point, or for the spectra of the points of a stretch."""
     values = recorded(EACH_MODE + EACH_FOLLOWED_POINT, result)
     if result.vectors is not None:
         for field, vector in zip(("Y", "Theta"), result.vectors, strict=True):

@@ -1,4 +1,6 @@
-"""The task thresholds: the forces at which the number or kind of unstable modes changes."""
+"""The task thresholds: forces at which the number of unstable modes or the kind of the leading mode
+changes.
+"""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -9,31 +11,31 @@ from ..config.task.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_lines
-from .parts import ProvedTask, before_crushed, each_point
-from .protocol import Part, Solver
+from .parts import ProvedTask, crushing_clause, points_clause
+from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
     from ..solve.changes.thresholds import Thresholds
     from ..solve.hopf.criticality import Criticality
 
 FIRST_CROSSINGS = {"onset": "growth_rate", "hopf": "frequency", "restabilization": "frequency"}
-"""Kinds of crossings whose first is a threshold, each with the variable stored beside F."""
+"""Kinds of crossings of which the first is stored as a threshold, each with the variable stored beside F."""
 
 
 @dataclass(frozen=True, slots=True)
 class ThresholdsTask(ProvedTask):
-    """Thresholds of every rod."""
+    """The task thresholds: thresholds and all crossings of every rod along F."""
 
     config: ThresholdsConfig
 
-    not_proved: ClassVar[str] = "crossings may be missed"
-    counted_along: ClassVar[str] = "line"
+    uncertified_risk: ClassVar[str] = "crossings may be missed"
+    count_location: ClassVar[str] = "line"
 
     def headline(self) -> str:
-        until = f"{self.config.thresholds.F_max:g}{before_crushed(self.config)}"
-        return each_point(self.points, f"searched from F = 0 to {until}")
+        until = f"{self.config.thresholds.F_max:g}{crushing_clause(self.config)}"
+        return points_clause(self.points, f"searched from F = 0 to {until}")
 
-    def asked(self) -> list[Part]:
+    def option_rows(self) -> list[CheckRow]:
         most = self.config.thresholds.crossings
         return [
             ("onset, Hopf points, restabilization", True, "task: thresholds"),
@@ -41,7 +43,7 @@ class ThresholdsTask(ProvedTask):
         ]
 
     def searched(self) -> dict[str, np.ndarray]:
-        """The largest force, (1,)."""
+        """The largest F of the search, (1,), by the name of the parameter."""
         return {"F": np.array([self.config.thresholds.F_max])}
 
     def cost(self) -> Estimate:
@@ -57,23 +59,26 @@ class ThresholdsTask(ProvedTask):
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
             solve=lambda index: solve_thresholds(self.points.rod(index), request),
-            record=lambda index, result: record(result, options.crossings),
+            record=lambda index, result: threshold_values(result, options.crossings),
         )
 
 
-def record(result: "Thresholds", most: int) -> dict[str, Any]:
-    """The thresholds of a rod as variables of the file; most: length of the list of crossings."""
+def threshold_values(result: "Thresholds", most: int) -> dict[str, Any]:
+    """Variables of the file for the thresholds of a rod; most: length of the list of crossings."""
     values = {"F_end": result.end, "unstable_at_end": result.transitions.unstable_at_end}
     for kind, number in FIRST_CROSSINGS.items():
         place = CROSSING_KINDS.index(kind)
         first = next((crossing for crossing in result.crossings if crossing.kind == place), None)
         for name, field in ((f"F_{kind}", "at"), (f"{kind}_{number}", number)):
             values[name] = getattr(first, field, np.nan)
-    return values | search_record(result, most, "F", "crossing_F")
+    return values | crossing_values(result, most, "F", "crossing_F")
 
 
-def search_record(result: "Thresholds | Criticality", most: int, line: str, at: str) -> dict[str, Any]:
-    """Variables of a search along `line`: at most `most` crossings; at: name of the variable of places."""
+def crossing_values(result: "Thresholds | Criticality", most: int, line: str, at: str) -> dict[str, Any]:
+    """Variables of the file for a search for crossings along the parameter `line`.
+
+    most: length of the list of crossings. at: name of the variable with the parameter value at a crossing.
+    """
     found = result.transitions
     variables = crossing_variables(line, at)
     rows = [recorded(variables, each, prefix="crossing_", names={at: "at"}) for each in result.crossings]

@@ -109,11 +109,17 @@ def _first_up_to(path: Path, end: float) -> float:
     """Smallest F, at most `end`, at which a pair of modes becomes unstable; inf for none."""
     boxes = first_boxes(path, 0.0, end)
     if boxes is None:
-        raise FlutterUnknown("the flutter threshold of a relative load is not found: no bound applies")
+        raise FlutterUnknown(
+            "the flutter threshold of a relative load is not found: no a-priori bound on the eigenvalues "
+            "applies to this rod"
+        )
     zeros, left, _ = cover(boxes, path.origin, path.direction)
     first = min((zero.p for zero in zeros if _grows(path, zero)), default=inf)
     if any(min(box.p_from, box.p_to) < first for box in left):
-        raise FlutterUnknown("the flutter threshold of a relative load is not decided")
+        raise FlutterUnknown(
+            "the flutter threshold of a relative load is not decided: a narrow window of flutter may lie "
+            "below the first Hopf point found"
+        )
     return first
 
 
@@ -134,7 +140,9 @@ def _first_of_varied(path: Path, end: float) -> float:
         (crossing.at for crossing in found.crossings if crossing.kind == ChangeKind.hopf), default=inf
     )
     if not found.proved or (found.ended_early and first == inf):
-        raise FlutterUnknown("the flutter threshold of a relative load is not decided")
+        raise FlutterUnknown(
+            "the flutter threshold of a relative load is not decided: a Hopf point may be missing"
+        )
     return first
 
 

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 import rodsweep as rs
-from rodsweep.api.asking import job_from, tree_of
+from rodsweep.api.asking import config_tree, job_from
 from rodsweep.api.solved import StoredResult
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.post.tables.contents import NAMES
@@ -146,7 +146,7 @@ def test_no_variable_hides_behind_an_attribute_of_answers():
     for task, config in CONFIGS.items():
         if config.of_several_rods:
             continue
-        tree = tree_of(task, {name: ROD[name] for name in config.taken_of_a_rod({}) if name in ROD})
+        tree = config_tree(task, {name: ROD[name] for name in config.taken_of_a_rod({}) if name in ROD})
         layout = job_from(tree).layout
         names = {variable.name for variable in layout.variables}
         assert names & set(dir(rs.Answer)) == {"status"}

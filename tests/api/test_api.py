@@ -19,8 +19,8 @@ from surveyed import only
 
 import rodsweep as rs
 from rodsweep.api import options
-from rodsweep.api.answers.picture import SolvedShapes, in_python
-from rodsweep.api.asking import job_from, tree_of
+from rodsweep.api.answers.picture import SolvedShapes, as_python_arguments
+from rodsweep.api.asking import config_tree, job_from
 from rodsweep.cli import commands
 from rodsweep.config.document.reading import yaml_of
 from rodsweep.config.schema import Config
@@ -149,7 +149,7 @@ def test_sweep_gives_the_dataset_of_the_file(name, command, monkeypatch):
 
 def test_text_of_the_config_gives_the_same_points(tmp_path):
     """It is what ranks are given, and what the Dataset carries."""
-    tree = tree_of("thresholds", {"k1": [200, np.inf], "k2": rs.logspace(10, 1e6, 31), "gamma3": 1e-300})
+    tree = config_tree("thresholds", {"k1": [200, np.inf], "k2": rs.logspace(10, 1e6, 31), "gamma3": 1e-300})
     again = job_from(YAML(typ="safe").load(yaml_of(tree)))
     assert again.resolved == job_from(tree).resolved
     assert again.text == yaml_of(tree)
@@ -160,7 +160,7 @@ def test_what_yaml_has_read_can_be_given_as_keywords(name):
     tree = YAML(typ="safe").load(small.CONFIGS[name])
     whole = {key: value for key, value in tree.items() if key != "task"}
     task, keywords = keywords_of(small.CONFIGS[name])
-    assert tree_of(task, keywords) == tree_of(task, whole) == tree
+    assert config_tree(task, keywords) == config_tree(task, whole) == tree
 
 
 @pytest.mark.skipif(not (BIN / "mpiexec").exists() and not shutil.which("mpiexec"), reason="no mpiexec")
@@ -217,7 +217,7 @@ def test_a_process_that_cannot_solve_says_why(tmp_path, before, variables, code,
 
 @pytest.mark.parametrize("axis", [np.array([10, 20]), (10, 20.0), range(10, 30, 10), rs.linspace(10, 20, 2)])
 def test_axes_may_be_what_python_has(axis):
-    job = job_from(tree_of("spectrum", {"F": axis, "k1": np.int64(10**4), "k2": np.inf, "gamma3": 0}))
+    job = job_from(config_tree("spectrum", {"F": axis, "k1": np.int64(10**4), "k2": np.inf, "gamma3": 0}))
     assert [column.tolist() for column in job.points.columns] == [[10, 20], [1e4], [np.inf], [0]]
 
 
@@ -248,12 +248,12 @@ def test_parameters_that_are_not_given_have_the_defaults_of_the_table():
 
 def test_keywords_of_a_rods_tasks_are_the_keys_of_the_config():
     kinds = {
-        "spectrum": options.OfSpectrum,
-        "thresholds": options.OfThresholds,
-        "modes": options.OfModes,
-        "limit_cycle": options.OfLimitCycle,
-        "criticality": options.OfCriticality,
-        "branch": options.OfBranch,
+        "spectrum": options.SpectrumKeywords,
+        "thresholds": options.ThresholdsKeywords,
+        "modes": options.ModesKeywords,
+        "limit_cycle": options.LimitCycleKeywords,
+        "criticality": options.CriticalityKeywords,
+        "branch": options.BranchKeywords,
     }
     for task, kind in kinds.items():
         section = CONFIGS[task].model_fields[task].annotation
@@ -305,14 +305,14 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
             lambda: rs.Rod(**ROD | {"gamma3": -1}),
             "parameters.gamma3 = -1 is not allowed; it must be a finite",
         ),
-        (lambda: rs.Rod(**ROD | {"k1": "stiff"}), "parameters.k1: 'stiff' is not a number"),
+        (lambda: rs.Rod(**ROD | {"k1": "stiff"}), "the parameter k1 of the rod: 'stiff' is not a number"),
         (lambda: rs.Rod(**ROD | {"F": 2e4}), "parameters.F reaches 20000 and parameters.k1 starts at 10000;"),
-        (lambda: rs.Rod(**ROD, K1=3), "unknown key parameters.K1; did you mean k1?"),
+        (lambda: rs.Rod(**ROD, K1=3), "a rod has no parameter K1; did you mean k1?"),
         (
             lambda: rs.Rod(F=1, k1=9, k2=9, gama3=0),
-            "unknown key parameters.gama3; did you mean gamma3?",
+            "a rod has no parameter gama3; did you mean gamma3?",
         ),
-        (lambda: rs.Rod(F=1, k1=9, k2=9), "parameters.gamma3 is missing; give k1, k2 and gamma3"),
+        (lambda: rs.Rod(F=1, k1=9, k2=9), "gamma3 is missing; a rod needs k1, k2 and gamma3, or an arm"),
         (
             lambda: rs.Rod(k1=9, k2=9, gamma3=0).spectrum(),
             "parameters.F is missing; give F, k1, k2 and gamma3",
@@ -326,10 +326,10 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
             lambda: rs.Rod(**ROD).phase_diagram(),
             "phase_diagram is a task of several rods; use rs.sweep('phase_diag",
         ),
-        (lambda: rs.Rod(30, 1e4), "30 has no name; write it as in rs.Rod(F=30, k1="),
-        (lambda: rs.Rod(**ROD).spectrum(4), "4 has no name; write it as in rod.spectrum(modes=4)"),
-        (lambda: rs.Rod(**ROD).replace(3), "3 has no name; write it as in rod.replace(F=40)"),
-        (lambda: rs.Arm("10 cm"), "'10 cm' has no name; write it as in rs.Arm(length="),
+        (lambda: rs.Rod(30, 1e4), "the argument 30 has no name; write it as in rs.Rod(F=30, k1="),
+        (lambda: rs.Rod(**ROD).spectrum(4), "the argument 4 has no name; write it as in rod.spectrum("),
+        (lambda: rs.Rod(**ROD).replace(3), "the argument 3 has no name; write it as in rod.replace(F=40)"),
+        (lambda: rs.Arm("10 cm"), "the argument '10 cm' has no name; write it as in rs.Arm(length="),
         (lambda: rs.Arm(**LOADED, presure="1 kPa"), "unknown key presure; did you mean pressure?"),
         (rs.Arm, "viscosity is missing; write it as in rs.Arm("),
         (lambda: rs.Arm(viscosity="1 Pa s"), "length is missing; write it as in '10 cm'"),
@@ -347,7 +347,7 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         (lambda: rs.Arm(**LOADED, force="1 N"), "pressure = '2 kPa' and force = '1 N' are both given"),
         (
             lambda: rs.Arm(**SILICONE).spectrum(),
-            "spectrum needs a load; give one by arm.replace(pressure='2 kPa')",
+            "spectrum needs a load; give one, such as arm.replace(pressure='2 kPa')",
         ),
         (
             lambda: rs.Arm(**LOADED).cycle(young="1 MPa"),
@@ -357,15 +357,15 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         (lambda: rs.Arm(**LOADED).replace(lenght=3), "unknown key lenght; did you mean length?"),
         (lambda: rs.Rod(arm=3), "arm = 3 is not an arm; write it as in rs.Rod(arm=rs.Arm("),
         (lambda: rs.linspace(0, 10), "num is missing; write it as in rs.linspace(0, 10, num=11)"),
-        (lambda: rs.linspace(0, 10, 5, 6), "6 has no name; write it as in rs.linspace("),
+        (lambda: rs.linspace(0, 10, 5, 6), "the argument 6 has no name; write it as in rs.linspace("),
         (lambda: rs.linspace(0, 10, n=5), "unknown key n; did you mean num?"),
         (lambda: rs.logspace(1, 10, 3, stop=4), "stop is given twice"),
         (rs.open, 'path is missing; write it as in rs.open("RESULT.h5")'),
         (lambda: rs.plot(3, colour="red"), "unknown key colour; known keys are output, roots"),
-        (lambda: rs.sweep("spectrum", 30), "30 has no name; write it as in rs.sweep("),
+        (lambda: rs.sweep("spectrum", 30), "the argument 30 has no name; write it as in rs.sweep("),
         (lambda: rs.open("none.h5"), "none.h5 does not exist"),
         (lambda: rs.sweep(["spectrum"]), "task = ['spectrum'] is not allowed; it should be spectrum, "),
-        (lambda: rs.plot([]), "there is nothing to draw"),
+        (lambda: rs.plot([]), "[] has nothing to draw"),
     ],
 )
 def test_bad_input_of_a_rod_is_refused(call, sentence):
@@ -385,7 +385,7 @@ def test_a_sweep_is_written_read_and_drawn(tmp_path):
     assert (tmp_path / "d.pdf").read_bytes().startswith(b"%PDF")
     picture.save(tmp_path / "d.svg")
     assert (tmp_path / "d.svg").exists()
-    with pytest.raises(rs.InputError, match="not whole: F_onset"):
+    with pytest.raises(rs.InputError, match="not a whole result: they lack F_onset"):
         rs.plot(data.isel(k2=0))
     with pytest.raises(rs.InputError, match="not a complete rodsweep result"):
         rs.plot(xr.Dataset())
@@ -452,7 +452,7 @@ def test_a_branch_and_the_criticality_of_one_rod_are_drawn():
         ({"width": "tiny"}, "width = 'tiny' is not allowed; choose single, double, or a length as '89 mm'"),
         ({"roots": "left"}, "roots = 'left' is not allowed; choose rightmost, smallest, all"),
         ({"at": {"k1": 100}}, "has no point there; it has k1 = 200"),
-        ({"at": 3}, "at is not allowed; give numbers by parameter"),
+        ({"at": 3}, "at = 3 is not allowed; give numbers by parameter"),
         ({"points": 3}, "points is for results of limit_cycle"),
         ({"what": "maps"}, 'what="maps" is for results of limit_cycle'),
         ({"output": "f.xyz"}, "output f.xyz: the name must end in .png"),
@@ -484,7 +484,7 @@ def test_choices_of_a_figure_that_there_are_not_are_refused(choice, sentence):
     ],
 )
 def test_sentences_of_the_command_are_in_the_words_of_python(command, python):
-    assert in_python(command) == python
+    assert as_python_arguments(command) == python
 
 
 def test_choices_of_a_figure_are_those_of_the_command():

@@ -10,7 +10,7 @@ import pytest
 from hard.page import as_stated, page_of
 
 import rodsweep as rs
-from rodsweep.api.dataset import view_of
+from rodsweep.api.dataset import view_of_dataset
 from rodsweep.solve.changes.unstable_modes import ChangeKind
 
 THICK = {"length": "15 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "100 Pa s"}
@@ -95,7 +95,9 @@ def test_no_digit_in_si_units_is_told_that_is_not_known():
         "pressure": "2 kPa",
     }
     told = [
-        page_of(view_of(rs.sweep("limit_cycle", arm=arm, accuracy=accuracy, progress=False), Path("c.h5")))
+        page_of(
+            view_of_dataset(rs.sweep("limit_cycle", arm=arm, accuracy=accuracy, progress=False), Path("c.h5"))
+        )
         for accuracy in (1e-3, 1e-8)
     ]
     rough, fine = (

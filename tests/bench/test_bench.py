@@ -16,23 +16,29 @@ from rods import rod_of
 from surveyed import survey_only
 
 from rodsweep.bench import peers as bench_peers
-from rodsweep.bench.peers import LEFT_OUT, NO_PEERS, Peers, left_out, peer_package, peers_of
+from rodsweep.bench.peers import NO_PEERS, PEER_NAMES, Peers, peer_package, peers_left_out, study_peers
 from rodsweep.bench.spectrum import arms
 from rodsweep.bench.spectrum import study as spectrum
 from rodsweep.bench.spectrum.arms import ARMS, UnsolvedArms, arm_spectra, arm_table, exact_arm_spectrum
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
-from rodsweep.bench.spectrum.own import KRYLOV_SCHUR, PLAIN, PROVED, WANTED_MODES, own_spectrum
+from rodsweep.bench.spectrum.own import (
+    CERTIFIED_NAME,
+    KRYLOV_SCHUR,
+    MODE_COUNT,
+    UNCERTIFIED_NAME,
+    rodsweep_spectrum,
+)
 from rodsweep.bench.spectrum.study import (
     HARD_RODS,
     ORDERS,
-    RACE,
-    every_size,
-    hard_table,
+    SPECTRUM_RACE,
+    hard_rod_table,
     krylov_schur,
+    measure_hard_rods,
     spectrum_study,
 )
-from rodsweep.bench.study import Contender, Measurement, Study, contest, every_nth_setting, race
-from rodsweep.cli.benching import machine
+from rodsweep.bench.study import Contender, Measurement, Study, every_nth_setting, measure_case, race
+from rodsweep.cli.benching import machine_attributes
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.measurements import write_measurements
 
@@ -64,7 +70,7 @@ def test_error_is_that_of_the_worst_eigenvalue_and_infinite_for_none():
 
 def test_the_solver_alone_converges_to_the_exact_eigenvalues():
     """Spectrally: two sizes farther the error is a hundredth, until rounding; at its best below 1e-9."""
-    roots = exact_spectrum(EASY, WANTED_MODES)
+    roots = exact_spectrum(EASY, MODE_COUNT)
     errors = [relative_error(krylov_schur(EASY, size), roots) for size in ORDERS]
     assert min(errors) < 1e-9
     coarse = [error for error in errors if error > 1e-8]
@@ -74,16 +80,16 @@ def test_the_solver_alone_converges_to_the_exact_eigenvalues():
 def test_own_error_on_the_hard_rods_is_rounding():
     for rod in HARD_RODS.values():
         for certify in (False, True):
-            assert relative_error(own_spectrum(rod, certify), exact_spectrum(rod, WANTED_MODES)) < 1e-14
+            assert relative_error(rodsweep_spectrum(rod, certify), exact_spectrum(rod, MODE_COUNT)) < 1e-14
 
 
 @pytest.mark.parametrize("rod", ARMS.values(), ids=list(ARMS))
 def test_exact_eigenvalues_of_arms_are_those_of_another_code(rod):
     """The other code loses digits in stiff arms."""
-    found = dense_arm.eigenvalues(rod, p=10)[:WANTED_MODES]
+    found = dense_arm.eigenvalues(rod, p=10)[:MODE_COUNT]
     assert relative_error(found, exact_arm_spectrum(rod)) < 1e-8
     for certify in (False, True):
-        assert relative_error(own_spectrum(rod, certify), exact_arm_spectrum(rod)) < 1e-13
+        assert relative_error(rodsweep_spectrum(rod, certify), exact_arm_spectrum(rod)) < 1e-13
 
 
 def test_no_arm_is_solved_twice():
@@ -96,10 +102,10 @@ def test_no_arm_is_solved_twice():
 
 def test_table_of_arms_has_time_and_error_of_every_method(monkeypatch):
     monkeypatch.setattr(arms, "ARMS", {"cone": ARMS["cone"]})
-    bad = Contender("coarse", "3", "a", lambda arm: np.ones(WANTED_MODES, complex))
+    bad = Contender("coarse", "3", "a", lambda arm: np.ones(MODE_COUNT, complex))
     lines = arm_table(arm_spectra([bad], 1), 1).splitlines()
     assert lines[2] == "| method | cone |"
-    for name in (PLAIN, PROVED, KRYLOV_SCHUR):
+    for name in (UNCERTIFIED_NAME, CERTIFIED_NAME, KRYLOV_SCHUR):
         (line,) = (line for line in lines if line.startswith(f"| {name} |"))
         assert re.fullmatch(r"\d+\.\d\d ms, \de-1\d", line.split(" | ")[1].rstrip(" |"))
     assert lines[-1].startswith("| coarse | no better than 1e+")
@@ -110,10 +116,10 @@ def test_method_that_fails_has_no_finite_error_and_says_how(monkeypatch):
         raise np.linalg.LinAlgError("no convergence")
 
     monkeypatch.setattr(spectrum, "HARD_RODS", {"easy": EASY})
-    rows = every_size([Contender("fails", "3", "a", fails)], 1)
+    rows = measure_hard_rods([Contender("fails", "3", "a", fails)], 1)
     assert rows[-1].error == np.inf
     assert rows[-1].failure == "failed (LinAlgError)"
-    assert "| fails | failed |" in hard_table(rows)
+    assert "| fails | failed |" in hard_rod_table(rows)
 
 
 def test_race_takes_all_in_turn_and_times_the_second_of_two(monkeypatch):
@@ -134,7 +140,7 @@ def test_race_makes_long_runs_once_a_round(monkeypatch):
 
 def test_slow_method_is_run_once():
     runs = []
-    (measurement,) = contest(
+    (measurement,) = measure_case(
         "c", 3, [Contender("m", "s", "g", runs.append, slow=True)], 5, lambda _: {"error": 0.5}
     )
     assert runs == [3]
@@ -153,8 +159,8 @@ def test_study_of_the_spectrum_has_a_row_for_every_method(monkeypatch, tmp_path)
     monkeypatch.setattr(spectrum, "HARD_RODS", {"easy": EASY})
     monkeypatch.setattr(spectrum, "FORCE_COUNT", 1)
     monkeypatch.setattr(arms, "ARMS", {"cone": ARMS["cone"]})
-    exact = Contender("a peer", "7", "g", partial(own_spectrum, certify=False))
-    study = spectrum_study(quick=True, peers=Peers({RACE: [exact]}, skipped=["Another is skipped."]))
+    exact = Contender("a peer", "7", "g", partial(rodsweep_spectrum, certify=False))
+    study = spectrum_study(quick=True, peers=Peers({SPECTRUM_RACE: [exact]}, skipped=["Another is skipped."]))
     for name in ("rodsweep, certificate on", "rodsweep, certificate off", KRYLOV_SCHUR, "a peer"):
         assert study.text.count(f"| {name} |") == (2 if name == "a peer" else 3)
         assert f"| {name} | 4 |" in study.text
@@ -219,7 +225,7 @@ def test_command_without_the_folder_times_rodsweep_alone_and_says_who_is_left_ou
     done = command.afresh("bench", "spectrum", "--quick", "-o", "b.md", PYTHONPATH=str(tmp_path / "site"))
     assert done.returncode == 0, done.stderr
     text = (tmp_path / "b.md").read_text()
-    sentence = left_out(["spectrum"])
+    sentence = peers_left_out(["spectrum"])
     assert f"\n\n{sentence}\n\n## spectrum" in text
     assert sentence in done.stdout
     assert sentence.count(". ") == 0
@@ -267,9 +273,9 @@ def write_peers(directory):
 def test_a_study_without_peers_in_the_folder_has_none(tmp_path):
     package = peer_package(None)
     assert package.__file__ == str(ROOT / "benchmarks" / "__init__.py")
-    assert peers_of(package, "sweep", True, tmp_path) is NO_PEERS
-    assert peers_of(None, "spectrum", True, tmp_path) is NO_PEERS
-    assert left_out(["sweep"]) == ""
+    assert study_peers(package, "sweep", True, tmp_path) is NO_PEERS
+    assert study_peers(None, "spectrum", True, tmp_path) is NO_PEERS
+    assert peers_left_out(["sweep"]) == ""
 
 
 @pytest.mark.parametrize("missing", ["pyproject.toml", "benchmarks/__init__.py"])
@@ -278,15 +284,15 @@ def test_a_folder_of_this_name_that_is_no_checkouts_is_left_alone(monkeypatch, t
     (tmp_path / "benchmarks").mkdir()
     for name in {"pyproject.toml", "benchmarks/__init__.py"} - {missing}:
         (tmp_path / name).touch()
-    monkeypatch.setattr(bench_peers, "CHECKOUT", tmp_path)
+    monkeypatch.setattr(bench_peers, "CHECKOUT_FOLDER", tmp_path)
     assert peer_package(None) is None
 
 
 def test_who_is_left_out_is_said_for_every_study_with_peers():
     rooms = [path.parent.name for path in (ROOT / "benchmarks").glob("*/__init__.py")]
-    assert sorted(LEFT_OUT) == sorted(rooms)
+    assert sorted(PEER_NAMES) == sorted(rooms)
 
 
 def test_a_benchmark_names_its_processor():
     """By words, as /proc/cpuinfo or else the platform has it, and not by the number of a core."""
-    assert re.search("[A-Za-z]{2}", machine()["processor"])
+    assert re.search("[A-Za-z]{2}", machine_attributes()["processor"])

@@ -7,14 +7,13 @@ import numpy as np
 import pytest
 
 from rodsweep.bench.limit_cycle.integrators import DEFAULT, IntegrationTask
+from rodsweep.bench.limit_cycle.settling import SettlingMethod, settling_table
 from rodsweep.bench.limit_cycle.study import (
     FOLLOWING,
     WAITING,
-    SettlingMethod,
     limit_cycle_study,
-    settling_table,
     target_table,
-    time_at,
+    time_at_error,
     work_table,
 )
 from rodsweep.bench.limit_cycle.sweeping import (
@@ -23,18 +22,18 @@ from rodsweep.bench.limit_cycle.sweeping import (
     RODS,
     ExactCycle,
     SweptRod,
-    from_neighbour,
-    sweep_points,
+    measure_sweep_points,
+    solve_from_neighbour,
     sweep_table,
 )
 from rodsweep.bench.limit_cycle.tracking import (
     FOLLOWED_PERIODS,
     PERIOD_MAP,
     cycle_request,
-    judged_run,
     orbit_of,
-    reference,
-    returns_of,
+    run_errors,
+    solve_reference,
+    tip_returns,
 )
 from rodsweep.bench.peers import NO_PEERS, Peers
 from rodsweep.bench.study import Contender, Measurement, TimedRuns
@@ -47,7 +46,7 @@ COLD = ["cold, leading mode", "cold, Hopf point"]
 
 @cache
 def cycle():
-    return reference()
+    return solve_reference()
 
 
 def test_error_of_an_exact_run_is_that_of_the_measurement():
@@ -55,13 +54,13 @@ def test_error_of_an_exact_run_is_that_of_the_measurement():
     steps = int(128 * FOLLOWED_PERIODS)
     duration = steps / 128 * at.period
     run = integrator(at.beam.mesh, PERIOD_MAP).run(at.beam, at.state, duration, at.period / 128)
-    assert judged_run(at, run)["error"] < 1e-8
+    assert run_errors(at, run)["error"] < 1e-8
 
 
 def test_returns_lie_on_the_section():
     at = cycle()
     steps = DEFAULT.integrate(1e-5, IntegrationTask(at.beam, at.state, FOLLOWED_PERIODS * at.period))
-    found = returns_of(at.beam, steps)
+    found = tip_returns(at.beam, steps)
     angle = at.beam.tip(found.states)[2]
     assert len(found.times) >= 6
     assert np.abs(angle).max() < 1e-9 * np.abs(at.beam.tip(steps.states)[2]).max()
@@ -69,10 +68,10 @@ def test_returns_lie_on_the_section():
 
 def test_interpolation_in_the_logarithms():
     times, errors = [10.0, 20.0, 80.0], [1e-4, 1e-5, 1e-7]
-    assert time_at(1e-6, errors, times) == pytest.approx(40.0)
-    assert time_at(1e-6, [1e-7, *errors], [1.0, *times]) == pytest.approx(40.0)  # once lucky
-    assert np.isnan(time_at(1e-6, errors[:2], times[:2]))
-    assert np.isnan(time_at(1e-6, errors[2:], times[2:]))
+    assert time_at_error(1e-6, errors, times) == pytest.approx(40.0)
+    assert time_at_error(1e-6, [1e-7, *errors], [1.0, *times]) == pytest.approx(40.0)  # once lucky
+    assert np.isnan(time_at_error(1e-6, errors[:2], times[:2]))
+    assert np.isnan(time_at_error(1e-6, errors[2:], times[2:]))
 
 
 def test_table_at_equal_error_states_the_ratios():
@@ -117,7 +116,7 @@ def test_the_reference_is_the_cycle_on_its_mesh():
 
 
 def test_points_of_a_sweep_are_as_accurate_as_they_say():
-    found = sweep_points(QUICK_RODS, 1)
+    found = measure_sweep_points(QUICK_RODS, 1)
     assert [m.method for m in found] == ["sweep over F", "sweep over k1", *COLD]
     for m in found:
         assert m.error <= m.extra["estimate"] <= ACCURACY
@@ -131,7 +130,7 @@ def test_points_of_a_sweep_are_as_accurate_as_they_say():
 def test_a_point_without_a_cycle_is_shown_as_failed():
     rod = SweptRod(replace(RODS[2], F=25.0), exact(), {"F": None}, NewtonWorkspace())
     with pytest.raises(ArithmeticError, match="no cycle: straight"):
-        from_neighbour("F", ACCURACY, rod)
+        solve_from_neighbour("F", ACCURACY, rod)
     failed = Measurement("rod", "sweep over F", "", 1.0, np.inf, failure="failed (ArithmeticError)")
     assert "| rod | sweep over F | failed (ArithmeticError) |  |" in sweep_table([failed])
 
@@ -152,7 +151,7 @@ def test_the_benchmark_times_rodsweep_alone(tmp_path):
 
 def test_the_benchmark_times_peers_beside_rodsweep(monkeypatch):
     """One that fails, one that is rodsweep's own under another name, and a section of its own."""
-    monkeypatch.setattr("rodsweep.bench.limit_cycle.study.sweep_points", lambda *_: [])
+    monkeypatch.setattr("rodsweep.bench.limit_cycle.study.measure_sweep_points", lambda *_: [])
 
     def gives_up(leg):
         raise ArithmeticError("too stiff")

@@ -19,20 +19,26 @@ from rodsweep.bench.sweep.launch import (
     KILLED,
     CommandRun,
     SweepCase,
-    launcher,
+    launcher_words,
+    mixed_forces,
     run_case,
     spectrum_case,
-    uneven_forces,
 )
-from rodsweep.bench.sweep.study import TWO_COMMANDS, growth_table, instant_table, measured, sweep_study
-from rodsweep.cli.benching import MEASURED
+from rodsweep.bench.sweep.study import (
+    TWO_COMMANDS,
+    growth_table,
+    instant_table,
+    sweep_measurement,
+    sweep_study,
+)
+from rodsweep.cli.benching import MEASURED_COMMAND
 from rodsweep.errors import EnvironmentIncomplete
 
 FEW_MEGABYTES = 4.0
 MOST_BYTES = 100
 
 
-run = partial(run_case, MEASURED)
+run = partial(run_case, MEASURED_COMMAND)
 
 
 def row(name, points, ranks, seconds, memory):
@@ -41,40 +47,40 @@ def row(name, points, ranks, seconds, memory):
     runs = [
         CommandRun(
             seconds=s,
-            inside=s - 0.5,
-            solving=0.0,
-            memory=tuple(memory[:ranks]),
-            file=1000 + 62 * points,
-            journal=74 * (points - 1),
-            elsewhere=0.0,
-            busy=1.0,
+            stated_seconds=s - 0.5,
+            solver_seconds=0.0,
+            peak_memory=tuple(memory[:ranks]),
+            file_bytes=1000 + 62 * points,
+            journal_bytes=74 * (points - 1),
+            processors_busy_elsewhere=0.0,
+            busy_fraction=1.0,
         )
         for s in (seconds, 2 * seconds, seconds)
     ]
-    return measured(case, ranks, runs)
+    return sweep_measurement(case, ranks, runs)
 
 
 @survey_only
 def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch, loaded):
     """Its runs are forked from a loaded process; the tests below start theirs as users do."""
     monkeypatch.setattr(sweep, "QUICK_SIZES", (400,))
-    monkeypatch.setattr(sweep, "QUICK_SPECTRA", 16)
-    monkeypatch.setattr(sweep, "QUICK_CYCLES", 2)
-    monkeypatch.setattr(followed, "QUICK_AXES", followed.QUICK_AXES[1:])
-    command = (sys.executable, "-SE", str(RANK), str(loaded.ranks), *MEASURED[1:])
+    monkeypatch.setattr(sweep, "QUICK_SPECTRUM_COUNT", 16)
+    monkeypatch.setattr(sweep, "QUICK_CYCLE_COUNT", 2)
+    monkeypatch.setattr(followed, "QUICK_GRIDS", followed.QUICK_GRIDS[1:])
+    command = (sys.executable, "-SE", str(RANK), str(loaded.ranks), *MEASURED_COMMAND[1:])
     study = sweep_study(quick=True, command=command)
     assert "| spectra | 16 | 1 |" in study.text
-    assert (f"| {TWO_COMMANDS} | 16 | 1 |" in study.text) == bool(launcher(2))
+    assert (f"| {TWO_COMMANDS} | 16 | 1 |" in study.text) == bool(launcher_words(2))
     assert "| no solver | 400 | 1 |" in study.text
     assert "| resumed | 400 | 1 |" in study.text
     assert growth_table([]) in study.text
     assert "| limit cycles | 2 | 1 |" in study.text
     assert "| 12 of F | 144 |" in study.text
-    assert ("| no solver | 400 | 2 |" in study.text) == bool(launcher(2))
+    assert ("| no solver | 400 | 2 |" in study.text) == bool(launcher_words(2))
     assert not study.drawable
     table = study.table()
     instant = [i for i, case in enumerate(table["case"]) if case == "no solver"]
-    assert len(instant) == (2 if launcher(2) else 1)
+    assert len(instant) == (2 if launcher_words(2) else 1)
     for name in ("ranks", "points", "points_per_second", "rss_megabytes", "file_bytes_per_point"):
         assert all(table[name][i] > 0 for i in instant), name
     assert all(np.isfinite(table["microseconds_overhead"][i]) for i in instant)
@@ -89,9 +95,9 @@ def test_memory_of_a_rank_does_not_grow_with_the_grid(tmp_path):
     for points in (2_000, 50_000):
         case = spectrum_case(tmp_path / str(points), "killed", points, "killed")
         killed = run(case, 1)
-        assert killed.journal > 74 * (points - 1)
+        assert killed.journal_bytes > 74 * (points - 1)
         resumed = run(replace(case, kind="instant"), 1, fresh=False)
-        peaks[points] = [killed.memory[0], resumed.memory[0]]
+        peaks[points] = [killed.peak_memory[0], resumed.peak_memory[0]]
     for few, many in zip(*peaks.values(), strict=True):
         assert 5e7 < few < many + 1e6 * FEW_MEGABYTES
         assert many < few + 1e6 * FEW_MEGABYTES
@@ -101,13 +107,13 @@ def test_file_takes_less_than_a_hundred_bytes_a_point(tmp_path):
     case = spectrum_case(tmp_path / "grid", "no solver", 20_000, "instant")
     taken = run(case, 1)
     assert case.points == 20_000
-    assert taken.file < MOST_BYTES * case.points
+    assert taken.file_bytes < MOST_BYTES * case.points
     table = "\n".join(f"{F!r},200,{1e3 + F!r},1e-4" for F in np.linspace(0, 90, 20_000).tolist())
     (case.directories[0] / "p.csv").write_text(f"F,k1,k2,gamma3\n{table}\n")
     (case.directories[0] / "c.yaml").write_text(
         "task: spectrum\nparameters: {points: p.csv}\nspectrum: {modes: 2}\n"
     )
-    assert run(case, 1).file < MOST_BYTES * case.points
+    assert run(case, 1).file_bytes < MOST_BYTES * case.points
 
 
 def test_a_run_that_fails_is_told(tmp_path):
@@ -118,7 +124,7 @@ def test_a_run_that_fails_is_told(tmp_path):
 
 
 def test_two_ranks_are_skipped_without_a_launcher(monkeypatch):
-    monkeypatch.setattr(sweep, "launcher", lambda ranks: [])
+    monkeypatch.setattr(sweep, "launcher_words", lambda ranks: [])
     solved, instant = [], []
 
     def sweeps(into, kinds):
@@ -151,7 +157,7 @@ def test_growth_is_that_of_each_step():
 
 
 def test_uneven_forces_lie_on_both_sides_of_the_hopf_point_and_close_to_it():
-    forces = uneven_forces(60)
+    forces = mixed_forces(60)
     assert len(forces) == 60
     distance = forces / HOPF_FORCE - 1
     assert distance.min() < -0.5

@@ -18,9 +18,9 @@ from rodsweep.bench.thresholds.study import (
     ONSET,
     FirstThreshold,
     ThresholdCase,
+    measure_rods,
     threshold_table,
     thresholds_study,
-    timed_on,
 )
 
 CASE = {case.name: case for case in CASES}
@@ -60,7 +60,7 @@ def test_tables_say_what_was_missed():
         (CASE["narrow"].hopf, "wrong (74.83) | 0e+00 | wrong (74.83)"),
     ):
         method = Contender("a", "b", "", lambda _, force=force: FirstThreshold(force, 10), slow=True)
-        assert f"| {cells} |" in threshold_table(HOPF, timed_on(HOPF, cases, [method], 1))
+        assert f"| {cells} |" in threshold_table(HOPF, measure_rods(HOPF, cases, [method], 1))
 
 
 def test_the_study_writes_its_text_and_its_figure(monkeypatch, tmp_path):

@@ -11,13 +11,19 @@ import pytest
 from surveyed import few, only, survey_only
 
 from benchmarks import auto as auto_peer
-from benchmarks.auto import AUTO, SKIPPED, auto_program
+from benchmarks.auto import AUTO, AUTO_SKIPPED, auto_program
 from benchmarks.limit_cycle import integrators as cycle_peers
 from benchmarks.limit_cycle import peers
-from benchmarks.limit_cycle.auto_cycles import AutoSetting, continued, rod_file
+from benchmarks.limit_cycle.auto_cycles import AutoSetting, continue_cycles, rod_file
 from benchmarks.limit_cycle.auto_equations import EQUATIONS
-from benchmarks.limit_cycle.continuation import OWN, cycle_table, first_cycles, judged, ratio_table
-from benchmarks.limit_cycle.integrators import CVODE, CVODE_SKIPPED, families
+from benchmarks.limit_cycle.continuation import (
+    RODSWEEP,
+    cycle_table,
+    first_cycles,
+    judged_measurement,
+    ratio_table,
+)
+from benchmarks.limit_cycle.integrators import CVODE, CVODE_SKIPPED, installed_families
 from rodsweep.bench.limit_cycle.integrators import DEFAULT, IntegrationTask
 from rodsweep.bench.limit_cycle.study import FOLLOWING, WAITING
 from rodsweep.bench.limit_cycle.sweeping import ACCURACY, RODS, ExactCycle
@@ -25,17 +31,17 @@ from rodsweep.bench.limit_cycle.tracking import (
     FOLLOWED_PERIODS,
     PERIOD_MAP,
     cycle_request,
-    judged_run,
-    on_cycle,
+    measure_following,
     orbit_of,
-    reference,
-    work_precision,
+    run_errors,
+    solve_reference,
+    state_on_cycle,
 )
 from rodsweep.bench.study import Measurement
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.motion.integrator import integrator
 
-FAMILIES = (DEFAULT, *families())
+FAMILIES = (DEFAULT, *installed_families())
 FOLLOWED = few(FAMILIES, 4)
 ORDERS = {
     "ARKIMEX 2": (2, 1e-4, 1e-5),
@@ -54,7 +60,7 @@ LOOSE_AND_TIGHT = {"ARKIMEX 2": (1e-4, 1e-5), "ARKIMEX 3": (1e-5, 1e-7), "BDF 5"
 
 @cache
 def cycle():
-    return reference()
+    return solve_reference()
 
 
 @cache
@@ -64,7 +70,7 @@ def rows():
         replace(f, tolerances=LOOSE_AND_TIGHT.get(f.name, (f.tolerances[0], f.tolerances[-1])))
         for f in FOLLOWED
     ]
-    return work_precision(cycle(), [c for family in chosen for c in family.followers()], 1)
+    return measure_following(cycle(), [c for family in chosen for c in family.followers()], 1)
 
 
 def of(name):
@@ -90,14 +96,14 @@ def test_order_of_the_errors(name):
     for phase, state in enumerate(over.states[: 128 : 128 // PHASES + 1]):
         for i, tolerance in enumerate(tolerances):
             run = family.integrate(tolerance, IntegrationTask(at.beam, state, FOLLOWED_PERIODS * at.period))
-            error[i, phase] = judged_run(replace(at, state=state), run)["error"]
+            error[i, phase] = run_errors(replace(at, state=state), run)["error"]
             steps[i, phase] = len(run.times) - 1
     (loose, tight), (few, many) = np.sqrt((error**2).mean(axis=1)), steps.mean(axis=1)
     assert np.log(loose / tight) / np.log(many / few) == pytest.approx(order, abs=0.7)
 
 
 def test_cvode_is_left_out_in_one_sentence_where_it_is_not_installed(monkeypatch, tmp_path):
-    monkeypatch.setattr(cycle_peers, "installed", lambda _: None)
+    monkeypatch.setattr(cycle_peers, "optional_module", lambda _: None)
     found = peers(quick=True, place=tmp_path)
     assert CVODE not in [contender.method for contender in found.of(FOLLOWING)]
     assert found.skipped[0] == CVODE_SKIPPED
@@ -105,10 +111,10 @@ def test_cvode_is_left_out_in_one_sentence_where_it_is_not_installed(monkeypatch
 
 def test_every_integrator_takes_part_where_it_is_installed(tmp_path):
     found = peers(quick=True, place=tmp_path)
-    assert {c.method for c in found.of(FOLLOWING)} == {family.name for family in families()}
-    assert {c.method for c in found.of(WAITING)} == {f.name for f in families() if f.waiting}
-    assert (SKIPPED in found.skipped) == (not found.sections)
-    assert (CVODE_SKIPPED in found.skipped) == (CVODE not in {family.name for family in families()})
+    assert {c.method for c in found.of(FOLLOWING)} == {family.name for family in installed_families()}
+    assert {c.method for c in found.of(WAITING)} == {f.name for f in installed_families() if f.waiting}
+    assert (AUTO_SKIPPED in found.skipped) == (not found.sections)
+    assert (CVODE_SKIPPED in found.skipped) == (CVODE not in {family.name for family in installed_families()})
 
 
 @cache
@@ -132,7 +138,7 @@ def auto(tmp_path_factory):
 
 @pytest.mark.skipif(shutil.which("gfortran") is None, reason="gfortran is not installed")
 def test_equations_in_fortran_are_those_of_the_beam(tmp_path):
-    beam, z = on_cycle(soft_rod())
+    beam, z = state_on_cycle(soft_rod())
     n = len(z)
     (tmp_path / "rod").write_bytes(rod_file(soft_rod().form))
     # A library of its own, which finds the rod where it was written.
@@ -164,7 +170,7 @@ def test_auto_continues_the_same_cycles(auto):
     starts = first_cycles(replace(RODS[0], F=49.0), [rough, fine])
     errors = []
     for setting in (rough, fine):
-        branch = continued(auto, starts[setting.order], setting, 0.5, 3)
+        branch = continue_cycles(auto, starts[setting.order], setting, 0.5, 3)
         assert abs(branch.F - 50.0) < 1e-5
         assert len(branch.multipliers) == 3 * setting.order
         assert np.abs(branch.multipliers - 1).min() < 1e-3
@@ -178,7 +184,7 @@ def test_auto_that_loses_its_branch_is_a_failure(auto):
     setting = AutoSetting(8, 2, 2, 3)
     start = first_cycles(RODS[0], [setting])[8]
     with pytest.raises(RuntimeError, match="of 5 cycles"):
-        continued(auto, start, setting, 5.0, 5)
+        continue_cycles(auto, start, setting, 5.0, 5)
 
 
 def test_auto_is_left_out_in_one_sentence_where_it_is_not_installed(monkeypatch, tmp_path):
@@ -197,18 +203,18 @@ def test_the_section_of_auto_has_its_tables(tmp_path):
     text, measurements = section(1)
     assert [block.count("\n| AUTO-07p | p = ") for block in text] == [0, 2, 0]
     assert text[2].count("\n| 1e-0") == 2
-    assert {m.method for m in measurements} == {OWN, AUTO}
+    assert {m.method for m in measurements} == {RODSWEEP, AUTO}
 
 
 def test_at_equal_error_auto_has_its_fastest_setting():
     def of(method, setting, ms, error):
         return Measurement("", method, setting, 1e-3 * ms, error)
 
-    own = [of(OWN, "1e-06", 4.0, 1e-8), of(OWN, "1e-07", 5.0, 1e-9)]
+    own = [of(RODSWEEP, "1e-06", 4.0, 1e-8), of(RODSWEEP, "1e-07", 5.0, 1e-9)]
     peers = [of(AUTO, "a", 40.0, 9e-7), of(AUTO, "b", 10.0, 2e-6), of(AUTO, "c", 80.0, 1e-7)]
     text = ratio_table([*own, *peers])
     assert "| 1e-06 | 4.0 | 1e-06 | 40.0 | a | 10.0 |" in text
     assert "| 1e-07 | 4.0 | 1e-06 | 80.0 | c | 20.0 |" in text
-    failed = judged(None, of(AUTO, "d", 1.0, np.inf), RuntimeError("lost"))
+    failed = judged_measurement(None, of(AUTO, "d", 1.0, np.inf), RuntimeError("lost"))
     assert "| 1e-07 | 4.0 | 1e-06 |  |  |  |" in ratio_table([*own, failed])
     assert "| AUTO-07p | d | failed (lost) |" in cycle_table([failed])

@@ -12,9 +12,9 @@ from benchmarks.spectrum.eigensolvers import (
 )
 from rodsweep.bench.spectrum.arms import ARM_RACE, ARMS, UnsolvedArms, exact_arm_spectrum
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
-from rodsweep.bench.spectrum.own import WANTED_MODES
-from rodsweep.bench.spectrum.study import HARD_RODS, RACE
-from rodsweep.bench.study import grouped
+from rodsweep.bench.spectrum.own import MODE_COUNT
+from rodsweep.bench.spectrum.study import HARD_RODS, SPECTRUM_RACE
+from rodsweep.bench.study import grouped_by_fields
 from rodsweep.model.rod import Rod
 
 EASY = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
@@ -23,7 +23,7 @@ EASY = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
 @pytest.mark.parametrize("peer", PEERS, ids=lambda peer: peer.name)
 def test_every_peer_converges_to_the_exact_eigenvalues(peer):
     """Spectrally: two sizes farther the error is a hundredth, until rounding; at its best below 1e-9."""
-    roots = exact_spectrum(EASY, WANTED_MODES)
+    roots = exact_spectrum(EASY, MODE_COUNT)
     errors = [relative_error(peer.solve(EASY, size), roots) for size in peer.sizes]
     assert min(errors) < 1e-9
     coarse = [error for error in errors if error > 1e-8]
@@ -33,7 +33,7 @@ def test_every_peer_converges_to_the_exact_eigenvalues(peer):
 @pytest.mark.parametrize("rod", ARMS.values(), ids=list(ARMS))
 def test_peers_of_arms_converge_to_the_exact_eigenvalues(rod):
     roots = exact_arm_spectrum(rod)
-    for (name,), own in grouped(arm_contenders(), "method").items():
+    for (name,), own in grouped_by_fields(arm_contenders(), "method").items():
         errors = [relative_error(contender.run(UnsolvedArms(rod)), roots) for contender in own]
         assert min(errors) < 1e-10, name
         assert errors[0] > 100 * min(errors), name
@@ -41,14 +41,14 @@ def test_peers_of_arms_converge_to_the_exact_eigenvalues(rod):
 
 def test_forms_without_stiffness_keep_their_digits_where_the_plain_ones_lose_them():
     stiff = HARD_RODS[next(name for name in HARD_RODS if name.startswith("stiff"))]
-    roots = exact_spectrum(stiff, WANTED_MODES)
+    roots = exact_spectrum(stiff, MODE_COUNT)
     assert relative_error(dense_inverse(stiff, 18), roots) < 1e-12
     assert relative_error(chebyshev_first_order(stiff, 24), roots) < 1e-11
     assert relative_error(displacement_elements(stiff, 18), roots) > 1e-8
 
 
 def test_every_peer_takes_part_at_all_of_its_sizes(tmp_path):
-    found = peers(quick=True, place=tmp_path).of(RACE)
+    found = peers(quick=True, place=tmp_path).of(SPECTRUM_RACE)
     for peer in PEERS:
         assert [int(c.setting) for c in found if c.method == peer.name] == list(peer.sizes)
     assert {c.method for c in peers(quick=True, place=tmp_path).of(ARM_RACE)} < {peer.name for peer in PEERS}

@@ -13,34 +13,36 @@ from scipy.optimize import brentq
 from benchmarks import auto as auto_peer
 from benchmarks import versions
 from benchmarks.auto import auto_program
-from benchmarks.installed import installed
+from benchmarks.installed import optional_module
 from benchmarks.thresholds import continuation, peers
 from benchmarks.thresholds.continuation import (
-    CONTINUATION,
+    CONTINUATION_GROUP,
     PYCONT,
     PYCONT_MODULE,
     hopf_by_auto,
     hopf_by_pycont,
-    reduced,
+    matrix_polynomial,
 )
 from benchmarks.thresholds.spectra_by_force import (
-    BY_STEPS,
+    STEP_SEARCHES,
     LeadingPair,
-    between,
-    by_steps,
-    growth,
-    interpolated_growth,
-    on_grid,
-    square_root_law,
+    growth_rate,
+    hopf_by_interpolation,
+    onset_by_square_root,
+    onset_midpoint,
+    threshold_by_steps,
+    threshold_on_grid,
 )
 from rodsweep.bench.study import Contender
-from rodsweep.bench.thresholds.study import CASES, HOPF, ONSET, ThresholdCase, threshold_table, timed_on
+from rodsweep.bench.thresholds.study import CASES, HOPF, ONSET, ThresholdCase, measure_rods, threshold_table
 
 CASE = {case.name: case for case in CASES}
 FLUTTERING = [case for case in CASES if not isnan(case.hopf)]
 FLOOR = 3e-12
 """Relative error of a threshold that the mesh of MESH_ACCURACY leaves, and M(F) by its rounding ten times."""
-needs_pycont = pytest.mark.skipif(installed(PYCONT_MODULE) is None, reason="PyCont-Lite is not installed")
+needs_pycont = pytest.mark.skipif(
+    optional_module(PYCONT_MODULE) is None, reason="PyCont-Lite is not installed"
+)
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +57,7 @@ def auto(tmp_path_factory):
 @pytest.mark.parametrize("name", ["Fig. 2b", "filament", "soft"])
 def test_root_finding_reaches_its_tolerance(name, tolerance):
     case = CASE[name]
-    for kind, searches in BY_STEPS.items():
+    for kind, searches in STEP_SEARCHES.items():
         for search in searches.values():
             found = search(tolerance, case)
             assert case.error_of(kind, found.force) < tolerance + FLOOR
@@ -63,7 +65,7 @@ def test_root_finding_reaches_its_tolerance(name, tolerance):
 
 
 @pytest.mark.parametrize(
-    "estimate, exact, order", [(interpolated_growth, "hopf", 2), (square_root_law, "onset", 2)]
+    "estimate, exact, order", [(hopf_by_interpolation, "hopf", 2), (onset_by_square_root, "onset", 2)]
 )
 def test_order_of_interpolation(estimate, exact, order):
     """Twice the points: the error falls by 2^order, if the threshold lies alike between two forces."""
@@ -72,7 +74,7 @@ def test_order_of_interpolation(estimate, exact, order):
     errors = []
     for intervals in (16, 32, 64):
         top = truth * intervals / (0.625 * intervals + 0.5)  # the threshold is halfway between two forces
-        found = on_grid(estimate, intervals + 1, replace(case, top=top))
+        found = threshold_on_grid(estimate, intervals + 1, replace(case, search_end=top))
         assert found.solves == intervals + 1
         errors.append(abs(found.force - truth))
     assert np.log2(np.divide(errors[:-1], errors[1:])) == pytest.approx([order, order], abs=0.25)
@@ -81,21 +83,21 @@ def test_order_of_interpolation(estimate, exact, order):
 def test_onset_between_two_forces_is_within_half_a_step():
     case = CASE["filament"]
     for points in (20, 40, 80):
-        found = on_grid(between, points, case)
-        assert abs(found.force - case.onset) <= case.top / (points - 1) / 2
+        found = threshold_on_grid(onset_midpoint, points, case)
+        assert abs(found.force - case.onset) <= case.search_end / (points - 1) / 2
 
 
 def test_a_grid_too_coarse_for_the_window_misses_it():
     case = CASE["narrow"]
-    assert isnan(on_grid(interpolated_growth, 50, case).force)
-    assert case.error_of(HOPF, on_grid(interpolated_growth, 200, case).force) < 1e-2
-    assert isnan(by_steps(brentq, growth, 1e-6, case).force)
+    assert isnan(threshold_on_grid(hopf_by_interpolation, 50, case).force)
+    assert case.error_of(HOPF, threshold_on_grid(hopf_by_interpolation, 200, case).force) < 1e-2
+    assert isnan(threshold_by_steps(brentq, growth_rate, 1e-6, case).force)
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_the_ordinary_differential_equation_has_the_spectrum_of_the_pencil(case):
-    M0, M1, M2 = reduced(case)
-    for F in (0.0, case.onset + 1, 0.9 * case.top):
+    M0, M1, M2 = matrix_polynomial(case)
+    for F in (0.0, case.onset + 1, 0.9 * case.search_end):
         w = LeadingPair(case)(F)
         own = np.linalg.eigvals(M0 + F * M1 + F**2 * M2)
         distance = np.abs(own[:, None] - w).min(axis=0) / np.abs(w)
@@ -105,7 +107,7 @@ def test_the_ordinary_differential_equation_has_the_spectrum_of_the_pencil(case)
 @pytest.mark.parametrize("k1, k2, gamma3", [(1e3, np.inf, 0.0), (np.inf, 1e3, 0.0), (1e3, np.inf, 0.1)])
 def test_rods_that_do_not_reduce_are_refused(k1, k2, gamma3):
     with pytest.raises(ArithmeticError):
-        reduced(ThresholdCase("", k1, k2, gamma3, 20.0, nan))
+        matrix_polynomial(ThresholdCase("", k1, k2, gamma3, 20.0, nan))
 
 
 @pytest.mark.parametrize("case", FLUTTERING, ids=lambda case: case.name)
@@ -125,7 +127,7 @@ def test_auto_finds_nothing_where_nothing_is(auto):
 @needs_pycont
 def test_pycont_finds_the_hopf_point_in_silence(capsys):
     for name in ("filament", "Fig. 2b"):
-        found = hopf_by_pycont(installed(PYCONT_MODULE), 0.25, CASE[name])
+        found = hopf_by_pycont(optional_module(PYCONT_MODULE), 0.25, CASE[name])
         assert CASE[name].error_of(HOPF, found.force) < 1e-7
         assert found.products > 1000
     assert capsys.readouterr().out == ""
@@ -137,13 +139,13 @@ def test_a_continuation_code_that_fails_is_shown_as_failed():
 
     run = partial(hopf_by_pycont, SimpleNamespace(arclengthContinuation=give_up), 1.0)
     for case in (CASE["filament"], CASE["Fig. 2d"]):
-        (result,) = timed_on(HOPF, [case], [Contender("a", "", CONTINUATION, run, slow=True)], 1)
+        (result,) = measure_rods(HOPF, [case], [Contender("a", "", CONTINUATION_GROUP, run, slow=True)], 1)
         assert result.error == inf
         assert "| failed (RuntimeError) |" in threshold_table(HOPF, [result])
 
 
 def test_peers_that_are_not_installed_are_skipped_with_a_line(monkeypatch, tmp_path):
-    monkeypatch.setattr(continuation, "installed", lambda _: None)
+    monkeypatch.setattr(continuation, "optional_module", lambda _: None)
     monkeypatch.setattr(shutil, "which", lambda _: None)
     found = peers(quick=True, place=tmp_path)
     assert [line.split(" is skipped")[0] for line in found.skipped] == ["AUTO-07p", "PyCont-Lite"]
@@ -153,11 +155,11 @@ def test_peers_that_are_not_installed_are_skipped_with_a_line(monkeypatch, tmp_p
 
 def test_peers_that_are_installed_take_part_and_are_explained(tmp_path):
     found = peers(quick=True, place=tmp_path)
-    codes = {c.method for c in found.of(HOPF) if c.group == CONTINUATION}
-    assert (PYCONT in codes) == (installed(PYCONT_MODULE) is not None)
+    codes = {c.method for c in found.of(HOPF) if c.group == CONTINUATION_GROUP}
+    assert (PYCONT in codes) == (optional_module(PYCONT_MODULE) is not None)
     assert len(codes) + len(found.skipped) == 2
     assert len(codes) == len(found.notes) - 1
-    assert not any(c.group == CONTINUATION for c in found.of(ONSET))
+    assert not any(c.group == CONTINUATION_GROUP for c in found.of(ONSET))
 
 
 def test_a_program_that_crashes_is_a_failure(tmp_path):

@@ -162,7 +162,7 @@ def test_large_grid_may_be_larger_than_the_memory_but_not_its_axes(command, monk
     axis = rs.linspace(100, 1000, 1000)
     with pytest.raises(rs.InputError, match="memory of this machine; `rodsweep run` writes them into a file"):
         rs.sweep("spectrum", F=rs.linspace(0, 9, 1000), k1=axis, k2=axis, gamma3=rs.linspace(0, 1, 1000))
-    monkeypatch.setattr(job, "memory", lambda: 10**7)
+    monkeypatch.setattr(job, "machine_memory", lambda: 10**7)
     with pytest.raises(rs.InputError, match="GB of memory of this machine; use fewer values"):
         make_job(path, ("parameters.F={start: 0, stop: 9, num: 1000000}",))
 

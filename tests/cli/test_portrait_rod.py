@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 import rodsweep as rs
-from rodsweep.cli.portrait_rod import rod_from, showing
+from rodsweep.cli.portrait_rod import rod_of_options, solve_with_progress
 from rodsweep.errors import InputError
 from rodsweep.post.rod_portrait.results import DescribedRod
 from rodsweep.tasks.rod_portrait import PortraitRequest
@@ -20,7 +20,7 @@ ARM = {"length": "10 cm", "radius": "5 mm", "tip_radius": "4 mm", "young": "100 
 def test_an_arm_is_the_arm_that_it_is_in_python(monkeypatch):
     arm = rs.Arm(**ARM, law="neo_hookean", section="swelling")
     swelling = {"law": "neo_hookean", "section": "swelling", "profile": None}
-    found = rod_from({}, ARM, swelling)
+    found = rod_of_options({}, ARM, swelling)
     assert found == DescribedRod(arm={**ARM, "law": "neo_hookean", "section": "swelling"})
     described = []
     monkeypatch.setattr(
@@ -28,7 +28,7 @@ def test_an_arm_is_the_arm_that_it_is_in_python(monkeypatch):
     )
     arm.portrait()
     assert points_of(described[0].rod) == points_of(found)
-    assert points_of(rod_from({"gamma3": 0.5}, ARM, NO_MATERIAL))["gamma3"] == 0.5
+    assert points_of(rod_of_options({"gamma3": 0.5}, ARM, NO_MATERIAL))["gamma3"] == 0.5
 
 
 def points_of(rod: DescribedRod) -> dict[str, float]:
@@ -39,7 +39,7 @@ def points_of(rod: DescribedRod) -> dict[str, float]:
 
 def test_an_arm_in_segments_has_the_profile_of_its_config():
     segments = ["5 cm: radius 6 mm, young 80 kPa", "5 cm: radius 4 mm, young 100 kPa"]
-    found = rod_from({}, {"segments": segments, "viscosity": "12 Pa s"}, NO_MATERIAL)
+    found = rod_of_options({}, {"segments": segments, "viscosity": "12 Pa s"}, NO_MATERIAL)
     build = PortraitRequest(rod=found).job("thresholds", {}).config.build
     assert build == rs.Arm(segments=segments, viscosity="12 Pa s").build
     assert found.words == f"segments {segments[0]} | {segments[1]}, viscosity 12 Pa s"
@@ -48,7 +48,7 @@ def test_an_arm_in_segments_has_the_profile_of_its_config():
 def test_a_rod_has_its_law_and_the_profile_of_a_file(tmp_path):
     (tmp_path / "p.csv").write_text("u,k3\n0,1\n1,0.5\n")
     material = {"law": "neo_hookean", "section": None, "profile": str(tmp_path / "p.csv")}
-    found = rod_from({**ROD, "taper": 0.9}, {}, material)
+    found = rod_of_options({**ROD, "taper": 0.9}, {}, material)
     assert found.parameters == {**ROD, "gamma1": 1.0, "taper": 0.9}
     assert found.material == {"law": "neo_hookean", "profile": {"u": [0, 1], "k3": [1, 0.5]}}
     assert found.words.endswith("taper = 0.9, law neo_hookean, a profile along its length")
@@ -63,7 +63,7 @@ def test_a_rod_has_its_law_and_the_profile_of_a_file(tmp_path):
 )
 def test_options_that_are_no_rod_are_refused(parameters, quantities, sentence):
     with pytest.raises(InputError) as refusal:
-        rod_from(parameters, quantities, NO_MATERIAL)
+        rod_of_options(parameters, quantities, NO_MATERIAL)
     assert str(refusal.value).startswith(sentence)
 
 
@@ -89,7 +89,7 @@ def test_progress_counts_the_solves_and_says_where_a_long_one_is():
 
     shown = Recorder()
     job = SimpleNamespace(config=SimpleNamespace(task="limit_cycle"))
-    with pytest.raises(KeyboardInterrupt), showing(shown, solve) as shown_solve:
+    with pytest.raises(KeyboardInterrupt), solve_with_progress(shown, solve) as shown_solve:
         assert shown_solve(job) is job
         assert (shown.counts, shown.places) == ([0, 1], [("limit cycle: F = 30", 0.5)])
         raise KeyboardInterrupt

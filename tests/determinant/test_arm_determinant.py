@@ -5,6 +5,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from rodsweep.determinant.arm.determinant import ArmDeterminant
+from rodsweep.determinant.arm.elements.evaluation import fill_propagator, powers_of
+from rodsweep.determinant.arm.elements.minor_rates import PADDED
 from rodsweep.determinant.value import scaled_determinant
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import FACTORS, Profile
@@ -113,3 +115,49 @@ def test_sizes_that_no_elements_resolve_are_refused(size):
     determinant = ArmDeterminant(Rod(F=10.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5))
     with pytest.raises(FloatingPointError, match="too few to resolve"):
         determinant.value(complex(size))
+
+
+RANDOM = np.random.default_rng(20)
+ARMS = [
+    Rod(
+        F=float(RANDOM.uniform(-40, 60)),
+        k1=10 ** float(RANDOM.uniform(2.3, 5)),
+        k2=10 ** float(RANDOM.uniform(1, 5)),
+        gamma3=10 ** float(RANDOM.uniform(-6, 0)),
+        taper=float(RANDOM.uniform(0.15, 2.5)),
+        build=Build(profile=JUMP) if case % 3 == 0 else Build(law="neo_hookean", section="swelling"),
+    )
+    for case in range(6)
+]
+
+
+@pytest.mark.parametrize("z", [1e-9j, -3e-5, 0.002 + 0.001j, 0.04j, -0.2 + 0.1j, 0.45, -0.7j, 1.0])
+@pytest.mark.parametrize("arm", range(len(ARMS)))
+def test_left_out_powers_of_w_do_not_matter(arm, z):
+    """The propagators and their derivatives from the powers that count, against all in long doubles."""
+    for size in (20.0, 2e3, 2e5):
+        W, polynomials = ArmDeterminant(ARMS[arm]).level(size, 1.0)
+        terms = polynomials.shape[1]
+        powers = powers_of(complex(z), terms)
+        assert len(powers) < terms or abs(z) > 1e-4
+        n = np.arange(terms)[:, None]
+        power = np.clongdouble(z) ** n
+        slope = n * np.clongdouble(z) ** np.maximum(n - 1, 0)
+        found = np.empty((4, PADDED))
+        for polynomial in polynomials:
+            fill_propagator(polynomial, powers, found)
+            for values, weight in ((found[:2], power), (found[2:], slope)):
+                all_terms = weight * polynomial
+                error = np.abs(values[0] + 1j * values[1] - all_terms.sum(axis=0)).max()
+                assert error <= 20 * np.finfo(float).eps * np.abs(all_terms).sum(axis=0).max()
+
+
+@pytest.mark.parametrize("w", [0.3, -2.0, -40.0, -900.0, 700.0])
+def test_values_at_real_w_are_real_and_those_beside_the_axis(w):
+    for rod in ARMS:
+        determinant = ArmDeterminant(rod)
+        real, beside = determinant.value(complex(w)), determinant.value(complex(w, 1e-280))
+        assert (real.D.imag, real.D_w.imag) == (0.0, 0.0)
+        D, D_w = (value * np.exp(beside.S - real.S) for value in (beside.D, beside.D_w))
+        assert abs(real.D - D) <= real.noise
+        assert abs(real.D_w - D_w) <= 1e-13 * abs(D_w) + real.noise / abs(w)

@@ -11,6 +11,7 @@ from bokeh.models import HoverTool
 import rodsweep as rs
 from rodsweep.errors import Refusal
 from rodsweep.explore.page import AT_ONCE, STOPPED_SENTENCE, Page
+from rodsweep.explore.pictures.card import AXIS_ALPHAS
 from rodsweep.explore.pictures.diagram import DiagramCell, cells, in_words
 from rodsweep.explore.pictures.numbers import written
 from rodsweep.explore.solving.diagrams import CRUSHED, NOT_KNOWN
@@ -300,3 +301,31 @@ def test_a_stopped_solve_has_a_sentence_in_place_of_its_picture():
         assert picture.card.message.text == STOPPED_SENTENCE
         assert not picture.card.figure.visible
     assert page.contents.sign.text == ""
+
+
+def test_pictures_without_an_answer_have_no_axes():
+    """Empty axes from 0 to 1 once looked like an answer."""
+    page = page_with(ImmediateSolvers(kinds=("spectrum",)))
+    contents = page.contents
+    for card in contents.cards:
+        alphas = {getattr(axis, name) for axis in card.figure.axis for name in AXIS_ALPHAS}
+        assert alphas == ({1.0} if card in (contents.spectrum.card, contents.mode.card) else {0.0})
+
+
+def test_the_largest_force_of_an_arm_is_given_as_a_pressure_too():
+    page = page_with(ImmediateSolvers(kinds=()), "tab=arm&F_max=60")
+    title = page.contents.controls.F_max.title
+    pressure = float(re.fullmatch(r"Largest force F \(k3/L\^2\): ([\d.]+) kPa", title)[1])
+    arm = rs.Arm(**page.state.arm).replace(pressure=f"{pressure} kPa")
+    assert rs.Rod(arm=arm).parameters["F"] == pytest.approx(60.0, rel=1e-3)
+    page.change(tab="rod")
+    assert page.contents.controls.F_max.title == "Largest force F (k3/L^2)"
+
+
+def test_a_title_of_the_thresholds_never_needs_a_new_layout():
+    """Its second line was cut, and parts of it stayed, until a later answer moved the frame."""
+    page = page_with(ImmediateSolvers(kinds=()))
+    growth = page.contents.growth.card
+    before = growth.figure.title.text
+    page.contents.show("thresholds", answer_to(Question("thresholds", page.state)), page.state)
+    assert before.count("\n") == growth.figure.title.text.count("\n") == 1

@@ -11,7 +11,7 @@ import socket
 import sys
 from contextlib import suppress
 
-PASSED_ON = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1, signal.SIGUSR2, signal.SIGHUP)
+RUN_ENDING_EXCEPTIONS = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1, signal.SIGUSR2, signal.SIGHUP)
 
 
 def pass_on(child: int) -> None:
@@ -21,7 +21,7 @@ def pass_on(child: int) -> None:
         with suppress(ProcessLookupError):
             os.kill(child, number)
 
-    for number in PASSED_ON:
+    for number in RUN_ENDING_EXCEPTIONS:
         signal.signal(number, give)
 
 
@@ -36,7 +36,7 @@ def main() -> None:
         ended = server.recv(4)
     status = int.from_bytes(ended, "big", signed=True) if ended else 1
     if status < 0:
-        if -status in PASSED_ON:
+        if -status in RUN_ENDING_EXCEPTIONS:
             signal.signal(-status, signal.SIG_DFL)
         os.kill(os.getpid(), -status)
     os._exit(status)

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 import rodsweep as rs
-from rodsweep.api.dataset import view_of
+from rodsweep.api.dataset import view_of_dataset
 from rodsweep.errors import InputError
 from rodsweep.model.arm.neglected import Validity
 from rodsweep.post.figures import draw
@@ -176,7 +176,7 @@ _CHANGES = {"spectrum": _spectra, "thresholds": _forces, "criticality": _sides, 
 
 def wrong_figure(task, keywords, choices, width):
     """(texts and marks that are wrong or that nothing reads, with why; counts, None without a figure)."""
-    view = view_of(rs.sweep(task, progress=False, **keywords), Path(f"{task}.h5"))
+    view = view_of_dataset(rs.sweep(task, progress=False, **keywords), Path(f"{task}.h5"))
     choices = {name: str(value) for name, value in choices.items() if value is not None}
     figures = []
     try:

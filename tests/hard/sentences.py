@@ -15,7 +15,7 @@ import numpy as np
 from rods import rod_of
 
 import rodsweep as rs
-from rodsweep.api.dataset import view_of
+from rodsweep.api.dataset import view_of_dataset
 from rodsweep.determinant.certificate.winding_number import count_right_of
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.parameters import LINEAR_PARAMETERS
@@ -190,7 +190,7 @@ def _drawn(random, name, count):
 
 def solved(task, keywords):
     """The results of a sweep, as `show` sees them."""
-    return view_of(rs.sweep(task, progress=False, **keywords), Path(f"{task}.h5")).listed
+    return view_of_dataset(rs.sweep(task, progress=False, **keywords), Path(f"{task}.h5")).listed
 
 
 def wrong_sentences(task, keywords):

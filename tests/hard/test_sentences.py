@@ -72,7 +72,7 @@ DRAWN = {
 def test_the_reader_finds_a_mark_that_is_wrong(task, monkeypatch):
     """A hundredth off, in the file that is drawn."""
     keywords, choices, name = DRAWN[task]
-    true = figures.view_of
+    true = figures.view_of_dataset
 
     def off(*given):
         view = true(*given)
@@ -80,7 +80,7 @@ def test_the_reader_finds_a_mark_that_is_wrong(task, monkeypatch):
         return replace(view, variables=values | {name: 1.01 * values[name]})
 
     assert wrong_figure(task, keywords, choices, None)[0] == []
-    monkeypatch.setattr(figures, "view_of", off)
+    monkeypatch.setattr(figures, "view_of_dataset", off)
     assert wrong_figure(task, keywords, choices, None)[0] != []
 
 

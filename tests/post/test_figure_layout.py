@@ -14,7 +14,7 @@ from matplotlib.text import Text
 from surveyed import RODS
 
 import rodsweep as rs
-from rodsweep.api.dataset import view_of
+from rodsweep.api.dataset import view_of_dataset
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.animation import first_frame
 from rodsweep.post.figures.cycle.selection import chosen_cycles
@@ -122,7 +122,7 @@ def solved(name):
     """Results of every task that solves, coarse."""
     task, words = SOLVED[name]
     data = rs.sweep(task, title=LONG, **words)
-    return view_of(data, Path(f"{name}.h5"))
+    return view_of_dataset(data, Path(f"{name}.h5"))
 
 
 DIAGRAM = {"F": rs.linspace(0, 250, 11), "k1": rs.logspace(30, 1000, 7)}

@@ -14,7 +14,7 @@ from PIL import Image
 from shown import HOPF, STABLE_AGAIN
 
 import rodsweep as rs
-from rodsweep.api.dataset import view_of
+from rodsweep.api.dataset import view_of_dataset
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
 from rodsweep.post.figures.lists import number_points
@@ -587,7 +587,11 @@ def test_folds_of_rows_are_marked_where_no_curve_goes_through_them():
 def figure_of(task, **words):
     """The figure of a sweep as it is written."""
     figures = []
-    draw(view_of(rs.sweep(task, progress=False, **words), Path("d.h5")), Path("f.png"), keep=figures.append)
+    draw(
+        view_of_dataset(rs.sweep(task, progress=False, **words), Path("d.h5")),
+        Path("f.png"),
+        keep=figures.append,
+    )
     return figures[0]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from shown import shown
 
 import rodsweep as rs
-from rodsweep.api.dataset import view_of
+from rodsweep.api.dataset import view_of_dataset
 from rodsweep.determinant.arm.hull import hull
 from rodsweep.post.summary import show_summary
 from rodsweep.results.file.provenance import (
@@ -34,7 +34,7 @@ def told(view):
 
 
 def view_of_sweep(tmp_path, task, **keywords):
-    return view_of(rs.sweep(task, progress=False, **keywords), tmp_path / "c.h5")
+    return view_of_dataset(rs.sweep(task, progress=False, **keywords), tmp_path / "c.h5")
 
 
 def changed(view, **variables):

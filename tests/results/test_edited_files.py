@@ -139,5 +139,5 @@ def test_a_dimension_that_refers_to_nothing_is_refused(results, tmp_path):
             nowhere[axis] = np.array([h5py.Reference()], h5py.ref_dtype)
         del data.attrs["DIMENSION_LIST"]
         data.attrs.create("DIMENSION_LIST", nowhere, dtype=kind)
-    with pytest.raises(InputError, match="the dimensions of status are not as rodsweep wrote them"):
+    with pytest.raises(InputError, match="the dimensions of status were changed after rodsweep wrote them"):
         read_view(path)

@@ -153,9 +153,9 @@ def test_reports_are_heard_by_all_who_listen():
 
 def test_a_place_in_a_part_is_told_as_one_in_the_whole():
     heard = []
-    with watch.reporting_to(lambda place: heard.append(place())), watch.part("branch 2", (0.5, 0.9)):
+    with watch.reporting_to(lambda place: heard.append(place())), watch.solve_part("branch 2", (0.5, 0.9)):
         watch.report(lambda: watch.SolvePosition("F = 50", 0.25))
-        with watch.part("corner"):
+        with watch.solve_part("corner"):
             watch.report(lambda: watch.SolvePosition("F = 51", 0.5))
         watch.report()
     assert heard[0] == ("branch 2: F = 50", pytest.approx(0.6))

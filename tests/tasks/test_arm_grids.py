@@ -10,8 +10,8 @@ from contents import content, same
 from surveyed import few
 
 import rodsweep as rs
-from rodsweep.api.asking import job_from, tree_of
-from rodsweep.api.dataset import view_of
+from rodsweep.api.asking import config_tree, job_from
+from rodsweep.api.dataset import view_of_dataset
 from rodsweep.config.arm.axes import CRUSHED, NO_WALL, NOT_SLENDER
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import Validity
@@ -49,7 +49,7 @@ limit_cycle: {start: neighbour, harmonics: 2}
 
 
 def job(task, **keywords):
-    return job_from(tree_of(task, keywords))
+    return job_from(config_tree(task, keywords))
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +74,7 @@ def test_values_are_selected_by_the_quantities_in_si(thresholds):
 
 
 def test_a_section_has_the_points_of_a_quantity_in_any_unit(thresholds):
-    view = view_of(thresholds, Path("arm.h5"))
+    view = view_of_dataset(thresholds, Path("arm.h5"))
     for length in ("10 cm", "100 mm", 0.1):
         cut = section(view, {"length": length, "young": "0.1 MPa"})
         assert cut.variables["F_hopf"].tolist() == [[thresholds.F_hopf.sel(length=0.1, young=1e5).item()]]
@@ -231,7 +231,7 @@ def test_axes_are_sealed(command):
     xr.testing.assert_identical(rs.open(command.directory / "copy.h5"), data)
     with h5py.File(path, "r+") as file:
         file["length"][1] = 0.105
-    with pytest.raises(rs.InputError, match="variable length is not as rodsweep wrote it"):
+    with pytest.raises(rs.InputError, match="variable length was changed after rodsweep wrote it"):
         rs.open(path)
 
 

@@ -11,7 +11,7 @@ from surveyed import few
 from test_paper import run, stated
 
 import rodsweep as rs
-from rodsweep.api.dataset import view_of
+from rodsweep.api.dataset import view_of_dataset
 from rodsweep.model.floquet import least_outside
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import RodBranches, intersection, stability_of_pieces, union
@@ -23,7 +23,7 @@ from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
 from rodsweep.results.layouts.variables import MISSING
 from rodsweep.solve.branch.branches import BranchRequest, solve_branches
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
-from rodsweep.tasks.branch import record
+from rodsweep.tasks.branch import branch_values
 from rodsweep.tasks.running.job import make_job
 
 CONFIG = (
@@ -290,7 +290,7 @@ def test_record_has_all_variables_of_the_layout_and_no_other(tmp_path, along):
         else Rod(k1=np.inf, F=100.0, k2=1e4, gamma3=1e-4)
     )
     found = solve_branches(rod, BranchRequest(along, 50.0, 160.0, 1e-4, True, 500, 64))
-    assert set(record(found, along, 500, 64)) == names
+    assert set(branch_values(found, along, 500, 64)) == names
 
 
 def test_other_parameters_are_followed_from_the_command_line(command):
@@ -340,7 +340,7 @@ def test_the_curve_in_the_figure_is_the_branch(k1, stop):
     """Straight pieces between its few cycles miss it by up to a hundredth, next to a Hopf point most."""
     coarse, fine = (
         RodBranches(
-            view_of(
+            view_of_dataset(
                 rs.sweep("branch", k1=k1, k2=1e4, gamma3=1e-4, stop=stop, accuracy=accuracy), Path("b.h5")
             )
         ).curves

@@ -26,7 +26,7 @@ from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds
 from rodsweep.tasks.diagram.records import cycle_curve_record
 from rodsweep.tasks.running.job import make_job
-from rodsweep.tasks.thresholds import search_record
+from rodsweep.tasks.thresholds import crossing_values
 
 CONFIGS = {
     "spectrum": "parameters: {F: [1, 2], k1: 9, k2: [1, 2], gamma3: 0}\nspectrum: {modes: 3, vectors: true}",
@@ -134,13 +134,13 @@ def of_modes(number, nodes):
 
 def record_of(task, index=0):
     if task == "spectrum":
-        return spectrum.record(of_spectrum(3, 33))
+        return spectrum.spectrum_values(of_spectrum(3, 33))
     if task == "modes":
-        return modes.record(of_modes(2, 5), growth=True)
+        return modes.mode_values(of_modes(2, 5), growth=True)
     if task == "thresholds":
-        return thresholds.record(search(index), 4)
+        return thresholds.threshold_values(search(index), 4)
     row = {"class": [0, 1, 2], "unstable_count": [0, 0, 2]}
-    return search_record(search(index), 16, "F", "crossing_at") | row
+    return crossing_values(search(index), 16, "F", "crossing_at") | row
 
 
 def filled_file(tmp_path, task):
@@ -230,7 +230,7 @@ def test_first_crossings_are_stored_and_all_are_counted(tmp_path):
 def test_places_without_a_crossing_are_filled():
     nothing = search()
     nothing.crossings = ()
-    record = thresholds.record(nothing, 2)
+    record = thresholds.threshold_values(nothing, 2)
     assert np.isnan([record["F_onset"], record["F_hopf"], *record["crossing_F"]]).all()
     assert record["crossing_kind"] == [0, 0]
     assert record["unstable_after"] == [-1, -1]
@@ -240,7 +240,7 @@ def test_transient_growth_is_stored_only_where_it_is_computed(tmp_path):
     with_growth, without = (job_of(tmp_path, "modes", f"modes.growth={g}") for g in ("true", "false"))
     names = [{v.name for v in job.layout.variables} for job in (with_growth, without)]
     assert names[0] - names[1] >= {"numerical_abscissa", "transient_growth", "transient_time"}
-    assert set(modes.record(of_modes(2, 5), growth=False)) == names[1]
+    assert set(modes.mode_values(of_modes(2, 5), growth=False)) == names[1]
 
 
 def test_point_list_of_rods_without_a_force_opens_with_its_coordinates(tmp_path):

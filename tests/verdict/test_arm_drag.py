@@ -10,7 +10,7 @@ from contents import content, same
 from matplotlib.collections import PolyCollection
 
 import rodsweep as rs
-from rodsweep.api.asking import job_from, tree_of
+from rodsweep.api.asking import config_tree, job_from
 from rodsweep.config.arm.axes import CRUSHED, NO_FLUTTER
 from rodsweep.config.arm.section import ArmSection
 from rodsweep.model.arm.arm import SlenderArm
@@ -22,7 +22,7 @@ from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.sweep.points.arm_grid import grid_of_arms
 from rodsweep.sweep.points.flutter_forces import FlutterForce
-from rodsweep.tasks.arm.points import same_rods
+from rodsweep.tasks.arm.points import rod_numbers
 from rodsweep.verdict.flutter import ChangeKind
 from rodsweep.verdict.relative import first_flutter, first_hopf_force
 
@@ -251,11 +251,11 @@ def test_a_rod_of_several_points_is_solved_once(task):
 def test_points_of_different_rods_are_told_apart():
     lengths = SILICONE | {"length": ["10 cm", "14 cm"]}
     points = [
-        job_from(tree_of("thresholds", {"arm": arm})).points
+        job_from(config_tree("thresholds", {"arm": arm})).points
         for arm in (lengths | {"viscosity": ["20 Pa s", "30 Pa s"]}, lengths)
     ]
-    assert np.diff(same_rods(points[0])).astype(bool).tolist() == [False, True, False]
-    assert same_rods(points[1]) is None
+    assert np.diff(rod_numbers(points[0])).astype(bool).tolist() == [False, True, False]
+    assert rod_numbers(points[1]) is None
 
 
 def test_a_load_that_crushes_the_arm_at_some_points_only_is_no_refusal(command):

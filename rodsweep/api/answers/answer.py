@@ -1,4 +1,4 @@
-"""Result of a task for one rod: variables as attributes, lists as pandas DataFrames."""
+"""`rs.Answer`, the result of a task for one rod: variables as attributes, lists as pandas DataFrames."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -17,23 +17,23 @@ from ...post.tables.contents import POINTS
 from ...results.layouts import layout_of
 from ..solved import Result
 from .frames import frame_of, series_of
-from .printing import PrintedAnswer, brief_html, brief_text, first_lines, whole_html, whole_text
+from .printing import PrintedAnswer, brief_html, brief_text, heading_lines, whole_html, whole_text
 
 EIGENVALUE = ("growth_rate", "frequency")
-"""Names of the real and the imaginary part of an eigenvalue."""
-NOT_PRINTED = ("status", "seconds")
-"""Variables without a row of their own: the heading has the status, and the time depends on the machine."""
+"""Variables with the real and the imaginary part of an eigenvalue."""
+UNPRINTED_VARIABLES = ("status", "seconds")
+"""Variables that a printed answer omits: the heading has the status, and the time depends on the machine."""
 SI_UNITS = ("Pa", "N", "Hz", "s", "1/s", "m", "J", "W")
-"""SI units, by which variables of an arm are recognised beside variables in units of the rod."""
-TOTALS = {"crossings": "crossing_count", "special_points": "special_count", "cycles": "point_count"}
-"""Variables with the total number of items of a list, stored or not, by the name of the list."""
-IN_FULL = ("modes", "crossings", "special_points", "harmonics", "multipliers")
-"""Lists printed in full. Of every other list only the number of rows is printed."""
+"""SI units of the variables of an arm. Variables with other units are in units of the rod."""
+TOTAL_VARIABLES = {"crossings": "crossing_count", "special_points": "special_count", "cycles": "point_count"}
+"""Variable with the number of items found of a list, stored or not, by the name of the list."""
+LISTS_PRINTED_IN_FULL = ("modes", "crossings", "special_points", "harmonics", "multipliers")
+"""Names of the lists that `Answer.table` prints in full. Of other lists it prints the number of rows only."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
 class WholeTable:
-    """Every number of an answer and all lists, as text and for a notebook."""
+    """All numbers and lists of an answer, as text for a terminal and as HTML for a notebook."""
 
     text: str
     html: str
@@ -46,7 +46,7 @@ class WholeTable:
 
 
 class Answer:
-    """The variables of a task for one rod, and its lists.
+    """Result of a task for one rod: the variables of the task, and its lists.
 
     Every variable is an attribute. A variable of the rod is a number, a word, True or False; an unknown count
     is None. A variable of a list is an array with one entry per item found. A whole list, such as `modes`,
@@ -68,13 +68,13 @@ class Answer:
 
     @cached_property
     def data(self) -> xr.Dataset:
-        """The Dataset of the rod."""
+        """The Dataset of the rod, without dimensions of length 1 for the rod's parameters."""
         points = ("point",) if "point" in self.whole.dims else layout_of(self.config).parameters
         return self.whole.isel(dict.fromkeys(points, 0))
 
     @cached_property
     def config(self) -> dict[str, Any]:
-        """The complete config of this answer, defaults included."""
+        """The config from which this answer was solved, as a tree of keys with all defaults."""
         return self._tables.view.config
 
     @cached_property
@@ -83,7 +83,9 @@ class Answer:
 
     @property
     def status(self) -> StrEnum:
-        """Outcome of the solve as a word. All possible words of the task are the members of its class."""
+        """Status of the solve as a word. The word is a member of an enumeration of all statuses of the
+        task.
+        """
         view = self._tables.view
         words = _statuses(view.task, tuple(view.flags.values()))
         return words(view.flags[int(view.variables["status"].item())])
@@ -130,7 +132,10 @@ class Answer:
         raise AttributeError(f"this answer has no {name!r}; it has {', '.join(self._names())}")
 
     def _along(self, table: str, name: str) -> np.ndarray:
-        """A variable or a coordinate of a list: an array with the list's dimensions, as long as the list."""
+        """Values of a variable or a coordinate of a list, with one entry per item of the list.
+
+        table: name of the list. name: of the variable or coordinate.
+        """
         dimensions = self._tables.contents.dimensions(table)
         (column,) = (column for column in self._tables.items(table) if column.name == name)
         if name in dimensions[1:]:
@@ -151,9 +156,9 @@ class Answer:
         return sorted({*super().__dir__(), *map(str, self.data.variables), *self._names()})
 
     def table(self) -> "WholeTable":
-        """Every number with its unit and meaning, and the lists, as a text; notebooks show a table.
+        """All numbers with units and meanings, and the lists. Terminals print a text, notebooks show a table.
 
-        `rs.table(answer, NAME)` is a list with the parameters of the rod, as a DataFrame.
+        `rs.table(answer, NAME)` returns the list NAME, with the parameters of the rod, as a DataFrame.
         """
         printed = self._printed()
         return WholeTable(whole_text(printed), whole_html(printed))
@@ -167,7 +172,7 @@ class Answer:
     def _printed(self) -> PrintedAnswer:
         tables = self._tables
         rod = OneRod(tables.view)
-        own = [c for c in tables.table(POINTS).columns if c.name not in NOT_PRINTED and not c.given]
+        own = [c for c in tables.table(POINTS).columns if c.name not in UNPRINTED_VARIABLES and not c.given]
         own.sort(key=_is_dimensionless)
         lists = {}
         for name in self.lists:
@@ -175,27 +180,29 @@ class Answer:
             lists[name] = (number, *sorted(others, key=_is_dimensionless))
         if int(self.data["status"]) != 0:  # a special outcome, such as a rod at rest: hide empty lists
             lists = {name: columns for name, columns in lists.items() if len(columns[0].values)}
-        totals = {name: int(self.data[count]) for name, count in TOTALS.items() if count in self.data}
+        totals = {
+            name: int(self.data[count]) for name, count in TOTAL_VARIABLES.items() if count in self.data
+        }
         totals |= {"modes": self.data.sizes["mode"]} if "mode" in self.data.sizes else {}
         return PrintedAnswer(
             rod=rod,
-            heading=first_lines(rod, self.rod, self.status, self.sentence, self.message),
+            heading=heading_lines(rod, self.rod, self.status, self.sentence, self.message),
             headline=HEADLINES[str(self.data.attrs["task"])],
             numbers=tuple(c for c in own if not c.absent[0]),
             absent=tuple(c.name for c in own if c.absent[0]) if int(self.data["status"]) == 0 else (),
             totals=totals,
-            lists={name: columns for name, columns in lists.items() if name in IN_FULL},
-            named={
+            lists={name: columns for name, columns in lists.items() if name in LISTS_PRINTED_IN_FULL},
+            row_counts={
                 name: rows
                 for name, columns in lists.items()
-                if name not in IN_FULL and (rows := len(columns[0].values))
+                if name not in LISTS_PRINTED_IN_FULL and (rows := len(columns[0].values))
             },
         )
 
 
 @cache
 def _statuses(task: str, words: tuple[str, ...]) -> type[StrEnum]:
-    """The `StrEnum` of all statuses of a task."""
+    """Enumeration of all statuses of a task; words: the statuses."""
     made: Any = StrEnum  # Any: mypy knows no StrEnum whose members come from data
     found = made("Status", {word: word for word in words})
     found.__name__ = "".join(part.title() for part in task.split("_")) + "Status"
@@ -203,12 +210,12 @@ def _statuses(task: str, words: tuple[str, ...]) -> type[StrEnum]:
 
 
 def _is_dimensionless(column: Column) -> bool:
-    """Whether a column is in units of the rod. Columns in SI units are printed first."""
+    """Whether a column has no SI unit, but a unit of the rod. Columns in SI units are printed first."""
     return column.unit not in SI_UNITS
 
 
 def _scalar(column: Column) -> float | int | bool | str | None:
-    """The only value of a column. A missing word or count is None, a missing real number is NaN."""
+    """The value of a column with one row. A missing word or count is None, a missing real number is NaN."""
     if column.absent[0] and column.values.dtype.kind != "f":
         return None
     value = series_of(column)[0]

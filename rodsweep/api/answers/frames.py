@@ -1,4 +1,6 @@
-"""Tables of a result as pandas DataFrames: words instead of codes, missing values instead of fill values."""
+"""Tables of a result as pandas DataFrames, with words instead of codes and missing values instead of fill
+values.
+"""
 
 from collections.abc import Iterable
 from typing import Any

@@ -20,52 +20,57 @@ from ...post.figures.sections import choices_of, section
 from ...results.file.view import View
 from ...solve.exclusive import one_at_a_time
 from ...tasks.cycle_shapes import with_shapes
-from ..dataset import file_path
+from ..dataset import named_file_path
 from .answer import Answer
-from .tabling import view_for
+from .tabling import view_of_result
 
 P = ParamSpec("P")
+"""Parameters of a decorated function."""
 R = TypeVar("R")
-PLACE = re.compile(r"--at (?:'(\w+)=([^']*)'|(\w+)=(\S*[^\s:;,)]))")
-NUMBER = re.compile(r"-?(?:\d[\d.]*(?:e[+-]?\d+)?|inf)")
-WORDS = (
+"""Type of the value returned by a decorated function."""
+AT_OPTION = re.compile(r"--at (?:'(\w+)=([^']*)'|(\w+)=(\S*[^\s:;,)]))")
+"""Regular expression of the option `--at NAME=VALUE` of `rodsweep plot`, with or without quotes."""
+NUMBER_TEXT = re.compile(r"-?(?:\d[\d.]*(?:e[+-]?\d+)?|inf)")
+"""Regular expression of a number in a value of `--at`."""
+ARGUMENTS_OF_OPTIONS = (
     (re.compile(r"--what (\w+)"), r'what="\1"'),
     (re.compile(r"--point (\d+)"), r"points=\1"),
     (re.compile(r"--point\b"), "points"),
     (re.compile(r"--(at|what|output|roots|width|style|title)\b"), r"\1"),
 )
-"""Options of `rodsweep plot`, and how `rs.plot` has them."""
-EXAMPLE = 'rs.plot(data, "figure.pdf", width="single")'
+"""Regular expressions of options of `rodsweep plot`, each with the corresponding argument of `rs.plot`."""
+PLOT_EXAMPLE = 'rs.plot(data, "figure.pdf", width="single")'
 
 
-def in_python(sentence: str) -> str:
-    """A sentence about options of `rodsweep plot` with the arguments of `rs.plot` in their place."""
-    sentence = PLACE.sub(_place, sentence)
-    for option, argument in WORDS:
+def as_python_arguments(sentence: str) -> str:
+    """A sentence in which arguments of `rs.plot` replace options of `rodsweep plot`."""
+    sentence = AT_OPTION.sub(_place, sentence)
+    for option, argument in ARGUMENTS_OF_OPTIONS:
         sentence = option.sub(argument, sentence)
     return sentence
 
 
 def _place(match: re.Match[str]) -> str:
-    """`at` as a dictionary: a number as it is, a quantity or a word in quotes."""
+    """The argument `at` as Python code, from a match of AT_OPTION; values other than numbers are quoted."""
     name, value = (match[1], match[2]) if match[1] else (match[3], match[4])
-    return f'at={{"{name}": {value}}}' if NUMBER.fullmatch(value) else f'at={{"{name}": "{value}"}}'
+    return f'at={{"{name}": {value}}}' if NUMBER_TEXT.fullmatch(value) else f'at={{"{name}": "{value}"}}'
 
 
 def refusing_in_python(function: Callable[P, R]) -> Callable[P, R]:
-    """Decorator: the InputError of a call has the arguments of `rs.plot`."""
+    """Decorator: an InputError of the function names arguments of `rs.plot` instead of options."""
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
         try:
             return function(*values, **named)
         except InputError as error:
-            raise InputError(in_python(str(error))) from None
+            raise InputError(as_python_arguments(str(error))) from None
 
     return call
 
 
 Drawable = xr.Dataset | Answer | str | Path
+"""Result that `rs.plot` can draw; text and paths name a result file."""
 
 
 class FigureOptions(TypedDict, total=False):
@@ -77,7 +82,10 @@ class FigureOptions(TypedDict, total=False):
 
 
 def _refuse_other_than(**choices: tuple[str | None, Iterable[str]]) -> None:
-    """Raises InputError for the first argument, by name with its choices, whose value is not among them."""
+    """Raises InputError for the first argument whose value is not allowed.
+
+    choices: (value or None, allowed values) by name of the argument.
+    """
     for name, (given, known) in choices.items():
         if given is not None and given not in known:
             raise InputError(f"{name} = {given!r} is not allowed; choose {', '.join(known)}")
@@ -85,14 +93,14 @@ def _refuse_other_than(**choices: tuple[str | None, Iterable[str]]) -> None:
 
 @dataclass(frozen=True, slots=True)
 class SolvedShapes:
-    """Shapes of the cycles of a figure, which are solved once however often the figure is drawn."""
+    """Function that adds the shapes of cycles to a view. It solves each set of cycles once and keeps them."""
 
     solve: Shapes = with_shapes
     solved: dict[tuple[int, ...], View] = field(default_factory=dict)
-    """The file with shapes, by the numbers of its points."""
+    """Views with shapes, by the numbers of the points whose cycles were solved."""
 
     def __call__(self, view: View, numbers: Sequence[int]) -> View:
-        """The figure's file with the shapes of the cycles at the given points, numbered from 1."""
+        """A copy of the view with the shapes of the cycles at the points `numbers`, counted from 1."""
         key = tuple(numbers)
         if key not in self.solved:
             self.solved[key] = self.solve(view, numbers)
@@ -138,7 +146,7 @@ class Picture:
 
 
 @one_at_a_time
-@in_sentences(EXAMPLE)
+@in_sentences(PLOT_EXAMPLE)
 @refusing_in_python
 def plot(
     data: Drawable | Sequence[Drawable],
@@ -164,18 +172,20 @@ def plot(
         raise InputError(f"points = {short(points)} is not allowed; give whole numbers, from 1")
     several = [data] if isinstance(data, Drawable) else data
     if not isinstance(several, Sequence) or not several:
-        raise InputError("there is nothing to draw; give a Dataset, an answer or a file")
+        raise InputError(
+            f"{short(data)} has nothing to draw; give a Dataset, an answer or a file, or several"
+        )
     values = choices_of(at)
-    views = [section(view_for(one, EXAMPLE), values) for one in several]
+    views = [section(view_of_result(one, PLOT_EXAMPLE), values) for one in several]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
     choices |= {"look": FigureLook(**look), "shapes": SolvedShapes()}
-    file = None if output is None else file_path(output, EXAMPLE)
+    file = None if output is None else named_file_path(output, PLOT_EXAMPLE)
     ending = ".gif" if what == "animation" else ".png"
     with TemporaryDirectory(prefix="rodsweep-") as place:
         # A file in the format of the display is the display: the figure is drawn once.
         path = file if file is not None and file.suffix == ending else Path(place, f"figure{ending}")
         shown = draw(views, path, **choices).removeprefix(f"wrote {path}: ")
-        picture = Picture(views, choices, in_python(shown), path.read_bytes())
+        picture = Picture(views, choices, as_python_arguments(shown), path.read_bytes())
     if file is not None and file != path:
         picture.save(file)
     return picture

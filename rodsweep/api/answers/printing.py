@@ -1,7 +1,7 @@
-"""Layout of an answer in a terminal and in a notebook: about ten lines, or on request all numbers and lists.
+"""Text and HTML of an answer: about ten lines, or on request all numbers and lists.
 
-Both layouts begin with the answer in a sentence, the rod, and the meaning of the status. No line is longer
-than 80 characters; numbers have as many digits as the error allows.
+Both forms begin with the result in a sentence, the rod, and the meaning of the status. No line of text is
+longer than 80 characters. Numbers have as many digits as their errors allow.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,70 +14,77 @@ from ...post.tables.alignment import GAP, WIDTH, Line, blocks, column_cells, fol
 from ...post.tables.columns import Column
 from ...wording import counted
 
-BRIEF_LINES = 11
-"""Largest number of lines of an answer at a prompt, unless the sentences above the numbers need more."""
+MAX_BRIEF_LINES = 11
+"""Maximum number of lines of the short text of an answer, unless the sentences of the heading need more."""
 MIN_ROWS = 3
-"""Number of numbers, or of rows of a list, that are printed even if the lines above are many."""
-PROOFS = ("not certified", "certified")
-"""Words for the completeness of the list of an answer."""
+"""Minimum number of printed numbers, or printed rows of a list, whatever the length of the heading."""
+PROOF_WORDS = ("not certified", "certified")
+"""Words for the values 0 and 1 of the variable certified."""
 ERROR_SIGN = "+-"
 """Sign between a number and its error."""
 
 
 @dataclass(frozen=True, slots=True)
 class PrintedAnswer:
-    """Content of a printed answer."""
+    """Everything that the text or HTML of an answer contains."""
 
     rod: OneRod
     heading: tuple[str, ...]
-    """Lines with the answer, the rod and the status."""
+    """Lines with the result in a sentence, the rod, and the meaning of the status."""
     headline: Headline
+    """Main numbers and main list of the task."""
     numbers: tuple[Column, ...]
     """Variables with a single value, as columns with one row."""
     absent: tuple[str, ...]
-    """Variables without a value for this rod."""
+    """Names of the variables that have no value for this rod."""
     lists: Mapping[str, tuple[Column, ...]]
-    """Columns of each printed list, by the name of the list; the first column numbers the items."""
-    named: Mapping[str, int]
-    """Number of rows of each list that is not printed, by name."""
+    """Columns of each list printed in full, by name of the list; the first column numbers the items."""
+    row_counts: Mapping[str, int]
+    """Number of rows of each list that is not printed in full, by name of the list."""
     totals: Mapping[str, int]
-    """Number of items of each list, stored or not; of modes the number requested."""
+    """Number of items found of each list, stored or not, by its name; of modes the number requested."""
 
     @property
     def closing_lines(self) -> Iterator[str]:
-        """Lines below the tables: lists that are not printed, and variables without a value."""
-        if self.named:
-            yield "; ".join(f"{name}: {rows} row{'s' * (rows != 1)}" for name, rows in self.named.items())
+        """Yields the lines below the tables: names of lists not printed, and of variables without a value."""
+        if self.row_counts:
+            yield "; ".join(
+                f"{name}: {rows} row{'s' * (rows != 1)}" for name, rows in self.row_counts.items()
+            )
         if self.absent:
             yield f"none: {', '.join(self.absent)}"
 
 
-def first_lines(rod: OneRod, name: str, status: str, sentence: str, message: str) -> tuple[str, ...]:
-    """(answer, rod, status with its meaning); without an answer the meaning of the status comes first."""
+def heading_lines(rod: OneRod, name: str, status: str, sentence: str, message: str) -> tuple[str, ...]:
+    """Lines of the heading: the result in a sentence, the rod with its status, and the status's meaning.
+
+    name: text of the rod. sentence: meaning of the status. message: of the solve. Without a result in a
+    sentence, the meaning of the status comes first.
+    """
     task = rod.view.task
     meaning = "; ".join(filter(None, (sentence, message)))
     answer = HEADLINES[task].sentence(rod)
     certified = rod.count("certified")
-    proof = "" if certified is None else f", {PROOFS[certified]}"
+    proof = "" if certified is None else f", {PROOF_WORDS[certified]}"
     if not answer:
         return f"{task}: {meaning}", f"{name}, {task}: {status}"
     return answer, f"{name}, {task}: {status}{proof}", meaning
 
 
 def brief_text(printed: PrintedAnswer) -> str:
-    """An answer in about ten lines: the sentence, the main numbers and the main list."""
+    """Short text of an answer, about ten lines: the heading, the main numbers and the main list."""
     lines = [*_heads(printed), *_number_lines(printed)]
     more = _more(printed)
-    lines += _brief_list(printed, BRIEF_LINES - len(lines) - more.count("\n") - 1)
+    lines += _brief_list(printed, MAX_BRIEF_LINES - len(lines) - more.count("\n") - 1)
     return "\n".join([*lines, more])
 
 
 def brief_html(printed: PrintedAnswer) -> str:
-    """An answer as HTML, with the content of `brief_text`."""
+    """Short HTML of an answer, with the content of `brief_text`."""
     parts = [_html_heading(printed)]
     if pairs := _number_pairs(printed):
         parts.append(_html_table([], [(name, value, error, unit) for name, value, error, unit in pairs]))
-    columns, _ = _brief_cells(printed, BRIEF_LINES)
+    columns, _ = _brief_cells(printed, MAX_BRIEF_LINES)
     if columns:
         name, unit, *rows = zip(*columns, strict=True)
         parts.append(_html_table([name, unit], rows))
@@ -85,7 +92,7 @@ def brief_html(printed: PrintedAnswer) -> str:
 
 
 def whole_text(printed: PrintedAnswer) -> str:
-    """An answer as text: every number with its unit and meaning, then the lists."""
+    """Long text of an answer: the heading, every number with its unit and meaning, and the lists."""
     rows = [(c.name, printed.rod.points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
     parts = ["\n".join(_heads(printed)), "\n".join(["numbers", *rows_with_prose(rows)]) if rows else ""]
     for name, columns in printed.lists.items():
@@ -101,7 +108,7 @@ def whole_text(printed: PrintedAnswer) -> str:
 
 
 def whole_html(printed: PrintedAnswer) -> str:
-    """An answer as HTML, with the content of `whole_text`."""
+    """Long HTML of an answer, with the content of `whole_text`."""
     rows = [(c.name, printed.rod.points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
     parts = [_html_heading(printed), _html_table([("variable", "value", "unit", "meaning")], rows)]
     for name, columns in printed.lists.items():
@@ -114,12 +121,12 @@ def whole_html(printed: PrintedAnswer) -> str:
 
 
 def _heads(printed: PrintedAnswer) -> list[str]:
-    """Lines of the heading, folded at the width of the window."""
+    """Lines of the heading, folded at the maximum width of a line."""
     return [line for text in printed.heading if text for line in folded(text).splitlines()]
 
 
 def _title(name: str, columns: Sequence[Column], total: int) -> str:
-    """Heading of a list: name and number of items, and the total if this is larger."""
+    """Title of a list: its name and number of rows; total: number of items found, printed if it is larger."""
     count = len(columns[0].values)
     return f"{name}: {count or 'none'}{f' of {total}' if total > count else ''}" + (
         f", {columns[0].meaning}" if count > 1 else ""
@@ -127,7 +134,7 @@ def _title(name: str, columns: Sequence[Column], total: int) -> str:
 
 
 def _number_pairs(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
-    """(name, value, error with sign, unit) of each number of the headline that is not missing."""
+    """(name, value, error with sign, unit), as text, of each main number that has a value."""
     pairs = []
     for name in printed.headline.numbers:
         column = printed.rod.column(name)
@@ -138,8 +145,8 @@ def _number_pairs(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
 
 
 def _number_lines(printed: PrintedAnswer) -> list[str]:
-    """Aligned lines of the numbers of the headline, below an empty line."""
-    room = BRIEF_LINES - len(_heads(printed)) - 2  # beside the empty line and the last line
+    """Aligned lines of the main numbers, after an empty line; no line without numbers."""
+    room = MAX_BRIEF_LINES - len(_heads(printed)) - 2  # beside the empty line and the last line
     pairs = _number_pairs(printed)[: max(room, MIN_ROWS)]
     if not pairs:
         return []
@@ -149,10 +156,10 @@ def _number_lines(printed: PrintedAnswer) -> list[str]:
 
 
 def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], int]:
-    """(columns of the list of the headline, number of its items); room: largest number of rows.
+    """(columns of the main list, number of rows of the whole list); room: maximum number of rows in a column.
 
-    A column has the cells name, unit, and values; errors follow as a column of their own. As many columns are
-    printed as the window is wide.
+    A column consists of the cells name, unit, and values; errors have a column of their own. Columns that
+    would make a line longer than WIDTH are omitted.
     """
     digits = printed.rod.lists.get(printed.headline.table)
     if digits is None:
@@ -175,7 +182,7 @@ def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], in
 
 
 def _brief_list(printed: PrintedAnswer, room: int) -> list[str]:
-    """Lines of the list of the headline below an empty line; room: number of lines left."""
+    """Lines of the main list, after an empty line; room: number of lines that may be used."""
     rows = max(room - 3, MIN_ROWS)  # below an empty line, the names and the units
     columns, count = _brief_cells(printed, rows)
     if count == rows + 1:  # the line "and 1 more" has room for the row
@@ -187,9 +194,9 @@ def _brief_list(printed: PrintedAnswer, room: int) -> list[str]:
 
 
 def _more(printed: PrintedAnswer) -> str:
-    """Line on how to see the rest: the whole table, and the lists with their numbers of items."""
+    """Line that names `.table()` for all numbers, and the lists with their numbers of rows."""
     rows = {name: len(columns[0].values) for name, columns in printed.lists.items()}
-    rows.update(printed.named)
+    rows.update(printed.row_counts)
     lists = [f".{name} ({counted(number, 'row')})" for name, number in rows.items() if number]
     return folded(f"everything: .table(){'; lists: ' if lists else ''}{', '.join(lists)}")
 
@@ -199,7 +206,7 @@ def _unit(column: Column) -> str:
 
 
 def _html_heading(printed: PrintedAnswer) -> str:
-    """The heading as a paragraph, the answer in bold letters."""
+    """The heading as an HTML paragraph, its first line in bold letters."""
     answer, *others = map(escape, filter(None, printed.heading))
     return f"<p><b>{answer}</b>{''.join(f'<br>{line}' for line in others)}</p>"
 

@@ -1,4 +1,4 @@
-"""`rod.portrait()`: all results for a rod in a picture and a paragraph."""
+"""`rod.portrait()`: all results for one rod, as a picture, a paragraph and an `Answer` for each result."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -18,17 +18,16 @@ from ...results.file.view import View
 from ...solve.exclusive import one_at_a_time
 from ...tasks.rod_portrait import PortraitRequest, rod_results
 from ...tasks.running.job import Job
-from ..dataset import file_path, view_of
+from ..dataset import named_file_path, view_of_dataset
 from ..solving import solve_here
 from .answer import Answer
 
-EXAMPLE = 'rod.portrait().save("portrait.png")'
+SAVE_EXAMPLE = 'rod.portrait().save("portrait.png")'
 
 
 @dataclass(frozen=True)
 class RodPortrait:
-    """All results for a rod. Notebooks display the picture; `save` writes the picture, and `paragraph`
-    describes the rod.
+    """All results for one rod. Notebooks display the picture; `save` writes it, and `paragraph` is a text.
 
     Every result behind the picture is an `Answer`: `thresholds`; `criticality` and `branch`, None for a rod
     without Hopf points or branches; `modes` by kind of threshold; `cycles` by force. `missing` has, by task,
@@ -38,11 +37,13 @@ class RodPortrait:
     rod: str
     results: RodResults = field(repr=False)
     answers: Mapping[str, Answer] = field(repr=False)
-    """Answers by the text of their configs."""
+    """Answers by the YAML text of their configs."""
 
     @cached_property
     def paragraph(self) -> str:
-        """The rod in words: thresholds, criticality, branches, two states side by side, three cycles."""
+        """Description of the rod: thresholds, criticality, branches, coexisting stable states, three
+        cycles.
+        """
         return paragraph(self.results)
 
     @property
@@ -52,12 +53,12 @@ class RodPortrait:
 
     @property
     def criticality(self) -> Answer | None:
-        """Criticality of the Hopf points."""
+        """Criticality of the Hopf points; None if it could not be solved."""
         return self._answer("criticality")
 
     @property
     def branch(self) -> Answer | None:
-        """Branches of cycles."""
+        """Branches of cycles from the Hopf points; None if they could not be solved."""
         return self._answer("branch")
 
     @property
@@ -67,13 +68,14 @@ class RodPortrait:
 
     @property
     def cycles(self) -> dict[float, Answer]:
-        """Limit cycles at three forces, by force. The answer of a cycle that was not found has a status with
-        the reason."""
+        """Limit cycles at three forces, by force. If no cycle was found, the status of the answer says
+        why.
+        """
         return {F: self._of(view) for F, view in self.results.cycles}
 
     @property
     def missing(self) -> dict[str, str]:
-        """Reason for every missing result, by task."""
+        """Reason for every result that could not be solved, by task."""
         return dict(self.results.missing)
 
     def _of(self, view: View) -> Answer:
@@ -89,10 +91,10 @@ class RodPortrait:
         return portrait_figure(self.results, with_words=False)
 
     @one_at_a_time
-    @in_sentences(EXAMPLE)
+    @in_sentences(SAVE_EXAMPLE)
     def save(self, path: str | Path) -> str:
         """Writes the portrait (.png, .pdf, .svg, or .html with tables) and returns a sentence about it."""
-        output = file_path(path, EXAMPLE)
+        output = named_file_path(path, SAVE_EXAMPLE)
         require_portrait(output)
         return write_portrait(self.results, output)
 
@@ -106,13 +108,13 @@ class RodPortrait:
 
 
 def portrait_of(rod: str, request: PortraitRequest, progress: bool | None) -> RodPortrait:
-    """Solves the portrait of a rod in this process; rod: its text. Raises InputError for bad choices."""
+    """Solves the portrait of a rod in this process; rod: text of the rod. InputError for a bad request."""
     answers: dict[str, Answer] = {}
 
     def solve(job: Job) -> View:
         solved = solve_here(job, progress=progress)
         answers[job.text] = Answer(rod, solved, solved.messages[0])
-        return view_of(solved.dataset, Path(job.name))
+        return view_of_dataset(solved.dataset, Path(job.name))
 
     results = rod_results(request, solve)
     return RodPortrait(rod, results, answers)

@@ -14,39 +14,41 @@ from ...errors import InputError
 from ...post.tables import Tables
 from ...results.file.view import View, read_view
 from ...solve.exclusive import one_at_a_time
-from ..dataset import file_path, view_of
+from ..dataset import named_file_path, view_of_dataset
 from .answer import Answer
 from .frames import frame_of
 
-EXAMPLE = 'rs.table(data, "crossings")'
+TABLE_EXAMPLE = 'rs.table(data, "crossings")'
 Result = xr.Dataset | Answer | str | Path
+"""Result from which `rs.table` makes a table; text and paths name a result file."""
 
 
 @one_at_a_time
-@in_sentences(EXAMPLE)
+@in_sentences(TABLE_EXAMPLE)
 def table(data: Result, name: str | None = None, *, columns: Sequence[str] = ()) -> pd.DataFrame:
-    """A table of a result with one row per item. Each row has the item's parameters; codes are given as
-    words.
+    """A table of a result, with one row per item and the item's parameters in each row.
 
     name: `points`, or a list of the task such as `modes`, `crossings` or `branches`. The default is the table
     with the requested columns, or the task's first table. columns: names of columns, by default all.
-    `frame.attrs` has `units` and `meanings`. Raises InputError for unknown names.
+    `frame.attrs` of the DataFrame has `units` and `meanings`. Raises InputError for unknown names.
     """
     if name is not None and not isinstance(name, str):
-        raise InputError(f"name = {short(name)} is not the name of a table; write it as in {EXAMPLE}")
+        raise InputError(f"name = {short(name)} is not the name of a table; write it as in {TABLE_EXAMPLE}")
     names = [columns] if isinstance(columns, str) else columns
     if not isinstance(names, list | tuple) or not all(isinstance(each, str) for each in names):
         raise InputError(f"columns = {short(columns)} is not a list of names, such as ['F', 'growth_rate']")
-    return frame_of(Tables(view_for(data, EXAMPLE)).table(name, tuple(names)).columns)
+    return frame_of(Tables(view_of_result(data, TABLE_EXAMPLE)).table(name, tuple(names)).columns)
 
 
-def view_for(data: Any, example: str) -> View:
-    """A result as figures and tables read it; InputError, with an example, if `data` is no result."""
+def view_of_result(data: Any, example: str) -> View:
+    """A result as the view that figures and tables read; InputError, with `example`, if `data` is no
+    result.
+    """
     if isinstance(data, str | os.PathLike):
-        return read_view(file_path(data, example))
+        return read_view(named_file_path(data, example))
     if not isinstance(data, Answer | xr.Dataset):
         raise InputError(
             f"{short(data)} is not a result; give a Dataset, an answer or a file, as in {example}"
         )
     whole = data.whole if isinstance(data, Answer) else data
-    return view_of(whole, Path(str(whole.attrs.get("title", "data"))))
+    return view_of_dataset(whole, Path(str(whole.attrs.get("title", "data"))))

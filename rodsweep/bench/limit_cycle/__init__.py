@@ -1,1 +1,1 @@
-"""Limit cycles: rodsweep timed beside other time integrators, and beside waiting for the cycle."""
+"""Benchmark of limit cycles: rodsweep, time integrators, and integration until the motion is periodic."""

@@ -1,7 +1,7 @@
-"""Time integration of a cycle: the piece of motion, families of integrators, and PETSc's integrator.
+"""Time integrators of the limit-cycle benchmark: their task, their tolerances, and the schemes of PETSc.
 
-All integrators use the same compiled rate and exact Jacobian of a beam. `tolerance` is the error of each
-component of z, in units of the component's largest value.
+All integrators use the same compiled rate and exact Jacobian of a beam. A tolerance is the allowed error of
+each component of the state z, in units of the component's largest value.
 """
 
 from collections.abc import Callable
@@ -15,14 +15,15 @@ from ...solve.motion.integrator import RunEnding, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
 from ..study import Contender
 
-TIGHT = 3e-7
-"""Tolerance below which Newton's default convergence test would limit the accuracy of ARKIMEX 5."""
-TIGHT_NEWTON = 0.03
-"""Convergence tolerance of Newton's method below TIGHT, as a fraction of the integrator's tolerance."""
+TIGHT_TOLERANCE = 3e-7
+"""Tolerance of ARKIMEX 5 below which the default tolerance of Newton's method would limit the accuracy."""
+TIGHT_NEWTON_TOLERANCE = 0.03
+"""Convergence tolerance of Newton's method, as a fraction of the integrator's tolerance, if the latter is
+below TIGHT_TOLERANCE."""
 
 
 class IntegrationTask(NamedTuple):
-    """Task of an integrator: a beam, its state z at the start, shape (unknowns,), and a duration in tau2."""
+    """Task of an integrator: beam, initial state z, (unknowns,), and duration in tau2."""
 
     beam: Beam
     z: Array
@@ -30,14 +31,15 @@ class IntegrationTask(NamedTuple):
 
 
 Integration = Callable[[float, IntegrationTask], Trajectory]
-"""Runs an integrator, (tolerance, leg) -> trajectory; raises ArithmeticError if the integration fails."""
+"""Integrator: function (tolerance, task) -> trajectory; raises ArithmeticError if the integration fails."""
 
 
 @dataclass(frozen=True, slots=True)
 class IntegratorFamily:
-    """An integrator and the tolerances, from the loosest, at which it is run.
+    """An integrator with the tolerances, from the loosest, at which it follows a cycle.
 
-    waiting: tolerances, from the loosest, for waiting until a cycle is reached; empty to leave waiting out.
+    waiting: tolerances, from the loosest, at which it integrates until the motion is periodic; empty if it
+    does not.
     """
 
     name: str
@@ -46,11 +48,11 @@ class IntegratorFamily:
     waiting: tuple[float, ...] = ()
 
     def followers(self) -> list[Contender]:
-        """Contenders for following a cycle."""
+        """Contenders of the race FOLLOWING, one per tolerance: they follow a cycle in time."""
         return [self._at(tolerance) for tolerance in self.tolerances]
 
     def waiters(self) -> list[Contender]:
-        """Contenders for waiting until a cycle is reached."""
+        """Contenders of the race WAITING, one per tolerance: they integrate until the motion is periodic."""
         return [self._at(tolerance) for tolerance in self.waiting]
 
     def _at(self, tolerance: float) -> Contender:
@@ -58,9 +60,12 @@ class IntegratorFamily:
         return Contender(self.name, f"{tolerance:.0e}", self.name.split()[0], run)
 
 
-def by_petsc(family: str, variant: str, tolerance: float, leg: IntegrationTask) -> Trajectory:
-    """PETSc TS as in the task limit_cycle, with a choice of scheme."""
-    newton = TimeScheme().newton if tolerance > TIGHT else TIGHT_NEWTON
+def petsc_run(family: str, variant: str, tolerance: float, leg: IntegrationTask) -> Trajectory:
+    """Integrates a task by a scheme of PETSc TS, as in the task limit_cycle; ArithmeticError if this fails.
+
+    family, variant: type of TS and name of the scheme, such as "arkimex" and "5".
+    """
+    newton = TimeScheme().newton if tolerance > TIGHT_TOLERANCE else TIGHT_NEWTON_TOLERANCE
     scheme = TimeScheme(family, variant, tolerance, newton, prefix="bench_")
     run = integrator(leg.beam.mesh, scheme).run(leg.beam, leg.z, leg.duration)
     if run.ending != RunEnding.reached:
@@ -69,10 +74,11 @@ def by_petsc(family: str, variant: str, tolerance: float, leg: IntegrationTask) 
 
 
 WAITING_TOLERANCES = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
-"""Tolerances for waiting until a cycle is reached."""
+"""Tolerances at which integrators run until the motion is periodic, from the loosest."""
 DEFAULT = IntegratorFamily(
     "ARKIMEX 5 (default)",
-    partial(by_petsc, "arkimex", "5"),
+    partial(petsc_run, "arkimex", "5"),
     (1e-5, 5e-6, 2e-6, 1e-6, 3e-7, 1e-7, 1e-8),
     WAITING_TOLERANCES,
 )
+"""Integrator that rodsweep uses by default."""

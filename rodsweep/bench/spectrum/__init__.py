@@ -1,1 +1,1 @@
-"""Spectra: rodsweep timed beside dense QZ, Chebyshev and Arnoldi codes."""
+"""Benchmark of spectra: rodsweep, and peers such as dense QZ, Chebyshev collocation and Arnoldi codes."""

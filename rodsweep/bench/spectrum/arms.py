@@ -1,7 +1,7 @@
-"""Spectra of arms that vary along their length, which have no closed form of D.
+"""Spectra of arms that vary along their length, so that D has no closed form.
 
-The race ARM_RACE runs on `UnsolvedArms` and gives the leading eigenvalues, at least WANTED_MODES, shape
-(modes,).
+The contenders of the race ARM_RACE take `UnsolvedArms` and return at least the WANTED_MODES leading
+eigenvalues, (modes,).
 """
 
 from collections.abc import Callable, Sequence
@@ -16,16 +16,26 @@ from ...model.material.profile import Profile
 from ...model.rod import Rod
 from ...solve.spectrum.arm_solver import arm_solver
 from ...solve.spectrum.problem import ArmProblem
-from ..study import Contender, Measurement, contest, grouped, plural, table
+from ..study import Contender, Measurement, count_text, grouped_by_fields, markdown_table, measure_case
 from .exact import relative_error
-from .own import KRYLOV_SCHUR, PENCIL, PLAIN, PROVED, THIS_TOOL, WANTED_MODES, leading, own_spectrum
+from .own import (
+    CERTIFIED_NAME,
+    KRYLOV_SCHUR,
+    MODE_COUNT,
+    PENCIL_GROUP,
+    RODSWEEP_GROUP,
+    UNCERTIFIED_NAME,
+    leading_eigenvalues,
+    rodsweep_spectrum,
+)
 
 ARM_RACE = "arms"
+"""Name of the race of spectra of arms."""
 SEGMENTS = Profile(
     (0.0, 0.2, 0.2, 0.4, 0.4, 0.6, 0.6, 0.8, 0.8, 1.0),
     tuple((r**2, r**2, r**4, 1.0, 1.0, r**2) for r in (1.0, 1.0, 0.6, 0.6, 1.2, 1.2, 0.5, 0.5, 0.8, 0.8)),
 )
-"""Five segments whose radii are 1, 0.6, 1.2, 0.5 and 0.8 of the radius at the clamp."""
+"""Profile of an arm of five segments whose radii are 1, 0.6, 1.2, 0.5 and 0.8 of the radius at the clamp."""
 ARMS = {
     "cone": Rod(F=12.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5),
     "five segments": Rod(F=4.0, k1=1e4, k2=1e4, gamma3=1e-4, build=Build(profile=SEGMENTS)),
@@ -34,20 +44,21 @@ ARMS = {
     ),
 }
 ORDERS = (6, 8, 10, 12, 14, 16, 20)
-"""Orders of the elements of a pencil."""
-COARSE = 1e-2
-"""Accuracy for which the edges of the elements are chosen; the order gives the accuracy."""
-TARGET = 1e-10
-"""Error at which the methods are compared."""
-EXACT_REFINEMENT = 16.0
-"""The exact D of an arm has the elements for |w| times this factor."""
-NEWTON_STEPS = 3
+"""Orders of the elements at which eigensolvers are run."""
+EDGE_ACCURACY = 1e-2
+"""Accuracy for which the edges of the elements are chosen; a higher order makes the mesh more accurate."""
+TARGET_ERROR = 1e-10
+"""Relative error at which the methods are compared."""
+REFERENCE_REFINEMENT = 16.0
+"""Factor on |w| for which the elements of the reference D are chosen."""
+NEWTON_STEP_COUNT = 3
+"""Number of Newton steps on the reference D."""
 
 
 class UnsolvedArms:
-    """An arm under a force that grows by a rounding unit with every run, since solved arms are kept.
+    """Yields an arm whose force grows by a rounding unit with each call, as rodsweep keeps solved arms.
 
-    rod: the arm under the smallest force.
+    rod: the arm before the first call.
     """
 
     def __init__(self, rod: Rod):
@@ -61,46 +72,50 @@ class UnsolvedArms:
 
 
 def exact_arm_spectrum(rod: Rod) -> list[complex]:
-    """The leading eigenvalues, by Newton's method on D with finer elements."""
+    """The WANTED_MODES leading eigenvalues of an arm, by Newton's method on D with finer elements."""
     determinant = ArmDeterminant(rod)
-    roots: list[complex] = own_spectrum(rod, certify=True).tolist()
-    for _ in range(NEWTON_STEPS):
-        values = [determinant.value_at_level(w, EXACT_REFINEMENT) for w in roots]
+    roots: list[complex] = rodsweep_spectrum(rod, certify=True).tolist()
+    for _ in range(NEWTON_STEP_COUNT):
+        values = [determinant.value_at_level(w, REFERENCE_REFINEMENT) for w in roots]
         roots = [w - value.D / value.D_w for w, value in zip(roots, values, strict=True)]
     return roots
 
 
 def arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measurement]:
-    """Measurements of all methods at all sizes on all arms."""
+    """Measurements of rodsweep, Krylov-Schur and peers at all sizes on all ARMS."""
     measurements = []
     for name, rod in ARMS.items():
         judge = partial(_judged, exact_arm_spectrum(rod))
-        measurements += contest(name, UnsolvedArms(rod), [*contenders(), *peers], rounds, judge)
+        measurements += measure_case(name, UnsolvedArms(rod), [*contenders(), *peers], rounds, judge)
     return measurements
 
 
 def _judged(exact: list[complex], w: Complex) -> dict[str, float]:
-    """Error of eigenvalues, shape (modes,)."""
+    """Field `error` of `Measurement` for eigenvalues w, (modes,)."""
     return {"error": relative_error(w, exact)}
 
 
 def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
-    """Table: for every method and arm the time and the error of the cheapest size that reaches TARGET."""
+    """Table of the time and error of every method on every arm, at the fastest size that reaches TARGET."""
     rows = [
-        {"method": method, "cells": " | ".join(_cheapest(own) for own in grouped(every, "case").values())}
-        for (method,), every in grouped(measurements, "method").items()
+        {
+            "method": method,
+            "cells": " | ".join(_cheapest(own) for own in grouped_by_fields(every, "case").values()),
+        }
+        for (method,), every in grouped_by_fields(measurements, "method").items()
     ]
     return (
-        f"Leading {WANTED_MODES} eigenvalues of arms to {TARGET:.0e}: ms and error of the cheapest size that "
-        f"reaches this error, {plural(rounds, 'round')}. Cones have half the radius at their tips, the "
+        f"Leading {MODE_COUNT} eigenvalues of arms to {TARGET_ERROR:.0e}: ms and error of the cheapest size "
+        "that "
+        f"reaches this error, {count_text(rounds, 'round')}. Cones have half the radius at their tips, the "
         "segments have radii of 1, 0.6, 1.2, 0.5 and 0.8, and rubber is neo-Hookean with a swelling section. "
         "Errors are distances from the roots of D on elements for 16 times the |w|:\n\n"
-    ) + table(" | ".join(["method", *ARMS]), "{method} | {cells}", rows)
+    ) + markdown_table(" | ".join(["method", *ARMS]), "{method} | {cells}", rows)
 
 
 def _cheapest(measurements: Sequence[Measurement]) -> str:
-    """Table cell of one method on one arm."""
-    reached = [m for m in measurements if m.error <= TARGET]
+    """Cell of `arm_table` for one method on one arm; measurements: at all sizes."""
+    reached = [m for m in measurements if m.error <= TARGET_ERROR]
     if not reached:
         return f"no better than {min(m.error for m in measurements):.0e}"
     best = min(reached, key=lambda m: m.seconds)
@@ -108,32 +123,35 @@ def _cheapest(measurements: Sequence[Measurement]) -> str:
 
 
 def mesh_of_arm(rod: Rod, order: int) -> ArmMesh:
-    """As few elements as resolve the variation of the arm, with the given order."""
-    return ArmMesh(arm_mesh(rod, WANTED_MODES, COARSE).edges, order)
+    """Mesh of an arm with as few elements as resolve its variation, and with elements of the given order."""
+    return ArmMesh(arm_mesh(rod, MODE_COUNT, EDGE_ACCURACY).edges, order)
 
 
-def on_arm(solve: Callable[[Rod, int], Complex], size: int, arms: UnsolvedArms) -> Complex:
-    """Eigenvalues, shape (modes,), by a method for rods."""
+def solve_next_arm(solve: Callable[[Rod, int], Complex], size: int, arms: UnsolvedArms) -> Complex:
+    """Eigenvalues, (modes,), of the next arm by an eigensolver of rods; size: order or number of
+    intervals.
+    """
     return solve(arms.another(), size)
 
 
 def _krylov_schur(rod: Rod, order: int) -> Complex:
-    """SLEPc's Krylov-Schur, converged to rounding, without refinement on D, shape (modes,)."""
-    w = arm_solver(mesh_of_arm(rod, order)).solve(rod, ArmProblem(rod).shift, WANTED_MODES, tight=True)
-    return leading(w, WANTED_MODES + 1)
+    """Leading eigenvalues, (modes,), of an arm by SLEPc's Krylov-Schur, without refinement on D."""
+    w = arm_solver(mesh_of_arm(rod, order)).solve(rod, ArmProblem(rod).shift, MODE_COUNT, tight=True)
+    return leading_eigenvalues(w, MODE_COUNT + 1)
 
 
 def _own(certify: bool, arms: UnsolvedArms) -> Complex:
-    return own_spectrum(arms.another(), certify)
+    return rodsweep_spectrum(arms.another(), certify)
 
 
 def contenders() -> list[Contender]:
-    """rodsweep with and without certificate, and Krylov-Schur at all orders."""
+    """Contenders of ARM_RACE: rodsweep with and without certificate, and Krylov-Schur at all orders."""
     own = [
-        Contender(PLAIN, "", THIS_TOOL, partial(_own, False)),
-        Contender(PROVED, "", THIS_TOOL, partial(_own, True)),
+        Contender(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_own, False)),
+        Contender(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_own, True)),
     ]
     krylov = [
-        Contender(KRYLOV_SCHUR, str(order), PENCIL, partial(on_arm, _krylov_schur, order)) for order in ORDERS
+        Contender(KRYLOV_SCHUR, str(order), PENCIL_GROUP, partial(solve_next_arm, _krylov_schur, order))
+        for order in ORDERS
     ]
     return own + krylov

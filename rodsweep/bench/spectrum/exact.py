@@ -11,18 +11,22 @@ from ...model.rod import Rod
 from ...solve.spectrum.search import SpectrumRequest, solve_spectrum
 from ...solve.spectrum.status import SpectrumStatus
 
-DIGITS = 30
-"""Digits of the eigenvalues."""
-GUARD_DIGITS = 25
-"""Additional digits of the computation, more than the cancellation in D costs."""
-STEP = mp.mpf(10) ** -12
-"""Relative distance of the first two points of the secant method."""
-FARTHEST_ROOT = 20
-"""Largest accepted distance of the root from the starting value, in units of its estimated error."""
+DIGIT_COUNT = 30
+"""Number of correct decimal digits of the eigenvalues."""
+GUARD_DIGIT_COUNT = 25
+"""Number of additional digits of the computation, more than the cancellation in D loses."""
+SECANT_STEP = mp.mpf(10) ** -12
+"""Relative distance between the two starting points of the secant method."""
+MAX_ROOT_DISTANCE = 20
+"""Maximum distance between a root and its starting value, in units of the estimated error of the starting
+value; a root farther away counts as a different root."""
 
 
-def determinant(rod: Rod) -> Callable[[Any], Any]:
-    """D(w) of `rodsweep.determinant.value` for numbers of mpmath; the parameters are exact."""
+def multiprecision_determinant(rod: Rod) -> Callable[[Any], Any]:
+    """The characteristic determinant D of a rod as a function of w, in multiple precision (mpmath).
+
+    D is that of `rodsweep.determinant.value`; the parameters of the rod are taken as exact.
+    """
     F = mp.mpf(rod.F)
     gamma3 = mp.mpf(rod.gamma3)
     c1, c2 = (0 if np.isinf(k) else 1 / mp.mpf(k) for k in (rod.k1, rod.k2))
@@ -43,29 +47,35 @@ def determinant(rod: Rod) -> Callable[[Any], Any]:
 
 
 def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
-    """The leading eigenvalues to 30 digits, as numbers of mpmath; ArithmeticError if not certified."""
+    """The leading eigenvalues of a rod to DIGITS digits, as numbers of mpmath.
+
+    Raises ArithmeticError if the list of eigenvalues is not certified, or if an eigenvalue leads to no root.
+    """
     found = solve_spectrum(rod, SpectrumRequest(modes, 1e-11, certify=True))
     if found.status != SpectrumStatus.ok or not found.certified:
         raise ArithmeticError(f"{rod}: {found.status.name} {found.message}")
     roots = []
-    with mp.workdps(DIGITS + GUARD_DIGITS):
-        D = determinant(rod)
+    with mp.workdps(DIGIT_COUNT + GUARD_DIGIT_COUNT):
+        D = multiprecision_determinant(rod)
         for w, error in zip(found.eigenvalues, found.error_estimate, strict=True):
             start = mp.mpc(complex(w))
-            root = mp.findroot(D, (start, start * (1 + STEP)), tol=STEP**5, verify=False)
-            # Near a simple root D grows linearly: from |D| at a relative distance of STEP follows |D| at a
-            # distance of 10^-DIGITS.
-            small = abs(D(root * (1 + STEP))) * mp.mpf(10) ** -DIGITS / STEP
-            if abs(root - start) > FARTHEST_ROOT * error or abs(D(root)) > small:
+            root = mp.findroot(D, (start, start * (1 + SECANT_STEP)), tol=SECANT_STEP**5, verify=False)
+            # Near a simple root D grows linearly: from |D| at a relative distance of SECANT_STEP follows |D|
+            # at a distance of 10^-DIGITS.
+            small = abs(D(root * (1 + SECANT_STEP))) * mp.mpf(10) ** -DIGIT_COUNT / SECANT_STEP
+            if abs(root - start) > MAX_ROOT_DISTANCE * error or abs(D(root)) > small:
                 raise ArithmeticError(f"{rod}: {complex(w)} does not lead to a root of D")
             roots.append(root)
     return roots
 
 
 def relative_error(w: Complex | Exception, exact: list[Any]) -> float:
-    """Largest relative distance of an exact eigenvalue to the nearest of w, shape (modes,); inf for no w."""
+    """Largest relative distance of any exact eigenvalue from the nearest computed one; w: (modes,).
+
+    inf if w is empty, or an exception of the solver.
+    """
     if isinstance(w, Exception) or not len(w):
         return float("inf")
-    with mp.workdps(DIGITS):
+    with mp.workdps(DIGIT_COUNT):
         computed = [mp.mpc(complex(value)) for value in w]
         return max(float(min(abs(value - root) for value in computed) / abs(root)) for root in exact)

@@ -1,4 +1,4 @@
-"""rodsweep's own spectra in the benchmark, and what all methods share."""
+"""rodsweep's own spectra in the benchmark of spectra, and names and numbers shared by all methods."""
 
 import numpy as np
 
@@ -6,21 +6,25 @@ from ...arrays import Complex
 from ...model.rod import Rod
 from ...solve.spectrum.search import SpectrumRequest, solve_spectrum
 
-WANTED_MODES = 4
+MODE_COUNT = 4
+"""Number of leading eigenvalues that every method computes."""
 ACCURACY = 1e-12
-"""Accuracy requested from rodsweep; its error does not depend on the request."""
-PLAIN = "rodsweep, certificate off"
-PROVED = "rodsweep, certificate on"
+"""Relative accuracy requested from rodsweep, whose error does not depend on the request."""
+UNCERTIFIED_NAME = "rodsweep, certificate off"
+"""Name of rodsweep without certificate in the tables."""
+CERTIFIED_NAME = "rodsweep, certificate on"
+"""Name of rodsweep with certificate in the tables."""
 KRYLOV_SCHUR = "Krylov-Schur alone, same pencil"
-THIS_TOOL, PENCIL = "this tool", "the same pencil"
-"""Groups of methods in the figure."""
+"""Name of SLEPc's Krylov-Schur on rodsweep's pencil in the tables."""
+RODSWEEP_GROUP, PENCIL_GROUP = "this tool", "the same pencil"
+"""Groups of methods in the figure: rodsweep, and eigensolvers on rodsweep's pencil."""
 
 
-def own_spectrum(rod: Rod, certify: bool) -> Complex:
-    """rodsweep as in its task, with automatic size, shape (modes,)."""
-    return solve_spectrum(rod, SpectrumRequest(WANTED_MODES, ACCURACY, certify)).eigenvalues
+def rodsweep_spectrum(rod: Rod, certify: bool) -> Complex:
+    """Leading eigenvalues, (modes,), of a rod by rodsweep, which chooses the mesh itself."""
+    return solve_spectrum(rod, SpectrumRequest(MODE_COUNT, ACCURACY, certify)).eigenvalues
 
 
-def leading(w: Complex, count: int) -> Complex:
-    """The eigenvalues with the largest real parts, largest first; from shape (n,) to (count,)."""
+def leading_eigenvalues(w: Complex, count: int) -> Complex:
+    """The `count` eigenvalues of w, (n,), with the largest real parts, largest first; (count,)."""
     return w[np.argsort(-w.real, kind="stable")][:count]

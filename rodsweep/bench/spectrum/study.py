@@ -1,6 +1,7 @@
-"""The spectrum benchmark: time and error of a point, on the paper's rods and on hard rods.
+"""The spectrum benchmark: time and error of the leading eigenvalues of the paper's rods and of hard rods.
 
-The race RACE runs on a `Rod` and gives the leading eigenvalues, at least WANTED_MODES, shape (modes,).
+The contenders of the race RACE take a `Rod` and return at least the WANTED_MODES leading eigenvalues,
+(modes,).
 """
 
 from collections.abc import Sequence
@@ -21,81 +22,106 @@ from ..study import (
     Contender,
     Measurement,
     Study,
-    contest,
+    count_text,
     every_nth_setting,
-    failsafe,
-    grouped,
-    middle,
-    plural,
+    grouped_by_fields,
+    markdown_table,
+    measure_case,
+    nan_median,
     race,
-    table,
+    result_or_error,
 )
 from .arms import ARM_RACE, arm_spectra, arm_table
 from .exact import exact_spectrum, relative_error
-from .own import KRYLOV_SCHUR, PENCIL, PLAIN, PROVED, THIS_TOOL, WANTED_MODES, leading, own_spectrum
+from .own import (
+    CERTIFIED_NAME,
+    KRYLOV_SCHUR,
+    MODE_COUNT,
+    PENCIL_GROUP,
+    RODSWEEP_GROUP,
+    UNCERTIFIED_NAME,
+    leading_eigenvalues,
+    rodsweep_spectrum,
+)
 
 ORDERS = (8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 40, 56, 80)
-"""Sizes of the pencil."""
-RACE = "spectrum"
+"""Orders of rodsweep's pencil at which eigensolvers are run."""
+SPECTRUM_RACE = "spectrum"
+"""Name of the race of spectra of rods."""
 PAPER_RODS = {
     "Fig. 2a": (1e4, 1e4, 1e-4, 60.0),
     "Fig. 2b": (1e4, 1e2, 1e-2, 45.0),
     "Fig. 2c": (2e2, 1e4, 1e-4, 180.0),
     "Fig. 2d": (1e2, 1e4, 1e-4, 85.0),
 }
-"""k1, k2, gamma3 and the largest force."""
+"""(k1, k2, gamma3, largest force) of the rods of the paper's figures."""
 FORCE_COUNT = 5
+"""Number of forces for each of the paper's rods."""
 HARD_RODS = {
     "easy: F = 30, k1 = k2 = 1e4, gamma3 = 1e-4": Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4),
     "stiff: F = 30, k1 = k2 = 1e8, gamma3 = 1e-8": Rod(F=30.0, k1=1e8, k2=1e8, gamma3=1e-8),
     "nearly crushed: F = 0.999 k1, k1 = 200": Rod(F=199.8, k1=200.0, k2=1e4, gamma3=1e-4),
     "12 unstable modes: F = 2000, k1 = 1e4": Rod(F=2000.0, k1=1e4, k2=1e4, gamma3=1e-4),
 }
-TARGETS = (1e-12, 1e-10, 1e-6)
-"""Errors at which the methods are compared, smallest first."""
-ROUNDS = 25
-QUICK_ROUNDS = 2
+"""Rods on which methods lose accuracy or speed, beside an easy rod, by name in the table."""
+TARGET_ERRORS = (1e-12, 1e-10, 1e-6)
+"""Relative errors at which the methods are compared, smallest first."""
+ROUND_COUNT = 25
+"""Number of timed rounds."""
+QUICK_ROUND_COUNT = 2
+"""Number of timed rounds of a quick run."""
 QUICK_STRIDE = 3
-"""Stride of the sizes on the hard rods in a quick run."""
+"""A quick run uses every third size on hard rods and arms."""
 
 
 def spectrum_study(quick: bool, peers: Peers) -> Study:
-    """Runs the benchmark: the paper's rods at equal errors, then every method at every size on hard rods."""
+    """Runs the benchmark: the paper's rods at equal errors, hard rods at all sizes, and arms.
+
+    quick: fewer rounds, target errors and sizes.
+    """
     warm_up()
-    rounds, stride = (QUICK_ROUNDS, QUICK_STRIDE) if quick else (ROUNDS, 1)
+    rounds, stride = (QUICK_ROUND_COUNT, QUICK_STRIDE) if quick else (ROUND_COUNT, 1)
     rods = [
         Rod(F=float(F), k1=k1, k2=k2, gamma3=gamma3)
         for k1, k2, gamma3, top in PAPER_RODS.values()
         for F in np.linspace(0.1 * top, top, FORCE_COUNT)
     ]
-    exact = [exact_spectrum(rod, WANTED_MODES) for rod in rods]
-    every = contenders() + peers.of(RACE)
-    targets = TARGETS[: 1 if quick else None]
-    blocks = [equal_errors(every, rods, exact, target, rounds) for target in targets]
-    measurements = every_size(every_nth_setting(every, stride), rounds)
+    exact = [exact_spectrum(rod, MODE_COUNT) for rod in rods]
+    every = contenders() + peers.of(SPECTRUM_RACE)
+    targets = TARGET_ERRORS[: 1 if quick else None]
+    blocks = [equal_error_table(every, rods, exact, target, rounds) for target in targets]
+    measurements = measure_hard_rods(every_nth_setting(every, stride), rounds)
     arms = arm_spectra(every_nth_setting(peers.of(ARM_RACE), stride), rounds)
-    blocks += [*peers.notes, hard_table(measurements), arm_table(arms, rounds), *peers.skipped]
-    return Study("spectrum", "\n\n".join(blocks), measurements, "point", TARGETS[0], undrawn=arms)
+    blocks += [*peers.notes, hard_rod_table(measurements), arm_table(arms, rounds), *peers.skipped]
+    return Study("spectrum", "\n\n".join(blocks), measurements, "point", TARGET_ERRORS[0], undrawn=arms)
 
 
-def cheapest(every: Sequence[Contender], rod: Rod, exact: list[Any], target: float) -> dict[str, Contender]:
-    """The contender with the smallest sufficient size, for every method that reaches the target."""
+def cheapest_contenders(
+    every: Sequence[Contender], rod: Rod, exact: list[Any], target: float
+) -> dict[str, Contender]:
+    """For every method that reaches the error `target` on a rod, its contender with the smallest such size.
+
+    every: contenders of all methods, sizes increasing. exact: exact eigenvalues of the rod.
+    """
     found: dict[str, Contender] = {}
     for contender in every:
         if contender.method not in found:
-            error = relative_error(failsafe(contender.run, rod), exact)
+            error = relative_error(result_or_error(contender.run, rod), exact)
             found |= {contender.method: contender} if error <= target else {}
     return found
 
 
-def equal_errors(
+def equal_error_table(
     every: Sequence[Contender], rods: Sequence[Rod], exact: Sequence[list[Any]], target: float, rounds: int
 ) -> str:
-    """Table of all methods at the cheapest size that reaches the target, point by point."""
-    fit = [cheapest(every, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
+    """Times all methods, at each rod's smallest size with the error `target`; returns their table.
+
+    exact: exact eigenvalues of each rod.
+    """
+    fit = [cheapest_contenders(every, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
     names = list(dict.fromkeys(contender.method for contender in every))
     runs = {
-        (name, i): partial(failsafe, fit[i][name].run, rod)
+        (name, i): partial(result_or_error, fit[i][name].run, rod)
         for name in names
         for i, rod in enumerate(rods)
         if name in fit[i]
@@ -107,72 +133,82 @@ def equal_errors(
         row = {
             "method": name,
             "points": len(reached),
-            "ms": 1e3 * middle(timed[name, i].median for i in reached),
+            "ms": 1e3 * nan_median(timed[name, i].median for i in reached),
             "worst": max((relative_error(timed[name, i].outcome, exact[i]) for i in reached), default=nan),
-            "ratio": middle(timed[name, i].median / timed[PLAIN, i].median for i in reached),
+            "ratio": nan_median(timed[name, i].median / timed[UNCERTIFIED_NAME, i].median for i in reached),
         }
         rows.append(row)
     return (
-        f"Leading {WANTED_MODES} eigenvalues to {target:.0e}: each method at the cheapest size that reaches "
+        f"Leading {MODE_COUNT} eigenvalues to {target:.0e}: each method at the cheapest size that reaches "
         f"this error; median over {len(rods)} points of the paper's four rods, "
-        f"{plural(rounds, 'round')}:\n\n"
-    ) + table(
+        f"{count_text(rounds, 'round')}:\n\n"
+    ) + markdown_table(
         "method | points reached | ms a point | worst error | times this tool's time",
         "{method} | {points:.0f} | {ms:.3f} | {worst:.0e} | {ratio:.1f}",
         rows,
     )
 
 
-def every_size(every: Sequence[Contender], rounds: int) -> list[Measurement]:
-    """Measurements of all methods at all sizes on the hard rods."""
+def measure_hard_rods(every: Sequence[Contender], rounds: int) -> list[Measurement]:
+    """Measurements of the contenders `every` on the hard rods."""
     measurements = []
     for case, rod in HARD_RODS.items():
-        judge = partial(judged_spectrum, exact_spectrum(rod, WANTED_MODES))
-        measurements += contest(case, rod, every, rounds, judge)
+        judge = partial(spectrum_error, exact_spectrum(rod, MODE_COUNT))
+        measurements += measure_case(case, rod, every, rounds, judge)
     return measurements
 
 
-def judged_spectrum(exact: list[Any], w: Complex) -> dict[str, float]:
-    """Error of eigenvalues, shape (modes,)."""
+def spectrum_error(exact: list[Any], w: Complex) -> dict[str, float]:
+    """Field `error` of `Measurement` for eigenvalues w, (modes,)."""
     return {"error": relative_error(w, exact)}
 
 
-def hard_table(measurements: Sequence[Measurement]) -> str:
-    """Table: for every method on every hard rod the smallest error, and the time for ten times this error."""
+def hard_rod_table(measurements: Sequence[Measurement]) -> str:
+    """Table of hard rods: the smallest error of every method, and its time for ten times this error."""
     rows = [
-        {"method": method, "cells": " | ".join(best(own) for own in grouped(every, "case").values())}
-        for (method,), every in grouped(measurements, "method").items()
+        {
+            "method": method,
+            "cells": " | ".join(hard_cell(own) for own in grouped_by_fields(every, "case").values()),
+        }
+        for (method,), every in grouped_by_fields(measurements, "method").items()
     ]
     return (
-        f"Leading {WANTED_MODES} eigenvalues of hard rods: the smallest relative error that a method reaches "
+        f"Leading {MODE_COUNT} eigenvalues of hard rods: the smallest relative error that a method reaches "
         "at any size, and the ms of the cheapest size with at most ten times this error (the figure shows "
         "all sizes):\n\n"
-    ) + table(" | ".join(["method", *HARD_RODS]), "{method} | {cells}", rows)
+    ) + markdown_table(" | ".join(["method", *HARD_RODS]), "{method} | {cells}", rows)
 
 
-def best(measurements: Sequence[Measurement]) -> str:
-    """Table cell of one method on one rod: smallest error and time."""
+def hard_cell(measurements: Sequence[Measurement]) -> str:
+    """Cell of `hard_rod_table` for one method on one rod; measurements: at all sizes."""
     least = min(m.error for m in measurements)
     near = min((m for m in measurements if m.error <= 10 * least), key=lambda m: m.seconds)
     return "failed" if isinf(least) else f"{least:.0e}, {1e3 * near.seconds:.2f} ms"
 
 
-def mesh_of(order: int) -> Resolution:
-    """One element of the given order, or several equal elements of at most RESOLUTION.largest_order."""
+def pencil_mesh(order: int) -> Resolution:
+    """Mesh of one element of an order, or of several equal elements if the order exceeds the largest
+    allowed.
+    """
     elements = ceil(order / RESOLUTION.largest_order)
     return Resolution(elements, ceil(order / elements))
 
 
 def krylov_schur(rod: Rod, size: int) -> Complex:
-    """SLEPc's Krylov-Schur, converged to rounding, without refinement on D, shape (modes,)."""
-    w = eigen_solver(mesh_of(size)).solve(rod, problem_of(rod).shift, WANTED_MODES, tight=True)
-    return leading(w, WANTED_MODES + 1)
+    """Leading eigenvalues, (modes,), of a rod by SLEPc's Krylov-Schur, without refinement on D; size:
+    order.
+    """
+    w = eigen_solver(pencil_mesh(size)).solve(rod, problem_of(rod).shift, MODE_COUNT, tight=True)
+    return leading_eigenvalues(w, MODE_COUNT + 1)
 
 
 def contenders() -> list[Contender]:
-    """rodsweep with and without certificate, and Krylov-Schur at all sizes."""
+    """Contenders of RACE: rodsweep with and without certificate, and Krylov-Schur at all sizes."""
     return [
-        Contender(PLAIN, "", THIS_TOOL, partial(own_spectrum, certify=False)),
-        Contender(PROVED, "", THIS_TOOL, partial(own_spectrum, certify=True)),
-        *(Contender(KRYLOV_SCHUR, str(size), PENCIL, partial(krylov_schur, size=size)) for size in ORDERS),
+        Contender(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=False)),
+        Contender(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=True)),
+        *(
+            Contender(KRYLOV_SCHUR, str(size), PENCIL_GROUP, partial(krylov_schur, size=size))
+            for size in ORDERS
+        ),
     ]

@@ -1,1 +1,1 @@
-"""Complete runs of the command: scaling, overhead, memory."""
+"""Benchmark of sweeps: complete runs of `rodsweep run`, with their scaling, overhead and memory."""

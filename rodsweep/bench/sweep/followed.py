@@ -1,4 +1,4 @@
-"""Speed of following eigenvalues along an axis of a grid, compared with solving every point alone."""
+"""Speed of spectra whose eigenvalues are followed along an axis of a grid, against points solved alone."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -6,8 +6,8 @@ from math import nan, prod
 from pathlib import Path
 
 from ...results.file.view import read_view
-from ..study import Measurement, table
-from .launch import CONFIG, RESULT, SOLVED, CommandRun, SweepCase
+from ..study import Measurement, markdown_table
+from .launch import CONFIG_NAME, RESULT, SOLVED, CommandRun, SweepCase
 
 FOLLOWED_CONFIG = """
 task: spectrum
@@ -19,15 +19,19 @@ parameters:
   taper: {taper}
 spectrum: {{modes: 4, follow: {4}}}
 """
+"""Config of a sweep, a format of `str.format`: numbers of F, k1, k2 and gamma3; F_max; taper; follow."""
 FOLLOWED = "followed"
+"""Name of sweeps whose eigenvalues are followed."""
 ALONE = "alone"
+"""Name of sweeps whose points are solved alone."""
 
 
 @dataclass(frozen=True, slots=True)
-class LongAxis:
-    """A grid (F, k1, k2, gamma3) named after its longest axis, and a smaller grid for points solved alone.
+class ComparedGrids:
+    """Two grids over F, k1, k2 and gamma3: one along whose longest axis eigenvalues are followed, and a
+    smaller one for points solved alone.
 
-    F_max: last force. taper: 1, or that of cones.
+    name: names the longest axis. shape, smaller: numbers of values. F_max: largest force. taper: of all rods.
     """
 
     name: str
@@ -37,52 +41,59 @@ class LongAxis:
     taper: float = 1.0
 
 
-AXES = (
-    LongAxis("512 of F", (512, 2, 98, 2), (512, 2, 5, 2)),
-    LongAxis("2000 of k2", (25, 2, 2000, 2), (2, 2, 2000, 2)),
-    LongAxis("50 of F", (50, 40, 50, 2), (50, 4, 50, 2)),
-    LongAxis("12 of F", (12, 12, 12, 12), (12, 12, 12, 6)),
-    LongAxis("512 of F, cones", (512, 2, 4, 2), (32, 2, 4, 2), F_max=20.0, taper=0.5),
+GRIDS = (
+    ComparedGrids("512 of F", (512, 2, 98, 2), (512, 2, 5, 2)),
+    ComparedGrids("2000 of k2", (25, 2, 2000, 2), (2, 2, 2000, 2)),
+    ComparedGrids("50 of F", (50, 40, 50, 2), (50, 4, 50, 2)),
+    ComparedGrids("12 of F", (12, 12, 12, 12), (12, 12, 12, 6)),
+    ComparedGrids("512 of F, cones", (512, 2, 4, 2), (32, 2, 4, 2), F_max=20.0, taper=0.5),
 )
-QUICK_AXES = (
-    LongAxis("64 of F", (64, 2, 2, 2), (8, 2, 2, 2)),
-    LongAxis("12 of F", (12, 2, 3, 2), (2, 2, 2, 2)),
-    LongAxis("64 of F, cones", (64, 2, 2, 2), (2, 2, 2, 2), F_max=20.0, taper=0.5),
+"""Pairs of grids on which followed eigenvalues and points solved alone are timed."""
+QUICK_GRIDS = (
+    ComparedGrids("64 of F", (64, 2, 2, 2), (8, 2, 2, 2)),
+    ComparedGrids("12 of F", (12, 2, 3, 2), (2, 2, 2, 2)),
+    ComparedGrids("64 of F, cones", (64, 2, 2, 2), (2, 2, 2, 2), F_max=20.0, taper=0.5),
 )
+"""Pairs of grids of a quick run."""
 
 
 def followed_sweeps(place: Path, run: Callable[..., CommandRun], quick: bool) -> list[Measurement]:
-    """Certified spectra with four modes on one rank, followed and alone, on long and short axes."""
+    """Measurements of sweeps of certified spectra on one rank, followed and alone, on all grids.
+
+    place: directory of the sweeps. run: see `RunCase` of `rodsweep.bench.sweep.study`. quick: small grids.
+    """
     found = []
-    for axis in QUICK_AXES if quick else AXES:
+    for axis in QUICK_GRIDS if quick else GRIDS:
         for method, shape in ((FOLLOWED, axis.shape), (ALONE, axis.smaller)):
             directory = place / f"{method} {axis.name}".replace(" ", "_")
             directory.mkdir()
             text = FOLLOWED_CONFIG.format(
                 *shape, str(method == FOLLOWED).lower(), F_max=axis.F_max, taper=axis.taper
             )
-            (directory / CONFIG).write_text(text)
+            (directory / CONFIG_NAME).write_text(text)
             case = SweepCase(axis.name, prod(shape), (directory,), SOLVED)
             found.append(followed_measurement(case, method, run(case, 1)))
     return found
 
 
 def followed_measurement(case: SweepCase, method: str, run: CommandRun) -> Measurement:
-    """Times of a run, and the number of points solved on a mesh of their own."""
+    """Measurement of a sweep: times, numbers of points with a mesh and without certificate, and memory."""
     variables = read_view(case.directories[0] / RESULT).variables
     extra = {
         "points": float(case.points),
-        "microseconds": 1e6 * run.inside / case.points,
-        "microseconds_solving": 1e6 * run.solving / case.points,
+        "microseconds": 1e6 * run.stated_seconds / case.points,
+        "microseconds_solving": 1e6 * run.solver_seconds / case.points,
         "meshes": float((variables["elements"] > 0).sum()),
         "uncertified": float((variables["certified"] == 0).sum()),
-        "rss_megabytes": max(run.memory) / 1e6,
+        "rss_megabytes": max(run.peak_memory) / 1e6,
     }
-    return Measurement(f"axis, {case.name}", method, f"{case.points} points", run.inside, nan, extra=extra)
+    return Measurement(
+        f"axis, {case.name}", method, f"{case.points} points", run.stated_seconds, nan, extra=extra
+    )
 
 
 def followed_table(measurements: Sequence[Measurement]) -> str:
-    """Table of followed and single points, axis by axis."""
+    """Table of the sweeps, a line for each grid. measurements: followed and alone in turn."""
     rows = []
     for one, other in zip(measurements[::2], measurements[1::2], strict=True):
         gain = other.extra["microseconds_solving"] / one.extra["microseconds_solving"]
@@ -94,7 +105,7 @@ def followed_table(measurements: Sequence[Measurement]) -> str:
         "loading of compiled code, scheduling and storing; µs of the solver are from `seconds` in the file. "
         '"With a mesh" counts points that could not be followed or not be proved. Cones have half the '
         "radius at their tips:\n\n"
-    ) + table(
+    ) + markdown_table(
         "axis | points | s | µs a point | µs of the solver | alone | times | with a mesh | not certified "
         "| MB a rank",
         "{axis} | {points:.0f} | {seconds:.2f} | {microseconds:.1f} | {microseconds_solving:.1f} "

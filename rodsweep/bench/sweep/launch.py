@@ -1,8 +1,8 @@
-"""Sweeps run as by a user: time, memory of each rank, bytes on disk.
+"""Runs of sweeps as a user would start them: their time, the memory of each rank, and bytes on disk.
 
-The caller gives the words that start the measured command. Three arguments follow: a directory, where every
-rank writes its peak memory in bytes into a file FIRST_RANK-PID or OTHER_RANKS-PID; the kind of solver,
-SOLVED, INSTANT or KILLED; and the words of the `rodsweep` command.
+The caller gives the words that start the measured command. Three arguments follow these words: a directory,
+in which every rank writes its peak memory in bytes into a file FIRST_RANK-PID or OTHER_RANKS-PID; the kind of
+solver, SOLVED, INSTANT or KILLED; and the words of the `rodsweep` command.
 """
 
 import os
@@ -23,12 +23,16 @@ from ...results.file.view import read_view
 from ...results.run.journal import journal_directory
 
 RESULT, NOTES = "c.h5", "notes"
-"""Names of the result file and of the folder of notes of ranks in the directory of a benchmarked sweep."""
-FIRST_RANK = "first"
-OTHER_RANKS = "other"
+"""Names, in the directory of a sweep, of the result file and of the folder in which ranks write their
+memory."""
+FIRST_RANK_PREFIX = "first"
+"""Beginning of the name of the file with the peak memory of the first rank."""
+OTHER_RANKS_PREFIX = "other"
+"""Beginning of the names of the files with the peak memory of all other ranks."""
 SOLVED, INSTANT, KILLED = "solved", "instant", "killed"
-"""Kinds of solver: the real one; instant random outcomes; instant outcomes and a kill at the last point."""
-CONFIG = "c.yaml"
+"""Kinds of solver: the real solver; random results at once; random results and a kill at the last point."""
+CONFIG_NAME = "c.yaml"
+"""Name of the config in the directory of a sweep."""
 SPECTRUM_CONFIG = """
 task: spectrum
 parameters:
@@ -38,17 +42,19 @@ parameters:
   gamma3: 1.0e-4
 spectrum: {{modes: 2}}
 """
+"""Config of a sweep of spectra, a format of `str.format`: numbers of values of F and of k2."""
 CYCLE_CONFIG = "task: limit_cycle\nparameters: {points: points.csv}\n"
+"""Config of a sweep of limit cycles over a list of points."""
 HOPF_FORCE = 27.4271941267592812
-"""F of the Hopf point of k1 = 1e4, k2 = 1e2, gamma3 = 1e-2."""
+"""F of the Hopf point of the rod with k1 = 1e4, k2 = 1e2, gamma3 = 1e-2."""
 
 
 @dataclass(frozen=True, slots=True)
 class SweepCase:
-    """A sweep to run: number of points and directories of its config.
+    """A sweep to be run.
 
-    kind: kind of solver. With several directories, each has a part of the points, and one command for each
-    directory runs at the same time.
+    points: their number. directories: of the config; with several directories, each has a part of the points,
+    and one command for each directory runs at the same time. kind: kind of solver.
     """
 
     name: str
@@ -58,28 +64,32 @@ class SweepCase:
 
 
 def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCase:
-    """A sweep of spectra over two values of k1, and over F and k2; writes its config.
+    """A sweep of spectra over F, two values of k1, and k2; its config is written into `directory`.
 
-    points: approximate number of points, rounded down to hundreds from 200 on. kind: kind of solver.
+    points: approximate number of points; from 200 on it is rounded down to hundreds. kind: kind of solver.
     """
     forces = 50 if points >= 200 else 2
     softnesses = points // (2 * forces)
     directory.mkdir()
-    (directory / CONFIG).write_text(SPECTRUM_CONFIG.format(forces=forces, softnesses=softnesses))
+    (directory / CONFIG_NAME).write_text(SPECTRUM_CONFIG.format(forces=forces, softnesses=softnesses))
     return SweepCase(name, 2 * forces * softnesses, (directory,), kind)
 
 
 def cycle_case(directory: Path, points: int, kind: str) -> SweepCase:
-    """Limit cycles of very different cost, in random order."""
+    """A sweep of limit cycles of very different cost, in random order; its config is written into
+    `directory`.
+    """
     directory.mkdir()
-    rows = [f"{F!r},1e4,1e2,1e-2,1" for F in uneven_forces(points).tolist()]
+    rows = [f"{F!r},1e4,1e2,1e-2,1" for F in mixed_forces(points).tolist()]
     (directory / "points.csv").write_text("\n".join(["F,k1,k2,gamma3,gamma1", *rows]) + "\n")
-    (directory / CONFIG).write_text(CYCLE_CONFIG)
+    (directory / CONFIG_NAME).write_text(CYCLE_CONFIG)
     return SweepCase("limit cycles", points, (directory,), kind)
 
 
-def uneven_forces(count: int) -> np.ndarray:
-    """Forces far below the Hopf point, just below it, just above it, and far above, shape (count,)."""
+def mixed_forces(count: int) -> np.ndarray:
+    """Forces far below the Hopf point, just below, just above, and far above it, in random order,
+    (count,).
+    """
     below = count // 5
     close = count // 6
     above = count // 4
@@ -99,24 +109,24 @@ class CommandRun:
     """Time, memory and disk space of a run of the command."""
 
     seconds: float
-    """Time of the whole command."""
-    inside: float
-    """Time stated by the command, without the start of Python and MPI; nan if killed."""
-    solving: float
-    """Time in the solver, summed over ranks."""
-    memory: tuple[int, ...]
-    """Peak bytes of the first rank, and the largest peak of the remaining ranks."""
-    file: int
-    """Bytes of the result."""
-    journal: int
-    """Bytes of the journals left by a killed run."""
-    elsewhere: float
-    """Processors kept busy by foreign programs; nan if unknown."""
-    busy: float
-    """Share of the ranks' time spent on points instead of waiting; nan without the real solver."""
+    """Clock time of the whole command, in s."""
+    stated_seconds: float
+    """Clock time printed by the command, in s, without the start of Python and MPI; nan if it was killed."""
+    solver_seconds: float
+    """Time in the solver, in s, summed over the ranks."""
+    peak_memory: tuple[int, ...]
+    """Peak memory, in bytes, of the first rank, and the largest peak memory of all other ranks."""
+    file_bytes: int
+    """Size of the result files in bytes."""
+    journal_bytes: int
+    """Size, in bytes, of the journals that a killed run left."""
+    processors_busy_elsewhere: float
+    """Number of processors that other programs kept busy; nan if unknown."""
+    busy_fraction: float
+    """Fraction of the ranks' time spent on points instead of waiting; nan without the real solver."""
 
 
-def launcher(ranks: int) -> list[str]:
+def launcher_words(ranks: int) -> list[str]:
     """Words that start a command on several ranks; empty without mpiexec."""
     beside = Path(sys.executable).with_name("mpiexec")
     found = str(beside) if beside.exists() else shutil.which("mpiexec")
@@ -124,10 +134,13 @@ def launcher(ranks: int) -> list[str]:
 
 
 def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = True) -> CommandRun:
-    """Runs a case on several ranks; EnvironmentIncomplete if the command fails without having been killed."""
+    """Runs a sweep on some ranks. Raises EnvironmentIncomplete if the run fails and was not to be killed.
+
+    command: words that start the measured command. fresh: whether to replace an existing result file.
+    """
     others = _seconds_of_others()
     began = time.monotonic()
-    words = [*launcher(ranks), *command]
+    words = [*launcher_words(ranks), *command]
     started = [_start(words, case.kind, directory, fresh) for directory in case.directories]
     said = [_inside(process, case.kind) for process in started]
     seconds = time.monotonic() - began
@@ -136,13 +149,15 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
     solved = [_solving(file) if case.kind == SOLVED else (0.0, nan) for file in files]
     return CommandRun(
         seconds=seconds,
-        inside=max(said),
-        solving=sum(spent for spent, _ in solved),
-        memory=tuple(_peak(case, rank) for rank in (FIRST_RANK, OTHER_RANKS)[:ranks]),
-        file=sum(file.stat().st_size for file in files),
-        journal=sum(page.stat().st_size for file in files for page in journal_directory(file).glob("rank-*")),
-        elsewhere=float(elsewhere),
-        busy=min(busy for _, busy in solved),
+        stated_seconds=max(said),
+        solver_seconds=sum(spent for spent, _ in solved),
+        peak_memory=tuple(_peak(case, rank) for rank in (FIRST_RANK_PREFIX, OTHER_RANKS_PREFIX)[:ranks]),
+        file_bytes=sum(file.stat().st_size for file in files),
+        journal_bytes=sum(
+            page.stat().st_size for file in files for page in journal_directory(file).glob("rank-*")
+        ),
+        processors_busy_elsewhere=float(elsewhere),
+        busy_fraction=min(busy for _, busy in solved),
     )
 
 
@@ -150,7 +165,7 @@ def _start(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> sub
     notes = directory / NOTES
     shutil.rmtree(notes, ignore_errors=True)
     notes.mkdir()
-    run = ["run", CONFIG, "-o", RESULT, *(["--fresh"] if fresh else [])]
+    run = ["run", CONFIG_NAME, "-o", RESULT, *(["--fresh"] if fresh else [])]
     return subprocess.Popen(
         [*words, str(notes), kind, *run],
         cwd=directory,
@@ -162,7 +177,7 @@ def _start(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> sub
 
 
 def _inside(process: subprocess.Popen[str], kind: str) -> float:
-    """Seconds stated by a command at its end; nan if it was killed on purpose."""
+    """Time in s that a finished command printed; nan if the command was killed on purpose."""
     output, errors = process.communicate()
     said = re.search(r"points? in ([\d.]+) s on", output)
     stopped = said is None or "stopped by" in output
@@ -172,20 +187,26 @@ def _inside(process: subprocess.Popen[str], kind: str) -> float:
 
 
 def _peak(case: SweepCase, rank: str) -> int:
-    """Peak memory in bytes noted by the first rank, or the largest peak of all other ranks."""
+    """Peak memory in bytes of the first rank, or the largest peak memory of all other ranks.
+
+    rank: FIRST_RANK or OTHER_RANKS.
+    """
     notes = (note for directory in case.directories for note in (directory / NOTES).glob(f"{rank}-*"))
     return max((int(note.read_text()) for note in notes), default=0)
 
 
 def _solving(file: Path) -> tuple[float, float]:
-    """(seconds in the solver, share of the ranks' time spent on points), from a result file."""
+    """(time in the solver in s, fraction of the ranks' time spent on points), from a result file."""
     view = read_view(file)
     busy, idle = (float(view.attributes[f"rank_{name}_seconds"].sum()) for name in ("busy", "idle"))
     return float(view.variables["seconds"].sum(dtype=float)), busy / (busy + idle)
 
 
 def _seconds_of_others() -> float:
-    """Processor seconds of all processes except the finished children of this one; nan if unknown."""
+    """Processor time, in s, of all processes of the machine except finished children of this one.
+
+    nan if unknown.
+    """
     try:
         line = Path("/proc/stat").read_text().split("\n", 1)[0]
         user, nice, system, _, _, irq, softirq, steal = map(int, line.split()[1:9])

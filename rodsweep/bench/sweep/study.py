@@ -1,7 +1,7 @@
-"""The sweep benchmark: speedup by a second rank, and overhead of a point beside its solve.
+"""The sweep benchmark: speedup by a second rank, and overhead of a point in addition to its solve.
 
-Every number comes from `rodsweep run` itself. For the overhead, up to 1e6 points, an instant solver replaces
-the real one.
+All numbers are measured on runs of `rodsweep run`. For the overhead of up to 1e6 points, a solver that
+returns random results at once replaces the real solver.
 """
 
 from collections.abc import Callable, Sequence
@@ -12,7 +12,15 @@ from math import log, nan
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from ..study import Measurement, Study, grouped, in_turn, middle, plural, table
+from ..study import (
+    Measurement,
+    Study,
+    count_text,
+    grouped_by_fields,
+    markdown_table,
+    nan_median,
+    timing_order,
+)
 from .followed import followed_sweeps, followed_table
 from .launch import (
     INSTANT,
@@ -21,25 +29,27 @@ from .launch import (
     CommandRun,
     SweepCase,
     cycle_case,
-    launcher,
+    launcher_words,
     run_case,
     spectrum_case,
 )
 
-SIZES, QUICK_SIZES = (10**3, 10**4, 10**5, 10**6), (10**3, 10**4)
-"""Numbers of points of the sweeps with the instant solver."""
-ONCE_FROM = 10**6
-"""Number of points from which an instant sweep is run only once, because its start hardly counts."""
-SPECTRA = 200_000
-QUICK_SPECTRA = 6_000
-CYCLES = 200
-QUICK_CYCLES = 10
-ROUNDS = 3
-CYCLE_ROUNDS = 2
-QUICK_ROUNDS = 1
+SWEEP_SIZES, QUICK_SIZES = (10**3, 10**4, 10**5, 10**6), (10**3, 10**4)
+"""Numbers of points of the sweeps with the instant solver, and those of a quick run."""
+SINGLE_RUN_FROM = 10**6
+"""Number of points from which a sweep with the instant solver is run only once: its start takes a negligible
+part of its time."""
+SPECTRUM_COUNT, QUICK_SPECTRUM_COUNT = 200_000, 6_000
+"""Number of points of the sweep of spectra, and that of a quick run."""
+CYCLE_COUNT, QUICK_CYCLE_COUNT = 200, 10
+"""Number of points of the sweep of limit cycles, and that of a quick run."""
+ROUND_COUNT, CYCLE_ROUND_COUNT, QUICK_ROUND_COUNT = 3, 2, 1
+"""Numbers of timed rounds: of spectra, of limit cycles, and of all sweeps in a quick run."""
 TWO_COMMANDS = "spectra, two commands"
-"""Case of two commands, each with half of the spectra on one rank: the upper bound for two ranks."""
+"""Name of the case of two simultaneous commands, each with half of the spectra on one rank. Their speed is an
+upper bound for the speed of two ranks."""
 MEGABYTE = 1e6
+"""Number of bytes of a megabyte."""
 INTRODUCTION = """
 `mpiexec -n RANKS rodsweep run CONFIG` as a whole, medians of interleaved rounds. Spectra: `modes: 2`,
 certified, over F, k1, k2. Two commands, each with half of the spectra on one rank, show the largest possible
@@ -49,17 +59,19 @@ run, without the start of Python and MPI; "% busy" is the share of the ranks' ti
 points instead of waiting. "Beside the solver" is the ranks' time inside minus the `seconds` in the file:
 loading compiled code, scheduling, storing, and waiting. Memory is the peak of a rank's resident set. A second
 rank gains less while other programs, or the host of a virtual machine, keep processors busy."""
+"""Description of the measurements for the report."""
 RunCase = Callable[..., CommandRun]
-"""`run_case` with the words that start the command."""
+"""`run_case` after its first argument, the words that start the measured command, is bound."""
 
 
 def sweep_study(quick: bool, command: Sequence[str]) -> Study:
-    """Runs the benchmark: a second rank, following along axes, then the overhead of a point.
+    """Runs the benchmark: speedup by a second rank, followed eigenvalues, and overhead of a point.
 
-    command: words that start the measured command, see `rodsweep.bench.sweep.launch`.
+    quick: fewer points and rounds. command: words that start the measured command, see
+    `rodsweep.bench.sweep.launch`.
     """
     run = partial(run_case, command)
-    ranks = (1, 2) if launcher(2) else (1,)
+    ranks = (1, 2) if launcher_words(2) else (1,)
     with TemporaryDirectory(prefix="rodsweep-bench-") as place:
         solved = solved_sweeps(Path(place), run, quick, ranks)
         followed = followed_sweeps(Path(place), run, quick)
@@ -72,11 +84,16 @@ def sweep_study(quick: bool, command: Sequence[str]) -> Study:
 
 
 def solved_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
-    """Spectra and limit cycles on one rank and on two, in turn."""
-    rounds, cycle_rounds = (QUICK_ROUNDS, QUICK_ROUNDS) if quick else (ROUNDS, CYCLE_ROUNDS)
-    count = QUICK_SPECTRA if quick else SPECTRA
+    """Measurements of sweeps of spectra and of limit cycles with the real solver, in turn.
+
+    place: directory of the sweeps. ranks: numbers of ranks.
+    """
+    rounds, cycle_rounds = (
+        (QUICK_ROUND_COUNT, QUICK_ROUND_COUNT) if quick else (ROUND_COUNT, CYCLE_ROUND_COUNT)
+    )
+    count = QUICK_SPECTRUM_COUNT if quick else SPECTRUM_COUNT
     spectra = spectrum_case(place / "spectra", "spectra", count, SOLVED)
-    cycles = cycle_case(place / "cycles", QUICK_CYCLES if quick else CYCLES, SOLVED)
+    cycles = cycle_case(place / "cycles", QUICK_CYCLE_COUNT if quick else CYCLE_COUNT, SOLVED)
     # Not timed: the first runs may compile the formulas.
     run(spectrum_case(place / "first", "first", 8, SOLVED), 1)
     run(cycle_case(place / "first_cycle", 1, SOLVED), 1)
@@ -85,64 +102,71 @@ def solved_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) 
         halves = [spectrum_case(place / f"half{i}", TWO_COMMANDS, count // 2, SOLVED) for i in (0, 1)]
         apart = replace(halves[0], points=count, directories=halves[0].directories + halves[1].directories)
         entries.append((apart, 1, rounds))
-    return interleaved(run, entries + [(cycles, n, cycle_rounds) for n in ranks])
+    return measure_in_turn(run, entries + [(cycles, n, cycle_rounds) for n in ranks])
 
 
 def instant_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
-    """Sweeps of all sizes with the instant solver; then killed at the last point on one rank, and resumed."""
-    sizes, rounds = (QUICK_SIZES, QUICK_ROUNDS) if quick else (SIZES, ROUNDS)
+    """Measurements of sweeps of all sizes with the instant solver: complete, killed and resumed.
+
+    place: directory of the sweeps. ranks: numbers of ranks. Sweeps are killed at the last point on one rank.
+    """
+    sizes, rounds = (QUICK_SIZES, QUICK_ROUND_COUNT) if quick else (SWEEP_SIZES, ROUND_COUNT)
     entries = []
     for size in sizes:
         case = spectrum_case(place / f"instant{size}", "no solver", size, INSTANT)
-        entries += [(case, n, 1 if size >= ONCE_FROM else rounds) for n in ranks]
-    measurements = interleaved(run, entries)
+        entries += [(case, n, 1 if size >= SINGLE_RUN_FROM else rounds) for n in ranks]
+    measurements = measure_in_turn(run, entries)
     for size in sizes:
         killed = spectrum_case(place / f"killed{size}", KILLED, size, KILLED)
         resumed = replace(killed, name="resumed", kind=INSTANT)
-        measurements.append(measured(killed, 1, [run(killed, 1)]))
-        measurements.append(measured(resumed, 1, [run(resumed, 1, fresh=False)]))
+        measurements.append(sweep_measurement(killed, 1, [run(killed, 1)]))
+        measurements.append(sweep_measurement(resumed, 1, [run(resumed, 1, fresh=False)]))
     return measurements
 
 
-def interleaved(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]]) -> list[Measurement]:
-    """Each case on its number of ranks in its number of rounds, all in turn."""
+def measure_in_turn(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]]) -> list[Measurement]:
+    """Measurements of sweeps, run in turn; entries: (case, number of ranks, number of rounds)."""
     runs: list[list[CommandRun]] = [[] for _ in entries]
-    for i in in_turn([rounds for _, _, rounds in entries]):
+    for i in timing_order([rounds for _, _, rounds in entries]):
         case, ranks, _ = entries[i]
         runs[i].append(run(case, ranks))
-    return [measured(case, ranks, own) for (case, ranks, _), own in zip(entries, runs, strict=True)]
+    return [sweep_measurement(case, ranks, own) for (case, ranks, _), own in zip(entries, runs, strict=True)]
 
 
-def measured(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -> Measurement:
-    """Medians over all runs of one case on some ranks. No error applies."""
-    seconds = middle(run.seconds for run in runs)
+def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -> Measurement:
+    """Measurement of a sweep from all its runs, mostly medians; the error is nan, as sweeps have no error."""
+    seconds = nan_median(run.seconds for run in runs)
     processes = ranks * len(case.directories)
-    memory = [max(values) / MEGABYTE for values in zip(*(run.memory for run in runs), strict=True)]
+    memory = [max(values) / MEGABYTE for values in zip(*(run.peak_memory for run in runs), strict=True)]
     extra = {
         "ranks": float(ranks),
         "points": float(case.points),
         "points_per_second": case.points / seconds,
-        "inside_seconds": middle(run.inside for run in runs),
-        "microseconds_overhead": middle(1e6 * (processes * r.inside - r.solving) / case.points for r in runs),
+        "inside_seconds": nan_median(run.stated_seconds for run in runs),
+        "microseconds_overhead": nan_median(
+            1e6 * (processes * r.stated_seconds - r.solver_seconds) / case.points for r in runs
+        ),
         "rss_megabytes": max(memory),
         "rss_megabytes_first": memory[0],
         "rss_megabytes_other": memory[1] if len(memory) > 1 else nan,
-        "file_bytes_per_point": runs[0].file / case.points,
-        "journal_bytes_per_point": runs[0].journal / (case.points - 1) if case.kind == KILLED else nan,
-        "processors_elsewhere": middle(run.elsewhere for run in runs),
-        "share_busy": middle(run.busy for run in runs),
+        "file_bytes_per_point": runs[0].file_bytes / case.points,
+        "journal_bytes_per_point": runs[0].journal_bytes / (case.points - 1) if case.kind == KILLED else nan,
+        "processors_elsewhere": nan_median(run.processors_busy_elsewhere for run in runs),
+        "share_busy": nan_median(run.busy_fraction for run in runs),
     }
-    return Measurement(case.name, plural(ranks, "rank"), f"{case.points} points", seconds, nan, extra=extra)
+    return Measurement(
+        case.name, count_text(ranks, "rank"), f"{case.points} points", seconds, nan, extra=extra
+    )
 
 
-def numbers(m: Measurement) -> dict[str, object]:
-    """All numbers of a sweep, by name."""
+def row_numbers(m: Measurement) -> dict[str, object]:
+    """All numbers of a measured sweep, by name, for a row of a table."""
     microseconds = 1e6 * m.extra["ranks"] * m.seconds / m.extra["points"]
     return {"case": m.case, "seconds": m.seconds, "microseconds": microseconds, **m.extra}
 
 
 def solved_table(measurements: Sequence[Measurement]) -> str:
-    """Table of spectra and limit cycles with the real solvers."""
+    """Table of the sweeps of spectra and limit cycles with the real solver."""
     rows = []
     for m in measurements:
         kind = m.case.split(",")[0]  # two commands are compared with the same sweep in one command
@@ -152,8 +176,8 @@ def solved_table(measurements: Sequence[Measurement]) -> str:
             "inside": nan if m is one else one.extra["inside_seconds"] / m.extra["inside_seconds"],
             "busy": 100 * m.extra["share_busy"],
         }
-        rows.append(numbers(m) | gains)
-    return table(
+        rows.append(row_numbers(m) | gains)
+    return markdown_table(
         "sweep | points | ranks | s | points a second | gain | gain inside | % busy "
         "| µs a point beside the solver | MB a rank | processors busy elsewhere",
         "{case} | {points:.0f} | {ranks:.0f} | {seconds:.2f} | {points_per_second:.4g} | {gain:.2f} "
@@ -164,37 +188,37 @@ def solved_table(measurements: Sequence[Measurement]) -> str:
 
 
 def instant_table(measurements: Sequence[Measurement]) -> str:
-    """Table of sweeps with the instant solver, killed and resumed."""
+    """Table of the sweeps with the instant solver: complete, killed and resumed."""
     return (
         "The command with an instant solver that returns random eigenvalues: all time is scheduling and "
         "storing. Next, a sweep killed at the last point on one rank, and resumed:\n\n"
-    ) + table(
+    ) + markdown_table(
         "sweep | points | ranks | s | µs a point | MB, first rank | MB, other | bytes a point, file "
         "| bytes a point, journal",
         "{case} | {points:.0f} | {ranks:.0f} | {seconds:.2f} | {microseconds:.1f} "
         "| {rss_megabytes_first:.1f} | {rss_megabytes_other:.1f} | {file_bytes_per_point:.1f} "
         "| {journal_bytes_per_point:.1f}",
-        map(numbers, measurements),
+        map(row_numbers, measurements),
     )
 
 
 def growth_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the growth of time, memory and file from each size to the next; a killed run has no file."""
+    """Table of the time, memory and file size of an additional point, between successive sizes of sweeps."""
     rows = []
-    for (case, method), sizes in grouped(measurements, "case", "method").items():
+    for (case, method), sizes in grouped_by_fields(measurements, "case", "method").items():
         if case == KILLED:
             continue
         for less, more in pairwise(sizes):
             few = less.extra["points"]
             many = more.extra["points"]
-            start = totals(less)
+            start = sweep_totals(less)
             row: dict[str, object] = {"case": case, "method": method, "less": few, "more": many}
-            row |= {name: (end - start[name]) / (many - few) for name, end in totals(more).items()}
+            row |= {name: (end - start[name]) / (many - few) for name, end in sweep_totals(more).items()}
             rows.append(row | {"power": growth_power(sizes[0], less, more)})
     return (
         'Cost of an additional point, summed over ranks. "Power" is the exponent with which the time, minus '
         "the time of the smallest sweep, grows with the number of points:\n\n"
-    ) + table(
+    ) + markdown_table(
         "sweep | on | from | to points | µs | bytes of file | bytes, first rank | bytes, other | power",
         "{case} | {method} | {less:.0f} | {more:.0f} | {microseconds:.3g} | {file:.4g} | {first:+.1f} "
         "| {other:+.1f} | {power:.2f}",
@@ -202,8 +226,8 @@ def growth_table(measurements: Sequence[Measurement]) -> str:
     )
 
 
-def totals(m: Measurement) -> dict[str, float]:
-    """Totals of a sweep: microseconds of all ranks, bytes of its file and of the ranks' memory."""
+def sweep_totals(m: Measurement) -> dict[str, float]:
+    """Totals of a measured sweep by name: microseconds of all ranks, bytes of the file and of memory."""
     return {
         "microseconds": 1e6 * m.extra["ranks"] * m.seconds,
         "file": m.extra["file_bytes_per_point"] * m.extra["points"],
@@ -213,7 +237,11 @@ def totals(m: Measurement) -> dict[str, float]:
 
 
 def growth_power(start: Measurement, less: Measurement, more: Measurement) -> float:
-    """Exponent of the growth of the time beyond the smallest sweep's; nan if the time does not grow."""
+    """Exponent with which the time of a sweep, minus that of the smallest sweep, grows with the number of
+    points.
+
+    start: the smallest sweep. less, more: successive sizes. nan if the time does not grow.
+    """
     if less is start or min(less.seconds, more.seconds) <= start.seconds:
         return nan
     times = (more.seconds - start.seconds) / (less.seconds - start.seconds)

@@ -1,1 +1,1 @@
-"""Thresholds: rodsweep timed beside bisection, continuation codes and the pencil in F."""
+"""Benchmark of thresholds: rodsweep, and peers such as root finding on spectra and continuation codes."""

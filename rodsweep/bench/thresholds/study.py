@@ -1,7 +1,7 @@
-"""The thresholds benchmark: onset and Hopf point, with errors against 30 digits.
+"""The thresholds benchmark: first onset and first Hopf point, with errors against values of 30 digits.
 
-rodsweep finds all changes of a rod and proves the list complete. The races ONSET and HOPF run on a
-`ThresholdCase` and give a `FirstThreshold`; peers find the first onset or the first Hopf point only.
+rodsweep finds all changes of a rod and proves the list complete. The contenders of the races ONSET and HOPF
+take a `ThresholdCase` and return a `FirstThreshold`; peers find the first onset or the first Hopf point only.
 """
 
 from collections.abc import Iterable, Sequence
@@ -15,17 +15,32 @@ from ...model.rod import Rod
 from ...solve.changes.thresholds import ThresholdsRequest, solve_thresholds, warm_up
 from ..peers import Peers
 from ..spectrum.arms import SEGMENTS
-from ..study import Contender, Measurement, Study, contest, grouped, middle, plural, table
+from ..study import (
+    Contender,
+    Measurement,
+    Study,
+    count_text,
+    grouped_by_fields,
+    markdown_table,
+    measure_case,
+    nan_median,
+)
 
 ONSET, HOPF = "onset", "hopf"
-"""Kinds of thresholds: fields of ThresholdCase and names in rodsweep's results."""
+"""Kinds of thresholds: names of the races, of fields of `ThresholdCase`, and of kinds in rodsweep's
+results."""
 WRONG_THRESHOLD = 0.3
-"""Relative distance from the exact value beyond which the result is a different change."""
+"""Relative error from which a computed threshold counts as a different change, and the exact one as
+missed."""
 
 
 @dataclass(frozen=True)
 class ThresholdCase:
-    """A rod, its first onset and Hopf point or nan, from 30 digits; top: force where the peers end."""
+    """A rod with its exact first thresholds.
+
+    onset, hopf: F of the first onset and of the first Hopf point, rounded from 30 digits; nan if there is
+    none. search_end: F at which the searches of peers end.
+    """
 
     name: str
     k1: float
@@ -33,7 +48,7 @@ class ThresholdCase:
     gamma3: float
     onset: float
     hopf: float
-    top: float = 60.0
+    search_end: float = 60.0
     taper: float = 1.0
     build: Build = STANDARD
 
@@ -41,7 +56,10 @@ class ThresholdCase:
         return Rod(F=F, k1=self.k1, k2=self.k2, gamma3=self.gamma3, taper=self.taper, build=self.build)
 
     def error_of(self, kind: str, found: float) -> float:
-        """Relative error; nan if there is no threshold, inf if it was missed or invented."""
+        """Relative error of the computed threshold `found` of a kind, ONSET or HOPF.
+
+        nan if there is no threshold and none was found; inf if it was missed, or if there is none.
+        """
         exact = getattr(self, kind)
         if isnan(exact):
             return nan if isnan(found) else inf
@@ -51,10 +69,10 @@ class ThresholdCase:
 
 @dataclass(frozen=True, slots=True)
 class FirstThreshold:
-    """First threshold of a kind, nan if none was found, and the work spent on it, nan if it is not counted.
+    """Computed first threshold, and the work of its search; a kind of work that is not counted is nan.
 
-    solves: eigenproblems. determinants: evaluations of D. products: matrix-vector products, for methods that
-    solve no complete eigenproblem.
+    force: F of the threshold, nan if none was found. solves: number of eigenproblems. determinants: number of
+    evaluations of D. products: number of matrix-vector products.
     """
 
     force: float
@@ -72,9 +90,10 @@ CASES = (
     ThresholdCase("narrow", 147.93, 1e4, 1e-4, 23.7456428120601644, 74.8251556528066767, 140.0),
     ThresholdCase("soft", 1e4, 3.0, 1e-2, 4.15946661669787928, 7.93638669176118928),
 )
-"""The flutter window of "narrow", from 74.83 to 75.98, falls between the points of a coarse grid. In "soft",
-more and more pairs become unstable, and a long step passes the first one."""
+"""Uniform rods of the benchmark. "narrow" flutters only from F = 74.83 to 75.98, between the points of a
+coarse grid. In "soft", more and more pairs become unstable, so that a long step misses the first pair."""
 QUICK_CASES = tuple(case for case in CASES if case.name in ("Fig. 2b", "Fig. 2d", "filament"))
+"""Uniform rods of a quick run."""
 ARM_CASES = (
     ThresholdCase("cone", 1e4, 1e2, 1e-2, 4.57243445318968512, 11.0801159252882371, taper=0.5),
     ThresholdCase(
@@ -87,45 +106,61 @@ ARM_CASES = (
         build=Build(profile=SEGMENTS),
     ),
 )
+"""Arms that vary along their length."""
 ARM_INTRODUCTION = (
     "The same for arms: a cone with half the radius at its tip, and five segments with radii of 1, 0.6, 1.2, "
     "0.5 and 0.8. rodsweep finds all changes in 0 < F < 60 to the requested accuracy of 1e-10."
 )
-TITLES = {ONSET: "onset", HOPF: "Hopf point"}
-ROUNDS = 5
-QUICK_ROUNDS = 1
-MOST_DIGITS = 16
+"""Description of the tables of arms for the report."""
+KIND_TITLES = {ONSET: "onset", HOPF: "Hopf point"}
+"""Names of the kinds of thresholds in the tables."""
+ROUND_COUNT = 5
+"""Number of timed rounds."""
+QUICK_ROUND_COUNT = 1
+"""Number of timed rounds of a quick run."""
+MAX_DIGITS = 16
+"""Maximum number of correct digits that a threshold is credited with."""
 F_MAX = 200.0
+"""Largest F of rodsweep's search on uniform rods."""
 ARM_F_MAX = 60.0
-"""Largest force of the search on arms, several times their Hopf points."""
+"""Largest F of rodsweep's search on arms, several times F of their Hopf points."""
 RODSWEEP = "rodsweep"
+"""Group of rodsweep in the figure."""
 
 
 def thresholds_study(quick: bool, peers: Peers) -> Study:
-    """Runs the benchmark: for rods and for arms a table of the onset and one of the Hopf point."""
+    """Runs the benchmark: tables of the onset and of the Hopf point, for uniform rods and for arms.
+
+    quick: fewer rods and rounds.
+    """
     warm_up()
-    cases, rounds = (QUICK_CASES, QUICK_ROUNDS) if quick else (CASES, ROUNDS)
+    cases, rounds = (QUICK_CASES, QUICK_ROUND_COUNT) if quick else (CASES, ROUND_COUNT)
     blocks = [" ".join([introduction(rounds), *peers.notes])]
     found = []
     for group in (cases, ARM_CASES):
         blocks += [ARM_INTRODUCTION] if group is ARM_CASES else []
-        for kind in TITLES:
-            measured = timed_on(kind, group, contenders(kind) + peers.of(kind), rounds)
+        for kind in KIND_TITLES:
+            measured = measure_rods(kind, group, contenders(kind) + peers.of(kind), rounds)
             blocks.append(threshold_table(kind, measured))
             found += measured
     return Study("thresholds", "\n\n".join([*blocks, *peers.skipped]), found, "rod")
 
 
 def contenders(kind: str) -> list[Contender]:
-    """rodsweep with and without its proof."""
+    """Contenders of the race of a kind of threshold: rodsweep with and without its proof of completeness."""
     return [
-        Contender("rodsweep, all changes", "with proof", RODSWEEP, partial(own_threshold, kind, True)),
-        Contender("rodsweep, all changes", "without proof", RODSWEEP, partial(own_threshold, kind, False)),
+        Contender("rodsweep, all changes", "with proof", RODSWEEP, partial(rodsweep_threshold, kind, True)),
+        Contender(
+            "rodsweep, all changes", "without proof", RODSWEEP, partial(rodsweep_threshold, kind, False)
+        ),
     ]
 
 
-def own_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThreshold:
-    """All changes of the rod by rodsweep; returns the first change of a kind."""
+def rodsweep_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThreshold:
+    """The first threshold of a kind by rodsweep, which finds all changes of the rod.
+
+    certify: whether rodsweep proves the list of changes complete.
+    """
     rod = case.rod(0.0)
     F_max = F_MAX if rod.standard else ARM_F_MAX
     result = solve_thresholds(rod, ThresholdsRequest(F_max, 1e-10, certify, 64))
@@ -135,34 +170,39 @@ def own_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThresho
     return FirstThreshold(at, result.transitions.solves, determinants=result.transitions.boxes)
 
 
-def timed_on(
+def measure_rods(
     kind: str, cases: Iterable[ThresholdCase], every: Sequence[Contender], rounds: int
 ) -> list[Measurement]:
-    """Measurements of all contenders on each rod."""
+    """Measurements of the contenders `every` of one kind of threshold on each rod."""
     measurements = []
     for case in cases:
-        name = f"{case.name}, {TITLES[kind]}"
-        measurements += contest(name, case, every, rounds, partial(judged_threshold, case, kind))
+        name = f"{case.name}, {KIND_TITLES[kind]}"
+        measurements += measure_case(name, case, every, rounds, partial(threshold_error, case, kind))
     return measurements
 
 
-def judged_threshold(case: ThresholdCase, kind: str, first: FirstThreshold) -> dict[str, Any]:
-    """Error of a threshold. digits: correct digits per eigenproblem, 0 if the threshold was missed."""
+def threshold_error(case: ThresholdCase, kind: str, first: FirstThreshold) -> dict[str, Any]:
+    """Fields of `Measurement` for a computed threshold: error, failure, work, digits per eigenproblem.
+
+    Digits are correct decimal digits, 0 if the threshold was missed.
+    """
     error = case.error_of(kind, first.force)
     missed = "missed" if isnan(first.force) else f"wrong ({first.force:.2f})"
-    digits = -log10(min(max(error, 10**-MOST_DIGITS), 1.0))
+    digits = -log10(min(max(error, 10**-MAX_DIGITS), 1.0))
     work = {"eigenproblems": first.solves, "determinants": first.determinants, "products": first.products}
     extra = work | {"digits": nan if isnan(getattr(case, kind)) else digits / first.solves}
     return {"error": error, "failure": missed if isinf(error) else "", "extra": extra}
 
 
 def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
-    """Table with a line for each method and setting: medians over the rods, and the error on each rod."""
+    """Table of one kind of threshold, a line for each method and setting: medians over the rods, and
+    errors.
+    """
     rods = list(dict.fromkeys(m.case.split(",")[0] for m in measurements))
     rows = []
-    for (method, setting), own in grouped(measurements, "method", "setting").items():
+    for (method, setting), own in grouped_by_fields(measurements, "method", "setting").items():
         solves, determinants, products, digits = (
-            middle(m.extra.get(name, nan) for m in own)
+            nan_median(m.extra.get(name, nan) for m in own)
             for name in ("eigenproblems", "determinants", "products", "digits")
         )
         work = "" if isnan(solves) else f"{solves:.0f}"
@@ -170,19 +210,20 @@ def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
             work += "" if isnan(count) else f"{', ' * bool(work)}{count:.0f} {what}"
         errors = [m.failure or ("none" if isnan(m.error) else f"{m.error:.0e}") for m in own]
         row = {"method": method, "setting": setting, "work": work, "digits": digits}
-        rows.append(row | {"ms": middle(1e3 * m.seconds for m in own), "errors": " | ".join(errors)})
-    return table(
-        f"{TITLES[kind]} | setting | ms | eigenproblems | digits an eigenproblem | {' | '.join(rods)}",
+        rows.append(row | {"ms": nan_median(1e3 * m.seconds for m in own), "errors": " | ".join(errors)})
+    return markdown_table(
+        f"{KIND_TITLES[kind]} | setting | ms | eigenproblems | digits an eigenproblem | {' | '.join(rods)}",
         "{method} | {setting} | {ms:.1f} | {work} | {digits:.2g} | {errors}",
         rows,
     )
 
 
 def introduction(rounds: int) -> str:
-    """Description of the measurements for the report."""
+    """Description of the tables of uniform rods for the report; rounds: number of timed rounds."""
     return (
         f"Relative error of the first onset and of the first Hopf point; medians over the rods and "
-        f"{plural(rounds, 'round')}. rodsweep finds all changes in 0 < F < {F_MAX:g} (or below k1) at once. "
+        f"{count_text(rounds, 'round')}. rodsweep finds all changes in 0 < F < {F_MAX:g} (or below k1) at "
+        "once. "
         "It evaluates D in addition to its eigenproblems, and locates each change to rounding, whatever "
         "accuracy is requested. Digits = -log10(error), 0 where the threshold was missed."
     )

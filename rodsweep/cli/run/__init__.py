@@ -1,1 +1,1 @@
-"""The command `run`: points, joint work of the ranks, statuses and the closing of the file."""
+"""The command `run`: solves points on all ranks, computes variables of all points, completes the file."""

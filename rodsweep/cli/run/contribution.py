@@ -1,4 +1,4 @@
-"""End of a run: what each rank contributed, attributes of the file made of it, and closing sentences."""
+"""End of a run: work done by each rank, attributes of the file, and closing sentences."""
 
 import os
 from collections.abc import Sequence
@@ -17,9 +17,11 @@ MAX_FAILURES_PRINTED = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Contribution:
-    """Report of a rank to the first rank: host, a failed point of each distinct reason in words, and
-    statistics of the rank's work.
+class RunContribution:
+    """Report of a rank to the first rank at the end of a run.
+
+    host: name of the machine. failures: one failed point in words for each distinct reason. share: statistics
+    of the rank's work.
     """
 
     host: str
@@ -27,14 +29,16 @@ class Contribution:
     share: RankWork
 
 
-def of_the_last_run(plan: Plan) -> dict[str, Any]:
-    """Attributes of a plan that describe the last run with computed points."""
+def last_run_attributes(plan: Plan) -> dict[str, Any]:
+    """Attributes of a plan that describe only the last run: versions, commit, options and shard."""
     names = ("_version", "_commit", "_options")
     return {k: v for k, v in plan.attributes.items() if k.endswith(names) or k == "shard"}
 
 
-def history_of(contributions: Sequence[Contribution], mpi_library: str) -> dict[str, Any]:
-    """Attributes with the hosts, versions and ranks that computed the points of a run."""
+def run_history(contributions: Sequence[RunContribution], mpi_library: str) -> dict[str, Any]:
+    """Attributes of a file with the hosts, the MPI library and the ranks that computed the points of a
+    run.
+    """
     hosts = {contribution.host for contribution in contributions}
     shares = [contribution.share for contribution in contributions[: provenance.MAX_RANK_SHARES]]
     points, busy, idle = zip(*((share.points, share.busy, share.idle) for share in shares), strict=True)
@@ -53,44 +57,44 @@ class RunEnd:
     """Counts and times at the end of a run."""
 
     ranks: int
-    asked: int
-    """Number of points to solve."""
-    left: int
-    """Number of points not solved."""
-    kept: int
-    """Number of points that the file held before the run."""
+    requested: int
+    """Number of points to be solved in this run."""
+    unsolved: int
+    """Number of points of this run that are not solved."""
+    stored: int
+    """Number of points that the file holds at the end of the run."""
     seconds: float
-    """Time spent on the points."""
+    """Time spent on the points, in s."""
     curve_seconds: float
     """Time spent on the variables that need all points, in s."""
-    in_the_middle: int
+    interrupted: int
     """Number of points interrupted by a stop."""
-    followed: int | None
+    followed_halves: int | None
     """Number of halves of curves followed in this run, None if no curves were due."""
-    halves: int | None
+    stored_halves: int | None
     """Number of halves of curves kept for the next run while the curves are incomplete, else None."""
 
     def times(self) -> list[str]:
         """Sentences on the times of points and curves; empty if there was nothing to do."""
         sentences = []
         ranks = counted(self.ranks, "rank")
-        if self.asked:
-            points = self.asked - self.left
+        if self.requested:
+            points = self.requested - self.unsolved
             each = self.seconds * self.ranks / max(points, 1)
             pace = f" ({duration(each)} a point and rank)" if points else ""
             sentences.append(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{pace}")
-        if self.followed is not None:
-            word = "curves in" if self.halves is None else "curves stopped after"
-            halves = "half of a curve" if self.followed == 1 else "halves of curves"
-            done = f"; {self.followed} {halves} of cycles followed" if self.followed else ""
+        if self.followed_halves is not None:
+            word = "curves in" if self.stored_halves is None else "curves stopped after"
+            halves = "half of a curve" if self.followed_halves == 1 else "halves of curves"
+            done = f"; {self.followed_halves} {halves} of cycles followed" if self.followed_halves else ""
             sentences.append(f"{word} {self.curve_seconds:.2f} s on {ranks}{done}")
         return sentences
 
     def kept_words(self) -> str:
-        """Words on what a stopped run keeps."""
-        points = f"{counted(self.kept, 'point')} kept"
-        if self.halves is not None:
-            return f"{points}, the curves are missing, {self.halves} of their halves kept"
-        if self.in_the_middle:
-            return f"{points}, {self.in_the_middle} interrupted, to be solved again"
+        """Clause on the points and curves that the file and the journal of a stopped run keep."""
+        points = f"{counted(self.stored, 'point')} kept"
+        if self.stored_halves is not None:
+            return f"{points}, the curves are missing, {self.stored_halves} of their halves kept"
+        if self.interrupted:
+            return f"{points}, {self.interrupted} interrupted, to be solved again"
         return points

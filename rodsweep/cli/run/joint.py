@@ -1,4 +1,4 @@
-"""Variables that need all points, for example curves of a phase diagram, computed by all ranks."""
+"""Variables that depend on all points, for example curves of a phase diagram, computed by all ranks."""
 
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
@@ -16,53 +16,55 @@ from ...sweep.loop import Indices, Loop, RankWork, sweep
 from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.stop import NoClaims, RankListener, StopRequest
 from ...sweep.team import Team
-from ...tasks.protocol import AllPoints, Arrays
-from ...tasks.running.unforeseen import PASSED_ON, UnitNote
-from ...watch import Stopped, reporting_to
+from ...tasks.protocol import JointVariables, NamedArrays
+from ...tasks.running.unforeseen import RUN_ENDING_EXCEPTIONS, UnitNote
+from ...watch import SolveStopped, reporting_to
 
-NOUN = "halves of curves"
-"""Name of the units of work: half a curve each, as a curve is followed in both directions from a start."""
+UNIT_NOUN = "halves of curves"
+"""Name of the units of work in the progress display: a curve is followed in two directions from its start."""
 
 
 @dataclass(frozen=True, slots=True)
 class JointDue:
-    """Joint work. due: whether the file lacks variables that need all points. units: of work, or None."""
+    """Whether the file lacks variables that depend on all points (`due`), and the units of work, or None."""
 
     due: bool
     units: Any = None
 
 
 class JointWork:
-    """Joint work of a run: the units solved on this rank and, on the first rank, all results."""
+    """Computes the variables of a run that depend on all points, in units of work shared among the ranks."""
 
     def __init__(
         self,
         team: Team,
-        together: AllPoints,
+        together: JointVariables,
         output: Path,
         fingerprint: str,
         note: UnitNote,
         stop: StopRequest,
     ):
-        """note: called with an unforeseen exception; the unit then contributes no curve."""
+        """note: called with every unforeseen exception; the unit of work then contributes no curve."""
         self.team = team
         self.together = together
         self.output = output
         self.note = note
         self.stop = stop
         self.kept = UnitResults(journal_directory(output), fingerprint)
-        self.results: dict[int, Arrays] = {}
+        self.results: dict[int, NamedArrays] = {}
         """Results of all finished units, on the first rank only."""
 
     def solve(self, units: Any, prepare: Callable[[], object], title: str | None) -> RankWork:
-        """Solves the wanted units on all ranks. title: title of the progress display; None for no display."""
-        found: dict[int, Arrays] = {}
+        """Solves all units still wanted, on all ranks. title: of the progress display; None for no
+        display.
+        """
+        found: dict[int, NamedArrays] = {}
 
-        def keep(unit: Indices, result: Arrays) -> None:
+        def keep(unit: Indices, result: NamedArrays) -> None:
             self.kept.write(int(unit), result)
             found[int(unit)] = result
 
-        def taken() -> dict[int, Arrays]:
+        def taken() -> dict[int, NamedArrays]:
             new = found.copy()
             found.clear()
             return new
@@ -73,7 +75,7 @@ class JointWork:
             todo = Pool(units, self.results, self.team.size)
         self._exchange_starts(units)
         shown = (
-            ProgressReporter(None, f"{title}, curves", NOUN)
+            ProgressReporter(None, f"{title}, curves", UNIT_NOUN)
             if self.team.first and title
             else SilentProgress()
         )
@@ -90,25 +92,29 @@ class JointWork:
             shown.close()
 
     def _exchange_starts(self, units: Any) -> None:
-        """Sends the stored starting data of the first units to every rank, to save computing them again."""
+        """Sends the starting data of the first wanted units to every rank, so that no rank computes them
+        again.
+        """
         wanted = self.team.on_first(lambda: units.wanted(self.results))
         for starts in self.team.exchange(self.together.starts(units, wanted)):
             self.together.take(starts)
 
-    def _solved(self, units: Any, unit: int) -> Iterable[tuple[int, Arrays]]:
+    def _solved(self, units: Any, unit: int) -> Iterable[tuple[int, NamedArrays]]:
         try:
             yield unit, self.together.solve(units, unit)
-        except PASSED_ON:
+        except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:
             forget_all()
             self.note(units.where(unit), error)
-            yield unit, self.together.nothing()
+            yield unit, self.together.empty_result()
 
     def variables(self, units: Any) -> Sequence[Filled] | None:
-        """The variables for the file, on the first rank; None if a stop came before all units were done."""
+        """The variables for the file, on the first rank; None if the run was stopped before all units were
+        solved.
+        """
         if units is not None and units.wanted(self.results):
             return None
-        with suppress(Stopped), reporting_to(RankListener(NoClaims(), self.stop)):
+        with suppress(SolveStopped), reporting_to(RankListener(NoClaims(), self.stop)):
             return self.together.variables(read_view(self.output), units, self.results)
         return None

@@ -1,4 +1,4 @@
-"""Options of a run beside the config."""
+"""Options of the command `run`."""
 
 from dataclasses import dataclass
 
@@ -7,9 +7,10 @@ from ...sweep.points.ranges import Shard
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunOptions:
-    """The options of `rodsweep run`."""
+    """Options of the command `rodsweep run`, as given on the command line."""
 
     overrides: tuple[str, ...] = ()
+    """Texts KEY=VALUE that override keys of the config."""
     fresh: bool = False
     """Whether an existing file is replaced."""
     extend: bool = False
@@ -18,4 +19,4 @@ class RunOptions:
     strict: bool = False
     """Whether the run ends at the first exception that is a bug."""
     quiet: bool = False
-    """Whether to print problems only."""
+    """Whether to print problems only, without progress."""

@@ -1,4 +1,4 @@
-"""The points of a run: their units of work, and the path of results into a rank's journal."""
+"""Solution of the points of a run in units of work; every rank writes its results into a journal."""
 
 import socket
 from collections.abc import Callable, Iterable
@@ -24,12 +24,12 @@ from ...sweep.team import Team
 from ...tasks.protocol import Solver
 from ...tasks.running.failures import FailureReasons
 from ...tasks.running.job import Job
-from .contribution import Contribution
+from .contribution import RunContribution
 
 
 @dataclass(frozen=True, kw_only=True)
 class PointWork:
-    """Points of a job, solved for a shard of a plan into the journal beside `output`."""
+    """Solves the points of a shard of a job and writes their results into journals beside `output`."""
 
     team: Team
     job: Job
@@ -41,10 +41,13 @@ class PointWork:
     quiet: bool
     """Whether to hide the progress."""
     where: Callable[[int], str]
-    """The parameters of a point in words."""
+    """Function from the index of a point to its parameters in words."""
 
     def units(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
-        """(units of this shard with missing points, number of missing points)."""
+        """(units of work of this shard with missing points, number of the missing points of these units).
+
+        missing: ranges of the indices of all missing points.
+        """
         if self.solver.stretched is not None:
             stretches = self.solver.stretched[0]
             units = self.shard.part(stretches.todo(missing), stretches.count)
@@ -60,8 +63,11 @@ class PointWork:
 
     def solve(
         self, units: list[IndexRange], missing: list[IndexRange], count: int, prepare: Callable[[], object]
-    ) -> Contribution:
-        """Solves the units of this rank and writes the results into the rank's journal."""
+    ) -> RunContribution:
+        """Solves units of work together with all other ranks; writes this rank's results into its journal.
+
+        units, count: from `units`. prepare: called before the first solve.
+        """
         reasons = FailureReasons(self.where)
         solver = self.solver
         plan = self.plan
@@ -89,12 +95,14 @@ class PointWork:
             ) from error
         finally:
             shown.close()
-        return Contribution(host=socket.gethostname(), failures=list(reasons.examples.values()), share=share)
+        return RunContribution(
+            host=socket.gethostname(), failures=list(reasons.examples.values()), share=share
+        )
 
     def _solve_unit(
         self, missing: IndexSet, directory: Path
     ) -> Callable[[int], Iterable[tuple[Indices, Any]]]:
-        """Function that solves a unit of work: a point, a chain or a stretch."""
+        """Function that solves a unit of work, which is a point, a chain or a stretch, by its number."""
         solver = self.solver
         if solver.stretched:
             return StretchSolver(*solver.stretched, missing)
@@ -104,7 +112,7 @@ class PointWork:
         return lambda index: ((index, solver.solve(index)),)
 
     def _unit_name(self, unit: int) -> str:
-        """Name of a unit, point or chain, for the progress display."""
+        """Name of a unit of work, a point or a chain, for the progress display."""
         if self.solver.chained:
             return f"chain {unit + 1} of {self.solver.chained.chains.count}"
         return f"point {unit + 1} of {self.job.points.count}"

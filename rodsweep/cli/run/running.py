@@ -1,4 +1,4 @@
-"""`rodsweep run`: read the config, open the file, solve missing points, write them into the file."""
+"""`rodsweep run`: reads the config, opens the result file, solves the missing points, completes the file."""
 
 import time
 from collections.abc import Mapping
@@ -18,33 +18,34 @@ from ...sweep.stop import StopRequest
 from ...sweep.team import Team
 from ...tasks.running.failures import parameters_in_words
 from ...tasks.running.job import Job, job_of, plan_of
-from ...tasks.running.unforeseen import Log, guarded
+from ...tasks.running.unforeseen import TracebackLog, guarded_solver
 from ...wording import counted
-from ..beforehand import flutter_beforehand, planned_beforehand, say_stopped
+from ..beforehand import report_stop, shared_flutter_forces, with_shared_constants
 from .contribution import (
     MAX_FAILURES_PRINTED,
-    Contribution,
+    RunContribution,
     RunEnd,
-    history_of,
-    of_the_last_run,
+    last_run_attributes,
+    run_history,
 )
 from .joint import JointDue, JointWork
 from .options import RunOptions
 from .point_work import PointWork
 
 STOPPED_STATUS = 75
-"""Exit status of a run stopped by a signal (EX_TEMPFAIL of sysexits.h); the same command continues."""
+"""Exit status of a run stopped by a signal (EX_TEMPFAIL of sysexits.h); the same command continues the
+run."""
 
 
 def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest) -> int:
-    """Runs a config, or a shard of it, on all ranks; returns the exit status."""
+    """Runs the config file `path`, or a shard of it, on all ranks; returns the exit status of the command."""
     require_directory()
     team = Team()
     with team.aborting_together():
         config, text = team.on_first(lambda: load_config(path, options.overrides))
-        flutter = flutter_beforehand(config, team, stop)
+        flutter = shared_flutter_forces(config, team, stop)
         if flutter is None:
-            say_stopped(team, stop)
+            report_stop(team, stop)
             return STOPPED_STATUS
         job = team.on_first(lambda: job_of(path, config, text, flutter))
         team.require_on_all_ranks(require_solvers)
@@ -52,7 +53,7 @@ def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest)
 
 
 class _RankRun:
-    """Run of a job on this rank."""
+    """Run of a job as this rank takes part in it."""
 
     store: Store
     """The result file, on the first rank, after `_open`."""
@@ -69,8 +70,8 @@ class _RankRun:
         self.began = time.monotonic()
         self.started = provenance.now()
         self.seconds = 0.0
-        self.log = Log(output, team.rank, self._where, options.strict)
-        self.solver = guarded(job.solver(), job.layout, self.log)
+        self.log = TracebackLog(output, team.rank, self._where, options.strict)
+        self.solver = guarded_solver(job.solver(), job.layout, self.log)
         self.kernels = provenance.united_kernels(team.gather(blas()) or [])
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
         self.prepare = cache(self.solver.warm_up)
@@ -94,9 +95,9 @@ class _RankRun:
         """Solves missing points and writes them into the file; returns the exit status."""
         replaces = self.options.fresh or self.options.extend
         if self.team.on_first(lambda: replaces or not self.output.exists()):
-            plan = planned_beforehand(self.plan, self.job.task, self.team, self.stop)
+            plan = with_shared_constants(self.plan, self.job.task, self.team, self.stop)
             if plan is None:
-                say_stopped(self.team, self.stop)
+                report_stop(self.team, self.stop)
                 return STOPPED_STATUS
             self.plan = plan
         missing = self.team.on_first(self._open)
@@ -108,7 +109,7 @@ class _RankRun:
             if self.joint and self._lacks_curves(index_count(missing) - count):
                 kept += ", then curves through all"
             self._say(f"{self.output}: {count} of {counted(points, 'point')} to do{kept}{shard}")
-        contributions: list[Contribution] = []
+        contributions: list[RunContribution] = []
         if count:
             self.team.on_first(self._note_kernels)
             contributions = self.team.gather(self.work.solve(units, missing, count, self.prepare)) or []
@@ -121,16 +122,22 @@ class _RankRun:
         return self.team.on_first(lambda: self._finish(count, contributions, joint, shares, exceptions))
 
     def _lacks_curves(self, missing: int) -> bool:
-        """Whether only the variables that all points together determine are missing; on the first rank."""
+        """Whether the file lacks only the variables that depend on all points; on the first rank.
+
+        missing: number of missing points.
+        """
         return not missing and "finished" not in self.store.attributes()
 
-    def _fold(self, count: int, contributions: list[Contribution]) -> JointDue:
-        """Writes the points into the file; returns the joint work that is still due."""
+    def _fold(self, count: int, contributions: list[RunContribution]) -> JointDue:
+        """Writes the points of all journals into the file; returns the joint work that is still due.
+
+        count: number of points to be solved in this run.
+        """
         self.seconds = time.monotonic() - self.began
         if count:
-            history = history_of(contributions, self.team.MPI.Get_library_version())
+            history = run_history(contributions, self.team.MPI.Get_library_version())
             started = {"started": self.started, "stopped": self.stop.name}
-            self.store.fold(of_the_last_run(self.plan) | history | started)
+            self.store.fold(last_run_attributes(self.plan) | history | started)
         if not self._lacks_curves(index_count(self.store.missing())):
             return JointDue(False)
         if not self.joint:
@@ -140,12 +147,12 @@ class _RankRun:
         return JointDue(True, self.joint.together.units(read_view(self.output)))
 
     def _say(self, text: str, amiss: bool = False) -> None:
-        """Prints a text, in quiet mode only if it reports a problem."""
+        """Prints a text; in quiet mode only if the text reports a problem (`amiss`)."""
         if amiss or not self.options.quiet:
             click.echo(text)
 
     def _open(self) -> list[IndexRange]:
-        """Opens the file; returns the missing points."""
+        """Opens the result file; returns the ranges of the missing points' indices."""
         self.store = Store(self.output, self.plan, self.options.fresh, self.options.extend)
         if self.joint and (self.options.fresh or not self._lacks_curves(0)):
             self.joint.kept.drop()
@@ -153,7 +160,7 @@ class _RankRun:
         return self.store.missing()
 
     def _tell_notes(self) -> None:
-        """Prints the store's notes on points and journals found in unexpected places."""
+        """Prints the notes of the store on points and journals found in unexpected places."""
         for note in self.store.notes:
             self._say(f"{self.output}: {note}", amiss=True)
         self.store.notes.clear()
@@ -171,7 +178,7 @@ class _RankRun:
         return parameters_in_words(self.job.points.values(index))
 
     def _finish_file(self, joint: JointDue) -> bool:
-        """Writes the joint variables into the file; returns whether they are still missing."""
+        """Writes the joint variables into the file; returns whether joint variables are still missing."""
         if not joint.due:
             return False
         variables = self.joint.variables(joint.units) if self.joint else ()
@@ -183,8 +190,8 @@ class _RankRun:
             self.joint.kept.drop()
         return False
 
-    def _say_failures(self, contributions: list[Contribution], exceptions: int) -> None:
-        """Prints the first failed points, and where the tracebacks of exceptions are."""
+    def _say_failures(self, contributions: list[RunContribution], exceptions: int) -> None:
+        """Prints the first failed points, and the name of the file with the tracebacks of exceptions."""
         failures = [failure for contribution in contributions for failure in contribution.failures]
         for failure in failures[:MAX_FAILURES_PRINTED]:
             click.echo(f"  {failure}")
@@ -193,19 +200,21 @@ class _RankRun:
             click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
 
     def _outcomes(self, counts: Mapping[str, int], left: int) -> str:
-        """Number of points per status in words; left: points of this run not done."""
+        """Number of points of each status in words; left: number of points of this run that are not
+        solved.
+        """
         words = {"missing": "of other shards"} if self.shard and not left else {}
         return ", ".join(f"{n} {words.get(name, name)}" for name, n in counts.items())
 
     def _finish(
         self,
         count: int,
-        contributions: list[Contribution],
+        contributions: list[RunContribution],
         joint: JointDue,
         shares: list[RankWork],
         exceptions: int,
     ) -> int:
-        """Finishes the file, prints how the run ended, and returns the exit status."""
+        """Completes the result file, prints how the run ended, and returns the exit status."""
         lacks_curves = self._finish_file(joint)
         missing = self.store.missing()
         self._tell_notes()
@@ -215,14 +224,14 @@ class _RankRun:
         part = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
         ending = RunEnd(
             ranks=self.team.size,
-            asked=count,
-            left=left,
-            kept=self.job.points.count - index_count(missing),
+            requested=count,
+            unsolved=left,
+            stored=self.job.points.count - index_count(missing),
             seconds=self.seconds,
             curve_seconds=time.monotonic() - self.began - self.seconds,
-            in_the_middle=sum(contribution.share.ended for contribution in contributions),
-            followed=sum(share.points for share in shares) if joint.due and self.joint else None,
-            halves=len(self.joint.results) if self.joint and lacks_curves else None,
+            interrupted=sum(contribution.share.ended for contribution in contributions),
+            followed_halves=sum(share.points for share in shares) if joint.due and self.joint else None,
+            stored_halves=len(self.joint.results) if self.joint and lacks_curves else None,
         )
         for sentence in ending.times() or [f"{part} is complete, nothing to do"]:
             self._say(sentence)

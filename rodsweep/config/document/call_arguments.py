@@ -36,7 +36,8 @@ def refuse_misfit(
     ours = list(asked.parameters.values())
     by_place = [p.name for p in ours if p.kind is Parameter.POSITIONAL_OR_KEYWORD]
     if len(values) > len(by_place):
-        raise InputError(f"{short(values[len(by_place)])} has no name; write it as in {example}")
+        surplus = short(values[len(by_place)])
+        raise InputError(f"the argument {surplus} has no name; write it as in {example}")
     known = [p.name for p in ours if p.kind not in (Parameter.VAR_KEYWORD, Parameter.VAR_POSITIONAL)]
     takes_any = any(p.kind is Parameter.VAR_KEYWORD for p in ours)
     for name in named:

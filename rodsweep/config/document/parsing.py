@@ -93,7 +93,7 @@ class _DataOnly(Parser):
         name = type(event).__name__
         self.depth += name.endswith("StartEvent") - name.endswith("EndEvent")
         if self.depth > MAX_DEPTH:
-            raise InputError("nested deeper than any config is")
+            raise InputError(f"keys are nested more than {MAX_DEPTH} levels deep, and no config needs that")
         return event
 
 

@@ -145,7 +145,9 @@ def _override(tree: dict, override: str) -> None:
     if not equals or not all(path):
         raise InputError(f"{where}: write it as key=value, for example parameters.F.num=50")
     if len(path) > MAX_DEPTH:
-        raise InputError(f"{where}: nested deeper than any config is")
+        raise InputError(
+            f"{where}: keys are nested more than {MAX_DEPTH} levels deep, and no config needs that"
+        )
     node = tree
     for i, name in enumerate(path[:-1]):
         node = node.setdefault(name, {})

@@ -24,7 +24,7 @@ from .local_waves import ArmSamples, arm_samples, scales_at, scales_at_all
 from .value import chain_value
 
 Level = tuple[float, Array]
-"""W, and propagators for |w| <= W, (elements, terms, 25)."""
+"""W, and propagators for |w| <= W, (elements, terms, PADDED)."""
 
 
 class ArmDeterminant:
@@ -81,7 +81,7 @@ class ArmDeterminant:
         return arm_samples(float(self.rod.F), local, (lengths * weights).ravel())
 
     def level(self, size: float, highest: float | None = None) -> Level:
-        """(W >= size, propagators for |w| <= W, (elements, terms, 25)) with the smallest W that exists.
+        """(W >= size, propagators for |w| <= W, (elements, terms, PADDED)) with the smallest W that exists.
 
         highest: largest W, in units of the size, that serves; beyond it new elements are made. None:
         `ARM_ELEMENTS.highest`.

@@ -21,7 +21,7 @@ from ..parameter_path import Path
 from ..roots.newton import ROOT_NEWTON
 from ..value import DeterminantValue
 from .determinant import Samples, elements_for, samples_of
-from .elements.minor_rates import ENTRIES
+from .elements.minor_rates import PADDED
 from .elements.propagators import element_propagators
 from .elements.settings import ARM_ELEMENTS
 from .value import ARM_VALUE, chain_along, chain_value
@@ -65,7 +65,7 @@ class ArmFamily(NamedTuple):
     """Propagators of all arms from p = low to p = high, for |w| <= W, as Chebyshev polynomials in p.
 
     scale: the polynomials are in log(1 + (p - low)/scale), or in p if scale is `LINEAR_SCALE`. coefficients:
-    Chebyshev coefficients, (nodes, elements, terms, ENTRIES).
+    Chebyshev coefficients, (nodes, elements, terms, PADDED).
     """
 
     low: float
@@ -88,7 +88,7 @@ def family_of(path: Path, low: float, high: float, W: float) -> ArmFamily | None
         if not _resolves(samples):
             continue
         found = elements_for(arms, samples, W)
-        if len(found.lengths) * ARM_ELEMENTS.max_terms * ENTRIES > ARM_FAMILY.most_entries:
+        if len(found.lengths) * ARM_ELEMENTS.max_terms * PADDED > ARM_FAMILY.most_entries:
             return None
         values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
         if _converged(values, ARM_FAMILY.converged):
@@ -145,7 +145,7 @@ def _to_series(number: int) -> Array:
 
 @compiled
 def propagators_at(family: ArmFamily, p: float, polynomials: Array, changes: Array) -> None:
-    """Fills the propagators at p and their derivatives by p, both (elements, terms, 16)."""
+    """Fills the propagators at p and their derivatives by p, both (elements, terms, PADDED)."""
     half = (family.high - family.low) / 2
     t = (p - (family.low + family.high) / 2) / half
     if family.scale < LINEAR_SCALE:
@@ -201,7 +201,7 @@ def _sum_series(series: Array, T: Array, rates: Array, values: Array, slopes: Ar
 
 @compiled
 def level_at(family: ArmFamily, p: float) -> tuple[float, Array]:
-    """(W, propagators for |w| <= W, shape (elements, terms, ENTRIES)) of the arm at p."""
+    """(W, propagators for |w| <= W, shape (elements, terms, PADDED)) of the arm at p."""
     polynomials = np.empty(family.coefficients.shape[1:])
     propagators_at(family, p, polynomials, np.empty_like(polynomials))
     return family.W, polynomials

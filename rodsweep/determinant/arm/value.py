@@ -2,10 +2,8 @@
 
 The minors are those of `rodsweep.determinant.arm.elements.collocation`: s^m = 1 and no other at the clamp,
 D = s^m at the tip. D spans hundreds of decades, so the minors are scaled on their way; the logarithms of the
-factors are summed. Derivatives by w and along a path of arms are carried along.
-
-The propagators at one w are sums over powers of w, which all elements share. Real and imaginary parts are
-rows of their own, so that a sum is a vector instruction over the entries of a propagator.
+factors are summed. Derivatives by w and along a path of arms are carried along. At real w every minor is
+real.
 """
 
 import math
@@ -19,7 +17,20 @@ from ...model.compiled.settings import CompiledSettings
 from ..exponents import NOISE_UNIT
 from ..parameter_path import ValueAlong
 from ..value import DeterminantValue
-from .elements.minor_rates import ENTRIES, SM
+from .elements.evaluation import (
+    fill_propagator,
+    fill_real_propagator,
+    fill_real_value,
+    fill_value,
+    multiply,
+    multiply_both,
+    multiply_real,
+    multiply_real_both,
+    powers_of,
+    size_of_products,
+    size_of_real_products,
+)
+from .elements.minor_rates import PADDED, SM
 from .elements.settings import MINORS
 
 
@@ -40,112 +51,9 @@ class ArmValueSettings(CompiledSettings):
 
 ARM_VALUE = ArmValueSettings()
 
-RE, IM, RE_SLOPE, IM_SLOPE = range(4)
-"""Rows of powers and of propagators: real and imaginary parts of the value and of its derivative."""
-
-
-@compiled
-def _powers(z: complex, terms: int) -> Array:
-    """The powers z^n and their derivatives n z^(n-1), as real and imaginary parts, (terms, 4)."""
-    powers = np.zeros((terms, 4))
-    powers[0, RE] = 1.0
-    for n in range(1, terms):
-        # A product of two halves has a few rounding errors, n - 1 factors z would have n - 1.
-        half = complex(powers[n // 2, RE], powers[n // 2, IM])
-        here = z if n == 1 else complex(powers[n - n // 2, RE], powers[n - n // 2, IM]) * half
-        powers[n, RE] = here.real
-        powers[n, IM] = here.imag
-        powers[n, RE_SLOPE] = n * powers[n - 1, RE]
-        powers[n, IM_SLOPE] = n * powers[n - 1, IM]
-    return powers
-
 
 @compiled_for_vectors
-def _propagator(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C and dC/dz at one z into out, (4, ENTRIES), from its coefficients in powers of z,
-    (terms, ENTRIES).
-
-    powers: result of `_powers` for z, (terms, 4).
-    """
-    for k in range(ENTRIES):
-        out[RE, k] = polynomial[0, k]
-        out[IM, k] = out[RE_SLOPE, k] = out[IM_SLOPE, k] = 0.0
-    terms = polynomial.shape[0]
-    for n in range(1, terms - 1, 2):  # two terms at a time save passes over `out`
-        a, b, c, d = powers[n, RE], powers[n, IM], powers[n, RE_SLOPE], powers[n, IM_SLOPE]
-        p, q, r, s = powers[n + 1, RE], powers[n + 1, IM], powers[n + 1, RE_SLOPE], powers[n + 1, IM_SLOPE]
-        for k in range(ENTRIES):
-            x = polynomial[n, k]
-            y = polynomial[n + 1, k]
-            out[RE, k] += a * x + p * y
-            out[IM, k] += b * x + q * y
-            out[RE_SLOPE, k] += c * x + r * y
-            out[IM_SLOPE, k] += d * x + s * y
-    if terms % 2 == 0:
-        for row in range(4):
-            for k in range(ENTRIES):
-                out[row, k] += powers[terms - 1, row] * polynomial[terms - 1, k]
-
-
-@compiled_for_vectors
-def _propagator_alone(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C at one z into out, (2, ENTRIES), from its coefficients in powers of z, (terms,
-    ENTRIES).
-
-    powers: result of `_powers` for z, (terms, 4).
-    """
-    for k in range(ENTRIES):
-        out[RE, k] = polynomial[0, k]
-        out[IM, k] = 0.0
-    terms = polynomial.shape[0]
-    first = 1
-    for n in range(1, terms - 3, 4):  # four terms at a time save passes over `out`
-        a, b, c, d = powers[n, RE], powers[n + 1, RE], powers[n + 2, RE], powers[n + 3, RE]
-        p, q, r, s = powers[n, IM], powers[n + 1, IM], powers[n + 2, IM], powers[n + 3, IM]
-        for k in range(ENTRIES):
-            x = polynomial[n, k]
-            y = polynomial[n + 1, k]
-            z = polynomial[n + 2, k]
-            last = polynomial[n + 3, k]
-            out[RE, k] += a * x + b * y + c * z + d * last
-            out[IM, k] += p * x + q * y + r * z + s * last
-        first = n + 4
-    for n in range(first, terms):
-        for row in range(2):
-            for k in range(ENTRIES):
-                out[row, k] += powers[n, row] * polynomial[n, k]
-
-
-@compiled_for_vectors
-def _product(C: Array, x: Array, out: Array) -> None:
-    """out = C x; C: (2 or more, ENTRIES), x and out: (2, MINORS)."""
-    for i in range(MINORS):
-        real = 0.0
-        imag = 0.0
-        for j in range(MINORS):
-            real += C[RE, MINORS * j + i] * x[RE, j] - C[IM, MINORS * j + i] * x[IM, j]
-            imag += C[RE, MINORS * j + i] * x[IM, j] + C[IM, MINORS * j + i] * x[RE, j]
-        out[RE, i] = real
-        out[IM, i] = imag
-
-
-@compiled_for_vectors
-def _product_of_both(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
-    """out = C t + change x, of propagators, (2, ENTRIES), and minors, (2, MINORS)."""
-    for i in range(MINORS):
-        real = 0.0
-        imag = 0.0
-        for j in range(MINORS):
-            real += C[RE, MINORS * j + i] * t[RE, j] - C[IM, MINORS * j + i] * t[IM, j]
-            imag += C[RE, MINORS * j + i] * t[IM, j] + C[IM, MINORS * j + i] * t[RE, j]
-            real += change[RE, MINORS * j + i] * x[RE, j] - change[IM, MINORS * j + i] * x[IM, j]
-            imag += change[RE, MINORS * j + i] * x[IM, j] + change[IM, MINORS * j + i] * x[RE, j]
-        out[RE, i] = real
-        out[IM, i] = imag
-
-
-@compiled_for_vectors
-def _size(x: Array) -> float:
+def _norm(x: Array) -> float:
     """The norm of minors, (2, MINORS)."""
     total = 0.0
     for i in range(MINORS):
@@ -153,18 +61,19 @@ def _size(x: Array) -> float:
     return math.sqrt(total)
 
 
-@compiled
-def _size_of_parts(C: Array, x: Array) -> float:
-    """The sum of the moduli of the products whose sum is s^m at the end of an element, C x.
-
-    Minors differ in size by powers of the wave number. The rounding error of D follows these products, which
-    may be larger than all minors at the tip near a root of D.
-    """
+@compiled_for_vectors
+def _real_norm(x: Array) -> float:
+    """The norm of real minors, (MINORS,)."""
     total = 0.0
-    for j in range(MINORS):
-        entry = complex(C[RE, MINORS * j + SM], C[IM, MINORS * j + SM])
-        total += abs(entry * complex(x[RE, j], x[IM, j]))
-    return total
+    for i in range(MINORS):
+        total += x[i] * x[i]
+    return math.sqrt(total)
+
+
+@compiled
+def _out_of_scale(size: float) -> bool:
+    """Whether minors of this norm are to be scaled."""
+    return not 1 / ARM_VALUE.large < size < ARM_VALUE.large
 
 
 @compiled
@@ -174,25 +83,25 @@ def _swept(
     """(D, dD/dw, dD/dp, S) as of `chain_along`; no dD/dp where `changes` has no element."""
     elements, terms, _ = polynomials.shape
     along = len(changes) > 0
-    powers = _powers(z, terms)
-    C = np.empty((4, ENTRIES))
-    change = np.empty((2, ENTRIES))
+    powers = powers_of(z, terms)
+    C = np.empty((4, PADDED))
+    change = np.empty((2, PADDED))
     # minors and their derivatives by w and p, here and at the end of the element
     here = np.zeros((3, 2, MINORS))
     ahead = np.zeros((3, 2, MINORS))
     here[0, 0, SM] = 1.0
     S = 0.0
     for e in range(elements):
-        _propagator(polynomials[e], powers, C)
-        _product(C, here[0], ahead[0])
-        _product_of_both(C, here[1], C[2:], here[0], ahead[1])
+        fill_propagator(polynomials[e], powers, C)
+        multiply(C, here[0], ahead[0])
+        multiply_both(C, here[1], C[2:], here[0], ahead[1])
         if along:
-            _propagator_alone(changes[e], powers, change)
-            _product_of_both(C, here[2], change, here[0], ahead[2])
-        size = _size(ahead[0])
+            fill_value(changes[e], powers, change)
+            multiply_both(C, here[2], change, here[0], ahead[2])
+        size = _norm(ahead[0])
         if e == elements - 1:
-            size = max(size, _size_of_parts(C, here[0]))
-        if not 1 / ARM_VALUE.large < size < ARM_VALUE.large or e == elements - 1:
+            size = max(size, size_of_products(C, here[0]))
+        if _out_of_scale(size) or e == elements - 1:
             ahead /= size
             S += math.log(size)
         here, ahead = ahead, here
@@ -202,19 +111,50 @@ def _swept(
 
 
 @compiled
+def _real_swept(
+    z: float, W: float, polynomials: Array, changes: Array
+) -> tuple[complex, complex, complex, float]:
+    """`_swept` at real z."""
+    elements, terms, _ = polynomials.shape
+    along = len(changes) > 0
+    powers = powers_of(complex(z, 0.0), terms)
+    C = np.empty((2, PADDED))
+    change = np.empty(PADDED)
+    here = np.zeros((3, MINORS))
+    ahead = np.zeros((3, MINORS))
+    here[0, SM] = 1.0
+    S = 0.0
+    for e in range(elements):
+        fill_real_propagator(polynomials[e], powers, C)
+        multiply_real(C[0], here[0], ahead[0])
+        multiply_real_both(C[0], here[1], C[1], here[0], ahead[1])
+        if along:
+            fill_real_value(changes[e], powers, change)
+            multiply_real_both(C[0], here[2], change, here[0], ahead[2])
+        size = _real_norm(ahead[0])
+        if e == elements - 1:
+            size = max(size, size_of_real_products(C[0], here[0]))
+        if _out_of_scale(size) or e == elements - 1:
+            ahead /= size
+            S += math.log(size)
+        here, ahead = ahead, here
+    return complex(here[0, SM]), complex(here[1, SM] / W), complex(here[2, SM]), S
+
+
+@compiled
 def chain_size(w: complex, W: float, polynomials: Array) -> float:
-    """log |D| at w, from propagators for |w| <= W, (elements, terms, ENTRIES); -inf where D is 0."""
-    powers = _powers(w / W, polynomials.shape[1])
-    C = np.empty((2, ENTRIES))
+    """log |D| at w, from propagators for |w| <= W, (elements, terms, PADDED); -inf where D is 0."""
+    powers = powers_of(w / W, polynomials.shape[1])
+    C = np.empty((2, PADDED))
     here = np.zeros((2, MINORS))
     ahead = np.empty((2, MINORS))
     here[0, SM] = 1.0
     S = 0.0
     for e in range(len(polynomials)):
-        _propagator_alone(polynomials[e], powers, C)
-        _product(C, here, ahead)
-        size = _size(ahead)
-        if not 1 / ARM_VALUE.large < size < ARM_VALUE.large:
+        fill_value(polynomials[e], powers, C)
+        multiply(C, here, ahead)
+        size = _norm(ahead)
+        if _out_of_scale(size):
             ahead /= size
             S += math.log(size)
         here, ahead = ahead, here
@@ -223,17 +163,21 @@ def chain_size(w: complex, W: float, polynomials: Array) -> float:
 
 
 @compiled
-def chain_value(w: complex, W: float, polynomials: Array) -> DeterminantValue:
-    """D and D' = dD/dw times exp(-S), from propagators for |w| <= W, shape (elements, terms, ENTRIES)."""
-    D, D_w, _, S = _swept(w / W, W, polynomials, polynomials[:0])
-    return DeterminantValue(D, D_w, S, (len(polynomials) + 2) * NOISE_UNIT)
-
-
-@compiled
 def chain_along(w: complex, W: float, polynomials: Array, changes: Array) -> ValueAlong:
     """D, dD/dw and dD/dp times exp(-S), from propagators and their derivatives by p.
 
-    Both have the shape (elements, terms, ENTRIES) and hold for |w| <= W.
+    Both have the shape (elements, terms, PADDED) and hold for |w| <= W. At real w every value is real.
+    Without dD/dp where `changes` has no element.
     """
-    D, D_w, D_p, S = _swept(w / W, W, polynomials, changes)
+    if w.imag == 0:
+        D, D_w, D_p, S = _real_swept(w.real / W, W, polynomials, changes)
+    else:
+        D, D_w, D_p, S = _swept(w / W, W, polynomials, changes)
     return ValueAlong(D, D_w, D_p, S, (len(polynomials) + 2) * NOISE_UNIT)
+
+
+@compiled
+def chain_value(w: complex, W: float, polynomials: Array) -> DeterminantValue:
+    """D and D' = dD/dw times exp(-S), from propagators for |w| <= W, shape (elements, terms, PADDED)."""
+    D, D_w, _, S, noise = chain_along(w, W, polynomials, polynomials[:0])
+    return DeterminantValue(D, D_w, S, noise)

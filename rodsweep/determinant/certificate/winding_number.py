@@ -160,7 +160,7 @@ def count_right_of(line: float, rod: Rod) -> Count:
     """
     real, imag = eigenvalue_box(rod, max(-line, 0.0))
     if not math.isfinite(imag) or not math.isfinite(real):
-        return Count(None, 0, "no a-priori bound on the eigenvalues applies")
+        return Count(None, 0, "no a-priori bound on the eigenvalues applies to this rod")
     if line >= real:
         return Count(0, 0)
     foot = 0.0
@@ -168,17 +168,19 @@ def count_right_of(line: float, rod: Rod) -> Count:
     if line == 0.0:  # D(0) = 1, and D is near 1 up to `foot`, so this part of the line needs no nodes
         foot = quiet_radius_of(rod.coefficients, imag)
         if foot == 0.0:
-            return Count(None, 0, "the pull is so strong that numbers underflow")
+            return Count(
+                None, 0, f"the pull F = {rod.F:g} is so strong that floating-point numbers underflow"
+            )
         # Downwards from the foot to w = 0, where D = 1 is real, arg D changes by minus its value at the foot.
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
     real = COUNT.width_factor * real + COUNT.width_added
     imag = max(imag, COUNT.least_height * abs(line))
     change, nodes = contour_change(line, foot, complex(real, imag), rod.coefficients)
     if nodes < 0:
-        return Count(None, -nodes, "an eigenvalue lies too close to the line, or the box is too large")
+        return Count(None, -nodes, "an eigenvalue lies too close to the contour, or the contour is too long")
     total += change
     # Half the box has half the winding number: 2 pi times the count over both halves.
     number = round(total / math.pi)
     if abs(total / math.pi - number) > COUNT.not_an_integer:
-        return Count(None, nodes, "the winding number is not an integer within rounding")
+        return Count(None, nodes, "the winding number of D is not an integer within rounding errors")
     return Count(number, nodes)

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from html import escape
-from textwrap import fill
+from textwrap import wrap
 from typing import Any
 
 from bokeh.models import Column, ColumnDataSource, Div, InlineStyleSheet, Range1d, Span
@@ -19,9 +19,17 @@ TICKS = 5
 PLAIN_DIGITS = 7
 """Largest power of ten that labels show without an exponent."""
 NO_TITLE = "\u00a0"
-"""A title without words: a picture that is drawn with an empty title shows no later one."""
+"""A line of a title without words: a picture that is drawn with an empty title shows no later one."""
 TITLE_WIDTH = 46
 """Largest number of characters in a line of a title: the narrowest figure would cut a longer line."""
+AXIS_ALPHAS = (
+    "axis_line_alpha",
+    "axis_label_text_alpha",
+    "major_label_text_alpha",
+    "major_tick_line_alpha",
+    "minor_tick_line_alpha",
+)
+"""Opacities of all that an axis paints."""
 HEIGHT = 300
 """Height of a picture in pixels."""
 
@@ -81,17 +89,21 @@ def sentence_of(found: dict[str, Any]) -> str:
 
 
 class Card:
-    """A figure that can be replaced by a sentence."""
+    """A figure that can be replaced by a sentence. It has no axes until it shows something."""
 
-    def __init__(self, name: str, figure: figure):
+    def __init__(self, name: str, figure: figure, title_lines: int = 1):
+        """title_lines: room for the title; a longer one is cut until the browser lays the figure out."""
         self.figure = figure
+        self.title_lines = title_lines
         figure.name = f"{name}_figure"
+        self._paint_axes(0.0)
         self.message = Div(name=f"{name}_message", visible=False, css_classes=["sentence"])
         self.root = Column(self.message, figure, name=name, sizing_mode="stretch_width")
 
     def entitle(self, text: str) -> None:
         """Writes a title, which may be empty, in lines that fit above the figure."""
-        self.figure.title.text = fill(text, TITLE_WIDTH) or NO_TITLE
+        lines = wrap(text, TITLE_WIDTH)
+        self.figure.title.text = "\n".join(lines + [NO_TITLE] * (self.title_lines - len(lines)))
 
     def say(self, sentence: str) -> None:
         """Shows a sentence instead of the figure."""
@@ -106,6 +118,14 @@ class Card:
         self.figure.visible = True
 
     def reveal(self) -> None:
-        """Shows the figure."""
+        """Shows the figure with its axes."""
         self.message.visible = False
+        self._paint_axes(1.0)
         self.figure.visible = True
+
+    def _paint_axes(self, alpha: float) -> None:
+        """Makes the axes transparent or opaque. Axes that come and go would move the frame and leave parts of
+        an earlier title.
+        """
+        for axis in self.figure.axis:
+            axis.update(**dict.fromkeys(AXIS_ALPHAS, alpha))

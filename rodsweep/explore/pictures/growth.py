@@ -59,7 +59,7 @@ class GrowthPicture:
         self.point = vertical_line(0, POINT)
         self.point.line_width = 3
         figure.add_layout(self.point)
-        self.card = Card("growth", figure)
+        self.card = Card("growth", figure, title_lines=2)
         self.card.entitle("")
 
     def show_rates(self, found: dict[str, Any], load: PictureAxis) -> None:

@@ -9,7 +9,7 @@ from ...api.arm import Arm
 from ...errors import InputError
 from ...post.figures.cycle.motion_film import FilmedMotion, motion_film
 from ...post.rod_portrait.results import DescribedRod
-from ...tasks.released_motion import FRAMES, ReleasedMotion, bent_shape, released_motion
+from ...tasks.released_motion import FRAMES_PER_RETURN, ReleasedMotion, bent_shape, released_motion
 from ...tasks.rod_portrait import PortraitRequest
 from ...tasks.running.job import Job
 from ..scales import length_axis
@@ -34,7 +34,7 @@ def motion(state: PageState, tip: Tip) -> dict[str, Any]:
     found = released_motion(_job(state, shapes=48), tip)
     if found is None:
         raise InputError("the motion after the release could not be integrated")
-    own = {"tip": tip, "frames": FRAMES, "period": float(found.cycle["period"])}
+    own = {"tip": tip, "frames": FRAMES_PER_RETURN, "period": float(found.cycle["period"])}
     return vars(found) | _shapes(found) | own
 
 

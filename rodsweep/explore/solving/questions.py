@@ -13,7 +13,7 @@ import numpy as np
 from ...api.answers.answer import Answer
 from ...api.answers.picture import plot
 from ...api.arm import Arm
-from ...api.dataset import view_of
+from ...api.dataset import view_of_dataset
 from ...api.sweeping import sweep
 from ...config.axes import DEFAULTS
 from ...errors import InputError
@@ -125,7 +125,7 @@ def branch(state: PageState) -> Found:
     known. special: (F, y, kind, period) of each special point.
     """
     answer = state.subject().branch(stop=state.largest_force(), progress=False)
-    rod = RodBranches(view_of(answer.whole, Path(answer.rod)))
+    rod = RodBranches(view_of_dataset(answer.whole, Path(answer.rod)))
     found = drawn_branches(rod, state.largest_force())
     return found | {"status": str(answer.status), "sentence": answer.sentence}
 

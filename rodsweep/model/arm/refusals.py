@@ -88,7 +88,11 @@ def _refuse_sections(arm: "SlenderArm") -> None:
         if getattr(arm, name) is not None and arm.radius is None:
             raise InputError(f"{arm.quoted(name)} needs a radius; {why}")
     if (arm.radius is None) == (sides == (None, None)) or (arm.radius is None and None in sides):
-        raise InputError("radius: give either a radius, or width and height, or segments")
+        sizes = ("radius", "width", "height")
+        given = " and ".join(name for name in sizes if getattr(arm, name) is not None) or "no size"
+        raise InputError(
+            f"radius: give either a radius, or width and height, or segments; given of the section: {given}"
+        )
     if arm.si.inner_radius >= arm.si.radius:
         raise NoWall(f"{arm.quoted('inner_radius')} is not below {arm.quoted('radius')}")
     if arm.tip_radius is None:
@@ -146,7 +150,7 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
     if slenderness < LEAST_SLENDERNESS:
         raise NotSlender(
             f"{length} is {slenderness:.3g} radii; the drag of a slender arm needs at least "
-            f"{LEAST_SLENDERNESS:g}"
+            f"{LEAST_SLENDERNESS:g}, so give a longer or thinner arm"
         )
 
 

@@ -114,18 +114,21 @@ class FigureRequest:
         self.refuse_points(view, kinds)
         if self.views[1:]:
             raise InputError(
-                f"{view.path}: only files of limit_cycle, spectrum or thresholds share a figure, and this is "
-                f"{view.task}"
+                f"{view.path} is a result of the task {view.task}; only results of limit_cycle, spectrum or "
+                "thresholds can share a figure"
             )
 
     def refuse_points(self, view: View, kinds: Sequence[str] = ()) -> None:
         """Raises InputError for points, or a figure outside `kinds`, which the task of `view` lacks."""
         if self.points:
-            raise InputError(f"{view.path}: --point is for results of limit_cycle, and this is {view.task}")
+            raise InputError(
+                f"{view.path}: --point is for results of limit_cycle, and this is a result of {view.task}"
+            )
         if self.what and self.what not in kinds:
             task = next(task for task, known in KINDS_OF_TASK.items() if self.what in known)
             raise InputError(
-                f"{view.path}: --what {self.what} is for results of {task}, and this is {view.task}"
+                f"{view.path}: --what {self.what} is for results of {task}, and this is a result of "
+                f"{view.task}"
             )
 
     def check_output(self, *suffixes: str) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...config.arm.axes import STORED_ALONG
 from ...config.document.refusals import nearest
+from ...config.values import short
 from ...errors import InputError
 from ...model.arm.drag import DRAGS
 from ...model.arm.quantities import ALL_QUANTITIES
@@ -106,4 +107,7 @@ def choices_of(given: Mapping[str, float | str]) -> dict[str, float | str]:
     try:
         return {str(n): value if isinstance(value, str) else float(value) for n, value in given.items()}
     except (AttributeError, TypeError, ValueError):
-        raise InputError("at is not allowed; give numbers by parameter, such as at={'k1': 150}") from None
+        shown = short(given)
+        raise InputError(
+            f"at = {shown} is not allowed; give numbers by parameter, as at={{'k1': 150}}"
+        ) from None

@@ -93,7 +93,9 @@ def _several(request: FigureRequest) -> str:
     request.refuse_points(request.views[0])
     request.check_output()
     if len(request.views) > MAX_PANELS:
-        raise InputError(f"{len(request.views)} files are given, and one figure has room for {MAX_PANELS}")
+        raise InputError(
+            f"{len(request.views)} files are given, but one figure has room for {MAX_PANELS}; give fewer"
+        )
     views = [_line_of(view, request) for view in request.views]
     return _in_panels(views, request, f"of {len(views)} files")
 

@@ -145,9 +145,9 @@ def _unfinished(view: View, missing: int, noun: str) -> list[str]:
             f"all {plural(noun)} are computed; the curves are missing, and the same command adds them"
         )
     if waiting := view.journalled:
-        verb = "waits" if waiting == 1 else "wait"
+        verb = "is" if waiting == 1 else "are"
         lines.append(
-            f"{waiting} of the {plural(noun)} that are done {verb} in the journal for the end of the run"
+            f"{waiting} of the computed {plural(noun)} {verb} in the journal until the run writes the file"
         )
     return lines
 

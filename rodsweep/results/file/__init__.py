@@ -1,8 +1,8 @@
 """The result file: creation, exchange, seal and validation; reading, merging and provenance."""
 
-from ...errors import not_importable
+from ...errors import import_refusal
 
 try:
     import h5py  # noqa: F401 - the modules here import it; this one says why it is missing
 except (ImportError, ValueError) as error:  # ValueError: compiled for another NumPy
-    raise not_importable("h5py", error, extra="files") from error
+    raise import_refusal("h5py", error, extra="files") from error

@@ -70,7 +70,7 @@ def digests_of(file: h5py.File) -> Digests:
     variables = {}
     for name, data in _variables(file):
         if data.dtype.kind not in NUMBERS or data.shape is None:
-            raise ValueError(f"{named(name, 40)} has no numbers")
+            raise ValueError(f"its variable {named(name, 40)} has no numbers")
         dimensions = _dimensions(name, data)
         variables[name] = variable_digest(data.dtype, data.shape, dimensions, data.attrs, _blocks(data))
     return {"attributes": attribute_digests(file.attrs), "variables": variables}
@@ -79,7 +79,7 @@ def digests_of(file: h5py.File) -> Digests:
 def refuse_changed(file: h5py.File) -> None:
     """Raises ValueError, as a clause, if the content of an open file differs from the sealed content."""
     if SEAL_ATTRIBUTE not in file.attrs:
-        raise ValueError("its seal is gone")
+        raise ValueError("its checksums are missing")
     sealed = json.loads(file.attrs[SEAL_ATTRIBUTE])
     found = digests_of(file)
     for noun in ("attribute", "variable"):
@@ -87,12 +87,13 @@ def refuse_changed(file: h5py.File) -> None:
         now = found[f"{noun}s"]
         for name, digest in before.items():
             if name not in now:
-                raise ValueError(f"its {noun} {name} is gone")
+                raise ValueError(f"its {noun} {name} was removed")
             if now[name] != digest:
-                raise ValueError(f"its {noun} {name} is not as rodsweep wrote it")
+                raise ValueError(f"its {noun} {name} was changed after rodsweep wrote it")
         for name in now.keys() - before.keys():
             raise ValueError(
-                f"its {noun} {named(name, 40)} is not of rodsweep; names of your own begin with {USER_PREFIX}"
+                f"its {noun} {named(name, 40)} was not written by rodsweep; names of your own begin with "
+                f"{USER_PREFIX}"
             )
 
 
@@ -102,7 +103,7 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
     for name in file:
         shown = named(name, 40)
         if not isinstance(file.get(name, getlink=True), h5py.HardLink):
-            raise ValueError(f"{shown} is a link, which no result has")
+            raise ValueError(f"{shown} is a link, and a result has no links")
         data = file[name]
         if not isinstance(data, h5py.Dataset):
             if is_users(name) and isinstance(data, h5py.Group):
@@ -124,7 +125,7 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
     HDF5's own functions for dimensions crash on damaged attributes, and are not used.
     """
     attributes = data.attrs
-    changed = ValueError(f"the dimensions of {named(name, 40)} are not as rodsweep wrote them")
+    changed = ValueError(f"the dimensions of {named(name, 40)} were changed after rodsweep wrote them")
     if "CLASS" in attributes:
         number = attributes.get("_Netcdf4Dimid", 0)  # number of the dimension, in files that xarray wrote
         stored = [attributes["CLASS"], attributes.get("NAME"), attributes.get("_Netcdf4Coordinates", number)]

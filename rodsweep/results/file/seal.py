@@ -76,7 +76,7 @@ def check_frame(path: Path) -> bool:
         except (LookupError, TypeError, ValueError, OverflowError, RecursionError, OSError):
             raise BrokenSeal("its checksum cannot be read") from None
     if not whole:
-        raise BrokenSeal("its content does not fit its checksum")
+        raise BrokenSeal("its content differs from its checksum")
     return True
 
 

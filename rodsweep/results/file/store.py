@@ -187,7 +187,9 @@ class Store:
             if header.fingerprint != self.plan.fingerprint:
                 refuse_other(header, self.plan, self.journals)
         except InputError as error:
-            raise EnvironmentIncomplete(f"another file was put in its place meanwhile: {error}") from None
+            raise EnvironmentIncomplete(
+                f"the result file was changed or replaced during the run: {error}"
+            ) from None
 
     def _fold_blocks(
         self,

@@ -3,7 +3,7 @@ ranks."""
 
 import os
 
-from ...errors import EnvironmentIncomplete, InputError, not_importable
+from ...errors import EnvironmentIncomplete, InputError, import_refusal
 from .debian import add_debian_modules, is_found
 
 
@@ -30,4 +30,4 @@ def require_solvers() -> None:
     add_debian_modules()
     for name in ("petsc4py", "slepc4py"):
         if not is_found(name):
-            raise not_importable(name, "not found")
+            raise import_refusal(name, "not found")

@@ -87,4 +87,4 @@ def record_at(address: int, dtype: Any) -> Any:
 def call(name: str, *arguments: int) -> None:
     """Calls a function of libpetsc that takes only pointers; raises RuntimeError on failure."""
     if getattr(LIBRARY, name)(*map(ctypes.c_void_p, arguments)):
-        raise RuntimeError(f"{name} failed")
+        raise RuntimeError(f"the PETSc function {name} failed")

@@ -2,7 +2,7 @@
 
 from functools import cache
 
-from ...errors import not_importable
+from ...errors import import_refusal
 from .debian import add_debian_modules
 
 add_debian_modules()
@@ -16,7 +16,7 @@ try:
     from petsc4py import PETSc
     from slepc4py import SLEPc
 except (ImportError, ValueError) as error:  # ValueError: compiled for another NumPy
-    raise not_importable("petsc4py and slepc4py", error) from error
+    raise import_refusal("petsc4py and slepc4py", error) from error
 
 __all__ = ["PETSC_ERRORS", "PETSc", "SLEPc", "options", "sparse_package", "versions"]
 

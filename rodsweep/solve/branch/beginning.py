@@ -200,5 +200,5 @@ def predicted_cycle(hopf: HopfBirth, amplitude: float) -> Orbit:
     try:
         form = form.with_coordinate(hopf.name, hopf.coordinate + change)
     except (ValueError, ZeroDivisionError) as error:
-        raise Unsolvable(f"the branch leaves the range of possible rods: {error}") from error
+        raise Unsolvable(f"the branch leaves the allowed range of the parameters: {error}") from error
     return orbit_of_amplitude(hopf.normal, form, amplitude, frequency)

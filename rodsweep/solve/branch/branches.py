@@ -10,7 +10,7 @@ from functools import cache
 
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
-from ...watch import part
+from ...watch import solve_part
 from ..changes.along_path import Transitions, pair_crossings
 from ..changes.unstable_modes import Crossing
 from ..orbit.matrix.workspace import NewtonWorkspace
@@ -201,7 +201,9 @@ def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
         if number in arrived:
             continue
         remaining = replace(limits, max_cycles=left)
-        with part(f"branch from Hopf point {number + 1} of {count}", (shares[number], shares[number + 1])):
+        with solve_part(
+            f"branch from Hopf point {number + 1} of {count}", (shares[number], shares[number + 1])
+        ):
             curve = follow_branch(number, remaining)
         arrived.add(curve.end_hopf)
         left -= len(curve.points)
@@ -211,7 +213,7 @@ def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
     for which, breaking in enumerate(breakings):
         if breaking in met:
             continue
-        with part(f"branch {len(curves) + 1}, without symmetry"):
+        with solve_part(f"branch {len(curves) + 1}, without symmetry"):
             curve = follow_without_symmetry(
                 which, name, replace(limits, max_cycles=left, breakings=breakings)
             )

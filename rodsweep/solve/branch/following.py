@@ -149,7 +149,7 @@ def _next(trail: Trail, start: ArcPoint, limits: BranchLimits) -> ArcPoint | Bra
         trail.append(end)
         last = trail.settle(range_end) if range_end is not None or measurement_due(end) else end
     except Unsolvable as why:
-        message = f"no cycle is found beyond: {why}"
+        message = f"no further cycle of the branch is found: {why}"
         return BranchEnd(end_at(start, EndReason.no_cycle_found, message), complete=False)
     if range_end is None:
         return last
@@ -202,7 +202,7 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
     shorter = arc_between(start, end) / 2
     if start.cycle.measures.tip_y_max > ENDINGS.small_cycle:
         if shorter < ARC_STEPS.shortest:
-            raise Unsolvable("the bending moments change sign within the shortest step")
+            raise Unsolvable("the bending moments of the cycle change sign within the shortest step")
         return replace(start, length=shorter)
     # Near a Hopf point parameter and period are quadratic in the deflection.
     tangent = start.tangent
@@ -217,7 +217,7 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
         period_tolerance += ENDINGS.period_tolerance * hopf.period
         if abs(at - hopf.coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
             return BranchEnd(special_hopf(hopf), complete=True, end_hopf=number)
-    why = "cycles shrink to zero amplitude where no Hopf point is known"
+    why = "the cycles shrink to zero amplitude, but no Hopf point is known there"
     return BranchEnd(end_at(start, EndReason.no_cycle_found, why), complete=False)
 
 

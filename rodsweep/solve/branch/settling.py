@@ -105,7 +105,7 @@ def refined(point: ArcPoint, accuracy: float, condition: BorderCondition | None 
         if not planned.allowed:
             break
         point = on_mesh(point, planned, condition, accuracy)
-    raise Unsolvable("no allowed mesh reaches the accuracy")
+    raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
 
 
 def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accuracy: float) -> ArcPoint:

@@ -127,9 +127,9 @@ def transitions(
         near = [(p + side * TRANSITIONS.anchor_distance * (high - low)) for p in missed for side in (-1, 1)]
         edges = sorted({*edges, *(p for p in near if low < p < high)})
     else:
-        counts.doubts.append("the leading eigenvalue is not the pair that crosses the axis")
+        counts.doubts.append("the leading eigenvalue is not the pair that crosses the imaginary axis")
     if certify and not tracer.proved:
-        counts.doubts.append("it is not proved which eigenvalue leads everywhere")
+        counts.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
     counted = _counted(counts, unstable, crossings, at_end)
     counted = _with_range(counted, found, (start, stop))
     return replace(counted, oscillates_at_start=oscillates, solves=problem.solves)
@@ -200,7 +200,7 @@ def _covered(path: Path, low: float, high: float) -> AxisCrossings:
     """Crossings, open intervals and number of evaluations, from the covering."""
     boxes = first_boxes(path, low, high)
     if boxes is None:
-        raise Unsolvable("no a-priori bound on the eigenvalues applies")
+        raise Unsolvable("no a-priori bound on the eigenvalues applies to this rod")
     zeros, left, examined = cover(boxes, path.origin, path.direction)
     hopfs = [_hopf(path, zero) for zero in zeros if low <= zero.p <= high]
     return AxisCrossings(path, hopfs, _gaps(path, left), SearchEnd(high), examined)

@@ -154,6 +154,6 @@ class ModeCounter:
             found = f"{counted} modes are unstable" if counted >= 0 else undecided
             self.doubts.append(
                 f"{found} between {self.path.name} = {a:.12g} and {b:.12g}"
-                + (f", not {unstable}" if counted >= 0 else "")
+                + (f", but the crossings found imply {unstable}" if counted >= 0 else "")
             )
         return unstable

@@ -81,14 +81,14 @@ class StepControl:
 
     def __post_init__(self) -> None:
         if not self.growth > 1:
-            raise ValueError(f"growth = {self.growth}, but steps must grow")
+            raise ValueError(f"growth = {self.growth} must be above 1, so that steps can grow")
 
     def accepted(self, there: StepResult[Solution]) -> StepResult[Solution]:
         """The next solution; raises Unsolvable if the solution may lie on another curve."""
         if not there.off <= self.far:
-            raise Unsolvable("the solution is far from its prediction")
+            raise Unsolvable("the corrected solution is too far from its predictor")
         if not _angle(there.cosine) <= self.sharpest:
-            raise Unsolvable("the curve turns by too large an angle")
+            raise Unsolvable("the tangent of the curve turns by too large an angle in one step")
         return there
 
     def next_length(self, length: float, there: StepResult[Solution], solutions: int) -> float:

@@ -91,7 +91,7 @@ class CyclePredictor:
         # The squared size is among the values: near a Hopf point it goes linearly through 0, where cycles
         # end.
         if not values[-1] > 0:
-            raise Unsolvable("the branch is predicted to end")
+            raise Unsolvable("the predictor has no cycle: the branch ends before this parameter value")
         target = replace(form, mesh=self.orbit.form.mesh)
         return replace(self.orbit, form=target, values=values_of(values, reflected(self.orbit)))
 
@@ -152,7 +152,7 @@ def near_prediction(
     """The orbit near a prediction; raises Unsolvable if they differ by more than PREDICTION.max_distance."""
     found = newton(predicted, tolerance, workspace, name)
     if _distance(predicted, found) > PREDICTION.max_distance:
-        raise Unsolvable("the cycle is far from its prediction")
+        raise Unsolvable("the cycle is too far from its predictor")
     return found
 
 
@@ -185,7 +185,9 @@ def orbit_in_steps(
         try:
             ahead, length = advance(step, min(length, 1.0 - share), PARAMETER_STEPS)
         except Unsolvable as why:
-            raise Unsolvable("the branch of cycles cannot be followed: it ends or turns") from why
+            raise Unsolvable(
+                "the branch of cycles cannot be followed to this parameter value: it ends or turns back"
+            ) from why
         share += length
         if share >= 1.0:
             return ahead.solution

@@ -187,14 +187,14 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
     slope = path_problem(Path(form.rod, "F")).eigenvalue(w, form.rod.F)[1]
     rate = form.rod.F * slope.real
     if not w.real <= HOPF_START.direct_distance * rate:
-        raise Unsolvable("no Hopf point is near")
+        raise Unsolvable(f"F = {form.rod.F:g} is too far from a Hopf point for the normal form")
     normal = _normal_form(form, w)
     if not normal.supercritical:
         raise Unsolvable("the nearby Hopf point is subcritical")
     if not amplitude**2 <= HOPF_START.direct_distance * rate / -normal.c.real:
-        raise Unsolvable("the amplitude of the start is too large for the normal form")
+        raise Unsolvable(f"the amplitude {amplitude:g} of the start is too large for the normal form")
     if problem_of(form.rod).count(-CANDIDATES.behind * abs(w)).number != 2:
-        raise Unsolvable("a second mode may be unstable")
+        raise Unsolvable("a second pair of modes may be unstable, for which the normal form does not hold")
     return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
 
 

@@ -150,7 +150,7 @@ def followed_cycle(
     form: the rod, on any mesh. name: the parameter. workspace: memory of the matrices.
     """
     if form.rod.build != neighbour.branch.orbit.form.rod.build:
-        raise Unsolvable("the neighbour varies differently along its length")
+        raise Unsolvable("the neighbouring rod has another law or another profile along its length")
     if form.omega_unknown != neighbour.branch.orbit.form.omega_unknown:
         raise Unsolvable(
             "the neighbour has other unknowns: Omega is an unknown only at small rotational drag"

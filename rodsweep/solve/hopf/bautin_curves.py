@@ -123,7 +123,7 @@ class BautinSpace:
         try:
             there, on_edge = self._within(here, length * tangent)
         except ValueError as why:
-            raise Unsolvable(f"the step leaves the range of possible rods: {why}") from why
+            raise Unsolvable(f"the step leaves the allowed range of the parameters: {why}") from why
         missed = float(np.abs(there.v[:3] - here[:3] - length * tangent[:3]).max()) / length
         # No prediction error for the first step, which has no chord, and for a step that an edge shortened.
         return StepResult(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
@@ -181,7 +181,7 @@ class BautinSpace:
             last = here.share
             before = s
             s = s + step
-        raise Unsolvable("no generalised Hopf point is found near")
+        raise Unsolvable("no generalised Hopf point is found near the predictor")
 
 
 def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:

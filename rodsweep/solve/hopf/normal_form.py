@@ -178,10 +178,14 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
     nodes = elements.nodes
     limit = NORMAL_FORM.max_nodes if rod.standard else NORMAL_FORM.max_arm_nodes
     if nodes > limit:
-        raise Unsolvable(f"the normal form at F = {rod.F:g} needs {nodes} nodes, more than {limit}")
+        raise Unsolvable(
+            f"the normal form at F = {rod.F:g} needs {nodes} mesh nodes, more than the {limit} allowed"
+        )
     normal = normal_form(MixedForm(rod, mesh_on(elements.edges, elements.order)), w)
     if not abs(normal.w - w) <= max(accuracy, NORMAL_FORM.found) * abs(w):
-        raise Unsolvable(f"{w:.12g} is no eigenvalue at F = {rod.F:g}; the nearest is {normal.w:.12g}")
+        raise Unsolvable(
+            f"w = {w:.12g} is no eigenvalue of the mesh at F = {rod.F:g}; the nearest one is {normal.w:.12g}"
+        )
     return normal
 
 
@@ -206,9 +210,9 @@ def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[
         if abs(w - shift) <= NORMAL_FORM.found * abs(w):
             break
     else:
-        raise Unsolvable(f"no eigenvalue is found near {guess:.6g}")
+        raise Unsolvable(f"inverse iteration finds no eigenvalue near w = {guess:.6g}")
     if not w.imag > 0:
-        raise Unsolvable(f"the eigenvalue near {guess:.6g} is real: the mode does not oscillate")
+        raise Unsolvable(f"the eigenvalue near w = {guess:.6g} is real: no mode oscillates there")
     # The tip of q is at y = 1/2, so that |z| is the largest tip y of z q + c.c.; <p, M q> = 1 saves every
     # projection on q a denominator.
     scale = 2 * (elements.form.tip_y @ q)

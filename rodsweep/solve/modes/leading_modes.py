@@ -141,6 +141,8 @@ def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
         return result
     is_known = np.isfinite(error)
     message = (
-        f"the error of the {culprit} is {error:.0e}" if is_known else f"no digit of the {culprit} is known"
+        f"the error of the {culprit} is {error:.0e}, above the requested {request.accuracy:.0e}"
+        if is_known
+        else f"no digit of the {culprit} is known"
     )
     return replace(result, status=SpectrumStatus.accuracy_not_reached, message=message)

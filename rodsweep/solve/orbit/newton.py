@@ -101,7 +101,8 @@ def newton(
             step = matrix.correction(orbit)
         last = change
     raise Unsolvable(
-        f"Newton's method for the orbit: step {change:.0e} after {ORBIT_NEWTON.max_iterations} iterations"
+        f"Newton's method for the orbit does not converge in {ORBIT_NEWTON.max_iterations} iterations; its "
+        f"last step is {change:.0e}"
     )
 
 

@@ -27,7 +27,9 @@ class ArmSolver(ShiftInvertSolver):
     def load(self, rod: Rod, shift: float) -> SolverContents:
         self.matrices = found = self.pencil.matrices(rod)
         if not np.isfinite(found.A.sum() + found.B.sum() + shift):
-            raise FloatingPointError("matrix entries overflow with these parameters")
+            raise FloatingPointError(
+                "with these parameters matrix entries exceed the largest floating-point number"
+            )
         self.B.setValuesCSR(self.line, self.line[:-1], found.B)
         self.B.assemble()
         values = found.A.copy()

@@ -42,7 +42,9 @@ class EigenSolver(ShiftInvertSolver):
         shift *= pace**2
         coefficients = self.pencil.coefficients(rod)
         if not math.isfinite(coefficients.sum() + shift):
-            raise FloatingPointError("matrix entries overflow with these parameters")
+            raise FloatingPointError(
+                "with these parameters matrix entries exceed the largest floating-point number"
+            )
         if rod.rotational_drag != self.gamma3:
             self.gamma3 = rod.rotational_drag
             self.inertia = self.pencil.inertia(rod)

@@ -82,7 +82,7 @@ class Search:
         """The last count that disagrees with the eigenvalues found."""
         self.unresolved = False
         """Whether neither a mesh nor a count could decide which eigenvalue leads."""
-        self.why = "no mesh within the limit resolves the requested modes"
+        self.why = f"no mesh of at most {RESOLUTION.most_unknowns} unknowns resolves the requested modes"
 
     def outcome(self) -> Spectrum:
         """Tries meshes until the result is good enough or improves no more."""
@@ -185,12 +185,12 @@ class Search:
         if self.best is not None:
             return _result(self.best, self.problem, self.request)
         if self.lost is not None:
-            counted = f"the winding number counts {self.lost.count.number}"
+            lost = self.lost
+            counted = f"the winding number counts {lost.count.number} eigenvalues where {lost.here} are found"
             return no_spectrum(SpectrumStatus.modes_missing, self.request, counted)
         if self.unresolved:
-            return no_spectrum(
-                SpectrumStatus.modes_missing, self.request, "no mesh resolves all eigenvalues that may lead"
-            )
+            why = "no mesh resolves all eigenvalues that may be the leading ones"
+            return no_spectrum(SpectrumStatus.modes_missing, self.request, why)
         return no_spectrum(SpectrumStatus.failed, self.request, self.why)
 
 

@@ -108,7 +108,7 @@ def refuse_axes(axes: dict[str, Array], into_crushed: bool = False, build: Build
     elif into_crushed and axes["F"].min() >= axes["k1"].max() * shares.max():
         raise InputError(
             f"parameters.F starts at {axes['F'].min():.15g}, but the weakest section of all arms is crushed "
-            f"at {axes['k1'].max() * shares.max():.15g}"
+            f"at {axes['k1'].max() * shares.max():.15g}; F must start below"
         )
     elif not into_crushed and axes["F"].max() >= axes["k1"].min() * shares.min():
         raise InputError(

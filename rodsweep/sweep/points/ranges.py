@@ -84,4 +84,4 @@ def shard_of(text: str) -> Shard:
     number, _, of = text.partition("/")
     if number.isdecimal() and of.isdecimal() and len(text) < 20 and 1 <= int(number) <= int(of):
         return Shard(int(number), int(of))
-    raise InputError(f"--shard {text[:40]} is not of the form i/n with 1 <= i <= n")
+    raise InputError(f"--shard {text[:40]} is not of the form I/N with 1 <= I <= N, such as 2/8")

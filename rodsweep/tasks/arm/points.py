@@ -1,4 +1,6 @@
-"""Points of an arm: a status where no rod covers a point, and one solve for all points with equal rods."""
+"""Points of an arm: points to which no rod corresponds get a status, and equal rods are solved once a
+rank.
+"""
 
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Mapping
@@ -19,15 +21,16 @@ from ...sweep.points.points import Points
 from ...sweep.points.stretches import StretchResult
 from ..protocol import Solver
 
-MODEL_APPLIES = VALIDITY[0].name
+MODEL_APPLIES_NAME = VALIDITY[0].name
+"""Name of the variable that states whether the model applies."""
 OUTCOME_MEMORY = 1e8
-"""Memory of the outcomes kept on a rank, in bytes, approximately."""
+"""Approximate memory, in bytes, of the outcomes that a rank keeps for equal rods."""
 SMALLEST_OUTCOME = 10_000
-"""Smallest assumed memory of an outcome in bytes, because an outcome has fields beside its variables."""
+"""Minimum assumed memory of an outcome, in bytes: an outcome has more fields than the stored variables."""
 
 
-class NoRod(PointStatus):
-    """Outcome, in every task, of a point to which the rod model does not apply."""
+class NoRodStatus(PointStatus):
+    """Statuses, in every task, of points of an arm to which no rod corresponds."""
 
     not_slender = (
         NOT_SLENDER,
@@ -44,38 +47,40 @@ class NoRod(PointStatus):
     )
     flutter_unknown = (
         FLUTTER_UNKNOWN,
-        "the load is relative to flutter, which the search does not find, so nothing is computed",
+        "the load is relative to flutter, and the search could not determine the flutter threshold, so "
+        "nothing is computed",
     )
-    no_wall = NO_WALL, "the bore is as wide as the arm, so nothing is computed", True
+    no_wall = NO_WALL, "the bore is as wide as the arm, which leaves no wall, so nothing is computed", True
 
 
 @dataclass(frozen=True, slots=True)
-class UncoveredPoint:
-    """Outcome of a point to which the rod model does not apply."""
+class OutcomeWithoutRod:
+    """Outcome of a point of an arm to which no rod corresponds."""
 
-    status: NoRod
+    status: NoRodStatus
     message: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class RepeatedOutcome:
-    """Outcome of a point with a rod that was already solved at an earlier point."""
+    """Outcome of a point whose rod was already solved at an earlier point."""
 
     outcome: Any
 
     @property
     def status(self) -> Any:
-        """Outcome of the solve."""
+        """Status of the earlier solve."""
         return self.outcome.status
 
     @property
     def message(self) -> str:
-        """Message of the solve."""
+        """Message of the earlier solve."""
         return str(self.outcome.message)
 
 
-def same_rods(points: Points) -> NDArray[np.int64] | None:
-    """Number of the rod at each point of a grid over an arm's quantities, (points,); None if all rods differ.
+def rod_numbers(points: Points) -> NDArray[np.int64] | None:
+    """Number of the rod at each point of a grid over an arm's quantities, (points,); equal rods have equal
+    numbers. None if all rods differ.
 
     Rods may be equal because viscosity and densities change no parameter, and Young's modulus changes none
     without a load or with a relative load.
@@ -93,12 +98,12 @@ def same_rods(points: Points) -> NDArray[np.int64] | None:
 
 
 def sharing_equal_rods(solver: Solver, points: Points, layout: Layout) -> Solver:
-    """A solver that keeps outcomes: a rank solves a rod once, even if the rod occurs at several points.
+    """A solver that keeps outcomes, so that a rank solves a rod once even if several points have this rod.
 
-    In chains, two points are equal if their rods are equal and both start from the state of one kept outcome.
-    Spectra along stretches are solved again, because a point takes less than a millisecond.
+    In chains, an outcome is used again if the rods are equal and both points start from the same state.
+    Points of stretches are always solved, because a point takes less than a millisecond.
     """
-    rods = None if solver.stretched else same_rods(points)
+    rods = None if solver.stretched else rod_numbers(points)
     if rods is None:
         return solver
     memory = _Outcomes(max(1, int(OUTCOME_MEMORY // max(layout.bytes_per_point, SMALLEST_OUTCOME))))
@@ -117,13 +122,13 @@ def sharing_equal_rods(solver: Solver, points: Points, layout: Layout) -> Solver
 
 @dataclass(slots=True)
 class _Outcomes:
-    """The outcomes of a rank's last solves, at most `most`."""
+    """Cache of the outcomes of a rank's last solves; most: maximum number of outcomes."""
 
     most: int
     kept: OrderedDict[Hashable, Any] = field(default_factory=OrderedDict)
 
     def of(self, key: Hashable, solve: Callable[[], Any]) -> tuple[Any, bool]:
-        """(result of a solve, whether it was kept from an earlier solve)."""
+        """(result of the solve `key`, whether the result was in the cache); calls `solve` if it was not."""
         if key in self.kept:
             self.kept.move_to_end(key)
             return self.kept[key], True
@@ -135,9 +140,10 @@ class _Outcomes:
 
 @dataclass(frozen=True, slots=True)
 class SkippingSolver:
-    """A solver that skips points without a rod, which get fill values.
+    """A solver that skips the points to which no rod corresponds and gives these points fill values.
 
-    coverage: as in `Points`, (points,). failures: messages for points whose status does not say all.
+    coverage: SLENDER for points with a rod, else a value of `NoRodStatus`, (points,). failures: additional
+    messages by index of the point.
     """
 
     inner: Solver
@@ -146,31 +152,31 @@ class SkippingSolver:
     layout: Layout
 
     def solver(self) -> Solver:
-        """The solver of all points."""
-        statuses = (*self.inner.statuses, *NoRod)
+        """The solver of all points, with or without a rod."""
+        statuses = (*self.inner.statuses, *NoRodStatus)
         return self.inner.within(self._solve, self._together, record=self._record, statuses=statuses)
 
     def _solve(self, index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
         if self.coverage[index] == SLENDER:
             return solve()
-        return UncoveredPoint(self._status(index), self.failures.get(index, "")), None
+        return OutcomeWithoutRod(self._status(index), self.failures.get(index, "")), None
 
-    def _status(self, index: int) -> NoRod:
+    def _status(self, index: int) -> NoRodStatus:
         """Status of a point without a rod."""
-        return next(status for status in NoRod if status == self.coverage[index])
+        return next(status for status in NoRodStatus if status == self.coverage[index])
 
     def _record(self, index: int, outcome: Any) -> dict[str, Any]:
-        if not isinstance(outcome, UncoveredPoint):
+        if not isinstance(outcome, OutcomeWithoutRod):
             return self.inner.record(index, outcome)
         return self._empty | {STATUS.name: int(outcome.status)}
 
     @property
     def _empty(self) -> dict[str, Any]:
         """Every variable of a point without a rod, except its status."""
-        return self.layout.empty_point | {SECONDS.name: 0.0, MODEL_APPLIES: Validity.does_not_apply}
+        return self.layout.empty_point | {SECONDS.name: 0.0, MODEL_APPLIES_NAME: Validity.does_not_apply}
 
     def _together(self, indices: NDArray[np.int64]) -> StretchResult:
-        """Results for the points of a stretch; only points with a rod are solved."""
+        """Results for the points of a stretch, (indices,); only points with a rod are solved."""
         assert self.inner.stretched is not None
         coverage = self.coverage[indices]
         places = np.flatnonzero(coverage == SLENDER)

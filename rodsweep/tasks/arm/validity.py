@@ -1,8 +1,10 @@
-"""Whether the model applies at each point of an arm's sweep, from the neglected effects at the arm's motion.
+"""Validity of the model at each point of an arm's sweep, from the size of the effects that the model
+neglects.
 
-The rate of the motion depends on the task: the rate of the first Hopf point, of the leading oscillating mode,
-or of the cycle. Of an arm at rest only compression and weight count. Where a motion may have been missed, the
-validity is not known, unless compression or weight alone end the model.
+The effects depend on the rate of the motion. This is the frequency of the first Hopf point, of the leading
+oscillating mode or of the cycle, according to the task. For an arm at rest only compression and weight count.
+If the solver may have missed a motion, the validity is not known, unless compression or weight alone exclude
+the model.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -29,34 +31,39 @@ from ...solve.status import PointStatus
 from ...sweep.points.points import Points
 
 Record = Mapping[str, Any]
-ARMS_KEPT = 64
-"""Maximum number of cached arms."""
-AT_REST: dict[str, tuple[str, ...]] = {
+"""Variables of a point, or of several points, by name."""
+CACHED_ARM_COUNT = 64
+"""Maximum number of arms cached by an `ArmValidity`."""
+AT_REST_STATUSES: dict[str, tuple[str, ...]] = {
     "thresholds": ("accuracy_not_reached", "list_full"),
     "phase_diagram": ("accuracy_not_reached", "special_undecided", "special_full"),
 }
-"""Further statuses, by task, at which the arm is at rest if the file has no motion."""
-HOPF_POINTS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
-"""Kinds of crossings that are Hopf points."""
-MAY_FLUTTER = [value for value, name in CLASSES if name in ("flutter", "undecided")]
-"""Classes of a rod in a phase diagram that may beat."""
+"""By task, the unsuccessful statuses at which an arm without a stored Hopf point counts as at rest."""
+HOPF_KINDS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
+"""Values of the variable crossing_kind that are Hopf points."""
+CLASSES_WITH_FLUTTER = [value for value, name in CLASSES if name in ("flutter", "undecided")]
+"""Values of the variable class, in a phase diagram, of rods that flutter or may flutter."""
 
 
 @dataclass(frozen=True, slots=True)
 class ArmMotion:
-    """Motion of an arm at n points, (n, ...): frequency in 1/tau2, force F, amplitude of the tip in L."""
+    """Motions of an arm at n points, from which the neglected effects are computed; arrays (n, ...).
+
+    frequency: angular, in 1/tau2, NaN for an arm at rest. amplitude: largest y of the tip in L. is_cycle:
+    whether the motions are limit cycles.
+    """
 
     frequency: Array
     F: Array | None = None
-    """Force of each motion; None to take F from the points. An F of the points takes precedence."""
+    """Follower force of each motion, used if F is no parameter of the points; None if unknown."""
     amplitude: Array | float = HALF_LENGTH
     is_cycle: bool = False
-    missed: NDArray[np.bool_] | bool = False
-    """Whether a point moves although its frequency is not known, of the shape of the points."""
+    may_be_missed: NDArray[np.bool_] | bool = False
+    """Whether the point may have a motion whose frequency is not known, (n,)."""
 
 
 def _of_modes(record: Record) -> ArmMotion:
-    """Motion of the leading oscillating mode; frequency NaN if no mode oscillates."""
+    """Motion of the oscillating mode with the largest growth rate; frequency NaN if no mode oscillates."""
     frequency = np.abs(record["frequency"])
     first = np.argmax(frequency > 0, axis=-1, keepdims=True)  # 0 if no mode oscillates
     leading = np.take_along_axis(frequency, first, axis=-1)[..., 0]
@@ -64,10 +71,12 @@ def _of_modes(record: Record) -> ArmMotion:
 
 
 def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
-    """Motion of the first Hopf point; `at`: name of the variable with its force."""
+    """Function from a record to the motion of the first Hopf point; at: name of the variable with its
+    force.
+    """
 
     def found(record: Record) -> ArmMotion:
-        hopf = np.isin(record["crossing_kind"], HOPF_POINTS)
+        hopf = np.isin(record["crossing_kind"], HOPF_KINDS)
         first = np.argmax(hopf, axis=-1, keepdims=True)
         there = hopf.any(axis=-1)
         pair = (np.asarray(record[name], float) for name in ("crossing_frequency", at))
@@ -78,13 +87,13 @@ def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
 
 
 def _of_row(record: Record) -> ArmMotion:
-    """Motion of the first Hopf point of a row; missed if rods of the row may beat although it has none."""
-    beats = np.isin(record["class"], MAY_FLUTTER).any(axis=-1)
-    return replace(_of_hopf_point("crossing_at")(record), missed=beats)
+    """Motion of the first Hopf point of a row; `may_be_missed` if rods of the row flutter or may flutter."""
+    beats = np.isin(record["class"], CLASSES_WITH_FLUTTER).any(axis=-1)
+    return replace(_of_hopf_point("crossing_at")(record), may_be_missed=beats)
 
 
 def _of_flutter(record: Record) -> ArmMotion:
-    """Motion at the onset of flutter. The onset is stored even if the list of crossings is full."""
+    """Motion at the first Hopf point, which is stored as F_hopf even if the list of crossings is full."""
     frequency, F = (np.asarray(record[name], float) for name in ("hopf_frequency", "F_hopf"))
     return ArmMotion(np.abs(frequency), F)
 
@@ -108,37 +117,38 @@ MOTION_OF_TASK: dict[str, Callable[[Record], ArmMotion]] = {
     "limit_cycle": _of_cycle,
     "branch": _of_branches,
 }
-"""Functions that compute the motion of an arm from the variables of a task."""
+"""Function from the variables of a point to the motions of the arm, by task."""
 
 
 class ArmValidity:
-    """Validity of the model at the points of a config's arm."""
+    """Computes the variables of VALIDITY, which state whether the model applies, for the arm of a config."""
 
     def __init__(self, config: Config, points: Points, statuses: Iterable[PointStatus] = ()):
-        """`statuses`: all statuses of the task's points."""
+        """statuses: all statuses that points of the task can have."""
         assert config.parameters.arm is not None
         self.section: ArmSection = config.parameters.arm
         self.points = points
         self.task = config.task
-        at_rest = AT_REST.get(self.task, ())
+        at_rest = AT_REST_STATUSES.get(self.task, ())
         self.searched = [int(each) for each in statuses if each.succeeded or each.name in at_rest]
-        """Statuses of points at which no motion was missed."""
+        """Values of the statuses at which the solver missed no motion."""
         sections = [axis.size for name, axis in self.section.given.items() if name in ALL_BUT_LOAD]
         self.each = points.count // int(np.prod(sections)) if points.over else points.count
         """Number of consecutive points with the same arm."""
-        self.arm = lru_cache(ARMS_KEPT)(_arm_of_number(self.section))
+        self.arm = lru_cache(CACHED_ARM_COUNT)(_arm_of_number(self.section))
 
     def of(self, record: Record, index: int | NDArray[np.int64]) -> dict[str, Any]:
-        """The variables of VALIDITY for a point, or for n points of one arm; records (n, ...), result
-        (n,).
+        """The variables of VALIDITY for one point, or for n points of one arm, (n,).
+
+        record: variables of the points, (n, ...). index: index of the point, or indices, (n,).
         """
         motion = MOTION_OF_TASK[self.task](record)
-        missed = motion.missed | ~np.isin(record[STATUS.name], self.searched)
+        missed = motion.may_be_missed | ~np.isin(record[STATUS.name], self.searched)
         arm = self._arm_of(int(np.ravel(index)[0]))
-        return self._validity(arm, replace(motion, missed=missed), index)
+        return self._validity(arm, replace(motion, may_be_missed=missed), index)
 
     def at_rest(self) -> dict[str, Array]:
-        """The variables of VALIDITY at all points with a rod, (n,), for an arm at rest."""
+        """The variables of VALIDITY at the n points with a rod, (n,), as if all arms were at rest."""
         found = []
         for first in range(0, self.points.count, self.each):
             indices = np.arange(first, first + self.each)
@@ -168,7 +178,7 @@ class ArmValidity:
         applies = validity.reshape(*np.shape(index), -1).max(axis=-1)
         moves = np.isfinite(rate).reshape(*np.shape(index), -1).any(axis=-1)
         # Compression or weight beyond its limit ends the model whatever the motion.
-        known = moves | ~np.asarray(motion.missed) | (applies == Validity.does_not_apply)
+        known = moves | ~np.asarray(motion.may_be_missed) | (applies == Validity.does_not_apply)
         return {
             "model_applies": np.where(known, applies, NOT_KNOWN),
             "neglected_effect": np.where(known & (at_worst > 0), number, -1),
@@ -176,7 +186,9 @@ class ArmValidity:
         }
 
     def _force(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> Array:
-        """F multiplied by the ratio of the arm's k1 to a k1 given beside it; nan without load."""
+        """F multiplied by the ratio of the arm's k1 to a k1 that the config gives beside the arm; NaN without
+        load.
+        """
         own = self._column("k1", index)
         F = self._column("F", index) if "F" in self.points.names else motion.F
         if F is None:
@@ -187,9 +199,9 @@ class ArmValidity:
         return np.asarray(F) * (arm.k1 / own)
 
     def _compressing(self, F: Array, index: int | NDArray[np.int64]) -> Array:
-        """The force that would compress the base as much as F compresses the weakest section; nan for rubber.
+        """The force that would compress the base as much as F compresses the weakest section.
 
-        The law of rubber neglects no effect of compression, so the check does not concern rubber.
+        NaN for rubber, whose constitutive law includes large compression.
         """
         build = self.points.build_of(int(np.ravel(index)[0]))
         if build.law != LINEAR.law:
@@ -206,10 +218,10 @@ class ArmValidity:
 
 
 def _arm_of_number(section: ArmSection) -> Callable[[int], SlenderArm]:
-    """Function from a number to the arm of one of the sections, without load.
+    """Function from a number to the arm with this number, without load.
 
-    Numbers count in row-major order of the section's axes, which are made once: a point must not take the
-    time of an axis.
+    Arms are numbered in row-major order of the axes of the config's section `arm`. The axes are evaluated
+    once, because their evaluation takes longer than a point.
     """
     axes = {name: axis.array() for name, axis in section.given.items() if name in ALL_BUT_LOAD}
 

@@ -1,4 +1,4 @@
-"""The curves of a phase diagram, which need all rows."""
+"""Computation of the curves of a phase diagram, which need the results of all rows."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -40,16 +40,18 @@ megabyte. Special points of further rows are located again, in some seconds and 
 
 @dataclass(slots=True, eq=False)
 class DiagramCurves:
-    """Boundaries, their criticality, generalised Hopf points and curves of cycles of a diagram.
+    """Computes the curves of a phase diagram after its rows are solved.
 
-    Only the curves of cycles are units of work, because they take most of the time.
+    These are boundaries of stability with their criticality, curves of generalised Hopf points, and curves of
+    folds and torus points of cycles. Only the curves of cycles, which take most of the time, are divided into
+    units of work for the ranks.
     """
 
     task: "PhaseDiagramTask"
     workspace: "NewtonWorkspace"
     """Buffers of Newton's matrices in this process."""
     special: "dict[int, tuple[SpecialPoint, ...]]" = field(default_factory=dict)
-    """Special points with cycles, by number of row, for rows solved in this process."""
+    """Special points of cycles by the number of their row, for rows solved in this process."""
 
     def keep(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
         """Returns the row unchanged, and keeps its special points unless MAX_KEPT_ROWS rows are kept
@@ -59,16 +61,21 @@ class DiagramCurves:
         return row
 
     def starts(self, units: "SpecialBoundaries", wanted: Sequence[int]) -> "dict[int, Any]":
-        """Special points kept on this rank for the rows where units start, by the row's number."""
+        """Special points kept on this rank, by number of the row, for the rows where the wanted units
+        start.
+        """
         rows = {units.row_of(unit) for unit in wanted}
         return {row: self.special[row] for row in rows if row in self.special}
 
     def take(self, starts: "Mapping[int, Any]") -> None:
-        """Keeps special points of rows solved on a different rank."""
+        """Keeps special points, by number of the row, of rows solved on a different rank."""
         self.special.update(starts)
 
     def units(self, view: View) -> "SpecialBoundaries | None":
-        """Curves of cycles as units of work, from a view with all rows; None without cycles or curves."""
+        """Curves of folds and torus points of cycles as units of work; None if none are requested.
+
+        view: the result file with all rows.
+        """
         from ...solve.branch.special.boundaries import SpecialBoundaries
 
         plane = self.plane if self.task.config.phase_diagram.cycles else None
@@ -79,11 +86,11 @@ class DiagramCurves:
         return SpecialBoundaries(*plane.axes, special)
 
     def solve(self, units: "SpecialBoundaries", unit: int) -> dict[str, np.ndarray]:
-        """Result of a unit, arrays with the shapes of `TracedHalf`."""
+        """Half a curve of cycles, the unit of work `unit`; arrays have the shapes of `TracedHalf`."""
         return units.solve(unit, self._special_points, self.workspace)
 
-    def nothing(self) -> dict[str, np.ndarray]:
-        """Result of a unit without a curve: arrays of shape (0, ...)."""
+    def empty_result(self) -> dict[str, np.ndarray]:
+        """Result of a unit of work without a curve: arrays of shape (0, ...)."""
         from ...solve.branch.special.cycle_curves import TracedHalf
 
         return TracedHalf(None).arrays()
@@ -91,7 +98,10 @@ class DiagramCurves:
     def variables(
         self, view: View, units: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
     ) -> list[Filled]:
-        """All curves as variables of the file. results: of all wanted units, shapes as in `TracedHalf`."""
+        """All curves as variables of the file.
+
+        view: the result file with all rows. results: arrays of every unit of work, shapes as in `TracedHalf`.
+        """
         plane = self.plane
         if plane is None:
             return []
@@ -121,12 +131,12 @@ class DiagramCurves:
 
     @property
     def _finite(self) -> np.ndarray:
-        """Mask of the rows with a finite value, (rows,)."""
+        """Whether the value of the row's parameter is finite, (rows,)."""
         return np.isfinite(self.task.points.by_name[self.task.config.plane[1]])
 
     @property
     def plane(self) -> "Plane | None":
-        """Plane of the line's parameter and the finite rows; None for fewer than two finite rows."""
+        """Plane of the diagram's two parameters; None if fewer than two rows have a finite value."""
         from ...determinant.parameter_plane import Plane, PlaneAxis
 
         line, row = self.task.config.plane
@@ -146,7 +156,7 @@ class DiagramCurves:
         return Plane(rod, (abscissa, ordinate))
 
     def _boundaries(self, plane: "Plane", view: View, rows: np.ndarray) -> "Boundaries[BoundaryCurve]":
-        """Curves through the crossings of all finite rows; rows: value of every row, (rows,)."""
+        """Curves through the crossings of all rows with a finite value; rows: value of every row, (rows,)."""
         from ...solve.changes.diagram.boundaries import curves_through, seed_of
 
         names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
@@ -164,7 +174,7 @@ class DiagramCurves:
         return replace(found, untraced=found.untraced + int(cut[np.isfinite(rows)].clip(min=0).sum()))
 
     def _special_points(self, number: int) -> "tuple[SpecialPoint, ...]":
-        """Special points of the branches of a row, kept or solved again."""
+        """Special points of the branches of a row, from memory or solved again; number: index of the row."""
         from ...solve.branch.coexistence import row_branches, special_of
 
         if number not in self.special:
@@ -187,7 +197,7 @@ class DiagramCurves:
     def _bautin_curves(
         self, plane: "Plane", criticalities: Sequence["CurveCriticality"], name: str, axis: Axis
     ) -> list[Filled]:
-        """Curves of generalised Hopf points over the third parameter, as variables of the file."""
+        """Curves of generalised Hopf points over the third parameter `name`, as variables of the file."""
         from ...determinant.parameter_plane import PlaneAxis
         from ...solve.hopf.bautin_curves import BautinCurve, BautinSpace, bautin_curve, lies_on, on_curve
 

@@ -1,6 +1,7 @@
-"""Curves and cycles of a phase diagram as variables of its file, declared in `results.layouts`.
+"""Conversion of the curves and cycles of a phase diagram into variables of the result file.
 
-In every function of curves, `plane` is (parameter along a row, parameter across the rows).
+`rodsweep.results.layouts` declares the variables. In every function, the argument `plane` is a pair of names:
+(parameter that varies along each row, parameter that differs between rows).
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 
 
 def curve_record(found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **more: Any) -> list[Filled]:
-    """Boundary curves and their folds; more: variables of the partial beam limit."""
+    """Variables of the boundary curves and of their folds; more: values of the partial beam limit by name."""
     points = []
     folds = []
     for number, curve in enumerate(found.curves, 1):
@@ -52,7 +53,10 @@ def curve_record(found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **m
 def criticality_record(
     criticalities: Sequence["CurveCriticality"], plane: tuple[str, str], gamma1: float
 ) -> list[Filled]:
-    """Criticality of each curve, in the order of the curves, for rods with this gamma1."""
+    """Variables of the criticality along each boundary curve, and of the generalised Hopf points.
+
+    criticalities: in the order of the boundary curves. gamma1: axial drag of all rods.
+    """
     rows = []
     start = 0
     for number, curve in enumerate(criticalities, 1):
@@ -69,7 +73,7 @@ def criticality_record(
 
 
 def bautin_curve_record(curves: Sequence["BautinCurve"], plane: tuple[str, str], third: str) -> list[Filled]:
-    """Curves of generalised Hopf points over a third parameter."""
+    """Variables of the curves of generalised Hopf points over the third parameter `third`."""
     rows = [
         _located(point, (*plane, third), curve=number, **reasons)
         for number, curve in enumerate(curves, 1)
@@ -80,7 +84,7 @@ def bautin_curve_record(curves: Sequence["BautinCurve"], plane: tuple[str, str],
 
 
 def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) -> list[Filled]:
-    """Curves of folds and torus points, including the Hopf points at curve ends."""
+    """Variables of the curves of folds and torus points of cycles, with the Hopf points at their ends."""
     rows: list[tuple[Any, ...]] = []
     for number, curve in enumerate(found.curves, 1):
         first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing)
@@ -95,7 +99,7 @@ def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) 
 
 
 def _located(point: Any, names: Sequence[str], **beside: Any) -> tuple[Any, ...]:
-    """A point with values and errors by parameter, and further variables `beside`."""
+    """(object with a point's parameter values and errors by name and with the values `beside`, the point)."""
     errors = {f"{name}_error": error for name, error in zip(names, point.errors, strict=True)}
     return SimpleNamespace(**dict(zip(names, point.values, strict=True)), **errors, **beside), point
 
@@ -103,7 +107,10 @@ def _located(point: Any, names: Sequence[str], **beside: Any) -> tuple[Any, ...]
 def _columns(
     declared: Mapping[str, Variable], dimension: str, prefix: str, rows: Iterable[tuple[Any, ...]]
 ) -> dict[str, Any]:
-    """Variables with a name prefix along a dimension, as lists; each row has the outcomes of one item."""
+    """Values of the declared variables along a dimension whose names begin with a prefix.
+
+    rows: for each item along the dimension, the objects that have its values as attributes.
+    """
     along = [v for v in declared.values() if v.extra == (dimension,) and v.name.startswith(prefix)]
     return listed(along, [recorded(along, *row, prefix=prefix) for row in rows])
 
@@ -113,9 +120,9 @@ def _filled(declared: Mapping[str, Variable], values: Mapping[str, Any]) -> list
 
 
 def _reasons(ends: Sequence[int], count: int) -> list[dict[str, int]]:
-    """Reasons why a curve ends before and behind each of its points, 0 where the curve goes on.
+    """For each of the `count` points of a curve, the reasons why the curve starts or ends there; 0 for none.
 
-    ends: reasons for the ends at the first and the last point, which may be the same point.
+    ends: (reason at the first point, reason at the last point).
     """
     reasons = [{"start": 0, "end": 0} for _ in range(count)]
     reasons[0]["start"], reasons[-1]["end"] = ends
@@ -123,7 +130,10 @@ def _reasons(ends: Sequence[int], count: int) -> list[dict[str, int]]:
 
 
 def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
-    """Cycles of a row as variables of the file, with time and status; line: the row's parameter."""
+    """Variables of the cycles of a row: special points, stable states, time and status.
+
+    line: parameter that varies along the row.
+    """
     variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL,)]
     own = {f"cycle_special_{line}": "at", "cycle_special_tip_y_max_error": "size_error"}
     rows = [recorded(variables, point, prefix="cycle_special_", names=own) for point in result.special]
@@ -133,7 +143,10 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
 
 
 def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
-    """Folds and torus points of all finite rows in the file. rows: value of every row, (rows,)."""
+    """Folds and torus points stored in the file, of all rows with a finite value.
+
+    line: parameter that varies along the rows. rows: value of every row, (rows,).
+    """
     from ...solve.branch.special.boundaries import FOLLOWED_KINDS, RowSpecial
     from ...solve.branch.special.point import SpecialKind
 
@@ -154,7 +167,10 @@ def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
 
 
 def unstored_specials(view: View, finite: np.ndarray) -> int:
-    """Number of special points missing from full lists of finite rows, (rows,); no curve starts there."""
+    """Number of special points that the full lists of rows lack; no curve can start at such a point.
+
+    finite: whether the value of each row is finite, (rows,).
+    """
     stored = np.count_nonzero(view.by_point("cycle_special_kind"), axis=1)
     lacking = view.variables["cycle_special_count"].ravel() - stored
     return int(lacking[finite].clip(min=0).sum())
@@ -166,7 +182,9 @@ def with_hopf_ends(
     criticalities: "Sequence[CurveCriticality]",
     unstored: int,
 ) -> "Boundaries[CycleCurve]":
-    """Curves whose ends at generalised Hopf points are replaced by the points located on Hopf curves."""
+    """Curves of cycles whose ends at generalised Hopf points are replaced by the more accurate points that
+    were located on Hopf curves. unstored: number of special points without a curve.
+    """
     from ...solve.branch.special.cycle_curves import ending_at
 
     known = [point for curve in criticalities for point in curve.points]

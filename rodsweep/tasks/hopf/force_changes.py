@@ -1,8 +1,8 @@
-"""Forces at which the rods of a file of spectra start to oscillate, become unstable, or stable again.
+"""Forces at which the rods of a file of spectra start to oscillate, become unstable, or become stable again.
 
-They are computed from the stored eigenvalues once all points are done, and stored in the file for `show` and
-figures. A change takes about 30 us: 1 % of the time of spectra followed along 512 forces a line, 3 to 5 %
-along 50.
+The forces are computed from the stored eigenvalues after all points are solved, and stored in the file for
+`show` and figures. A change takes about 30 us: 1 % of the time of spectra followed along lines of 512 forces,
+3 to 5 % along lines of 50.
 """
 
 from collections.abc import Iterator, Mapping
@@ -22,15 +22,15 @@ from ...results.layouts.variables import Filled
 from ...sweep.points.points import Points, lines_over
 
 MAX_POINTS_IN_MEMORY = 1 << 13
-"""Maximum number of points per read of eigenvalues; limits memory for large files."""
+"""Maximum number of points whose eigenvalues are read at once; this limits memory for large files."""
 
 
 @dataclass(frozen=True, slots=True)
 class ForceLines:
-    """Lines of points at the same forces.
+    """Lines over F through the points of a file; all lines have the same forces.
 
-    fixed: k1, k2 and gamma3 of each line, (lines, 3). F: increasing, (n,). eigenvalues: leading first,
-    (lines, n, modes), in 1/tau2. unstable: number of growing modes, -1 if unknown, (lines, n).
+    fixed: k1, k2 and gamma3 of each line, (lines, 3). F: forces, increasing, (n,). eigenvalues: in 1/tau2,
+    leading first, (lines, n, modes). unstable: number of growing modes, -1 if unknown, (lines, n).
     """
 
     fixed: Array
@@ -40,7 +40,7 @@ class ForceLines:
 
 
 def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-    """The changes on all lines over F as variables of the file; empty if F does not vary.
+    """Changes of stability on all lines over F, as variables of the file; empty if F does not vary.
 
     values: variables of the points by name, shape (points, own dimensions), arrays or HDF5 datasets.
     """
@@ -55,7 +55,7 @@ def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[Filled, ..
 
 
 def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
-    """Lines of a grid, in groups of at most MAX_POINTS_IN_MEMORY points."""
+    """Yields the lines over F of a grid, in groups of about MAX_POINTS_IN_MEMORY points."""
     along = points.names.index("F")
     others = [axis for axis in range(len(points.names)) if axis != along]
     widest = max(others, key=lambda axis: points.shape[axis])
@@ -75,7 +75,7 @@ def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
 
 
 def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
-    """The lines over F among the points of a list, yielded separately."""
+    """Yields the lines over F among the points of a list, one line at a time."""
     w = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(points.count, -1)
     unstable = values["unstable_count"][...].ravel()
     for line in lines_over(points.by_name, "F"):
@@ -88,7 +88,7 @@ def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
 
 
 def _changes_on(lines: ForceLines) -> Iterator[dict[str, float]]:
-    """The changes on lines as variables, line after line."""
+    """Yields the changes of stability on some lines, line after line, as values of variables by name."""
     from ...determinant.stability_changes import onset_between, stability_change_between
 
     F = lines.F.tolist()
@@ -114,20 +114,27 @@ def _changes_on(lines: ForceLines) -> Iterator[dict[str, float]]:
             yield {f"change_{name}": value for name, value in named.items()}
 
 
-Steps = NDArray[np.int64]
-"""Pairs of neighbouring points, (steps, 3): line, point before, point behind."""
+NeighbourPairs = NDArray[np.int64]
+"""Pairs of neighbouring points on lines, (steps, 3): (line, index of the first, index of the second
+point)."""
 
 
-def _sign_changes(w: Complex) -> Steps:
-    """Pairs of neighbours with leading growth rates of opposite sign; w: (lines, n, modes)."""
+def _sign_changes(w: Complex) -> NeighbourPairs:
+    """Pairs of neighbouring points between which the leading growth rate changes its sign.
+
+    w: eigenvalues, (lines, n, modes).
+    """
     growing = w[..., 0].real > 0
     line, before, behind = _neighbours(np.isfinite(w[..., 0].real))
     differ = growing[line, before] != growing[line, behind]
     return np.stack([line, before, behind], axis=-1)[differ]
 
 
-def _new_pairs(w: Complex) -> Steps:
-    """Pairs of two leading real eigenvalues followed by a leading complex pair; w: (lines, n, modes)."""
+def _new_pairs(w: Complex) -> NeighbourPairs:
+    """Pairs of neighbouring points between which two leading real eigenvalues become a complex pair.
+
+    w: eigenvalues, (lines, n, modes).
+    """
     if w.shape[-1] < 2:
         return np.empty((0, 3), np.int64)
     real = (w[..., :2].imag == 0).all(axis=-1)
@@ -137,14 +144,17 @@ def _new_pairs(w: Complex) -> Steps:
 
 
 def _neighbours(known: NDArray[np.bool_]) -> tuple[NDArray[np.int64], ...]:
-    """(line, point before, point behind) of all neighbours among the known points; known: (lines, n)."""
+    """(lines, indices of first points, indices of second points) of neighbouring points with eigenvalues.
+
+    known: whether a point has eigenvalues, (lines, n).
+    """
     line, point = np.nonzero(known)
     together = line[1:] == line[:-1]
     return line[1:][together], point[:-1][together], point[1:][together]
 
 
-def _by_line(steps: Steps) -> dict[int, list[tuple[int, int]]]:
-    """Pairs of neighbouring points by line."""
+def _by_line(steps: NeighbourPairs) -> dict[int, list[tuple[int, int]]]:
+    """Pairs (index of the first point, index of the second point) by line."""
     found: dict[int, list[tuple[int, int]]] = {}
     for line, before, behind in steps.tolist():
         found.setdefault(line, []).append((before, behind))

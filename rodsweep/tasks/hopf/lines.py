@@ -1,7 +1,7 @@
-"""Hopf points of the straight rods between the points of a file, for figures and for `show`.
+"""Hopf points of the straight rod on lines through the points of a file, for figures and for `show`.
 
-Hopf points depend on the config alone and are stored before any point is solved. Hence they cover all lines
-of the file after a run, an extension or a merge.
+The Hopf points depend on the config alone and are stored before any point is solved. Hence the file has the
+Hopf points of all its lines after a run, an extension or a merge.
 """
 
 from collections import Counter
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class HopfLine:
-    """Rods of a file along a parameter, between two values, with all further parameters fixed."""
+    """Line of rods on which one parameter varies from `start` to `stop` and all others are fixed."""
 
     name: str
     """The parameter that varies."""
@@ -36,7 +36,9 @@ class HopfLine:
     build: Build = STANDARD
 
     def search(self) -> "Transitions | None":
-        """Hopf points on the line; None if the range is empty or the search fails. Needs no PETSc."""
+        """Hopf points on the line; None if the range without crushed rods is empty, or if the search
+        fails.
+        """
         from ...determinant.parameter_path import Path
         from ...solve.changes.along_path import pair_crossings
         from ...solve.changes.unstable_modes import CHANGE_COUNTS
@@ -63,17 +65,17 @@ class HopfLine:
 
 
 def hopf_lines_of(points: Points) -> list[HopfLine]:
-    """Lines through the points, each line once; rods that differ in gamma1 alone share a line."""
+    """Lines through the points of a file, each line once. Rods that differ in gamma1 alone share a line."""
     names = [name for name in HOPF_ALONG if name in points.of_rods]
     return [line for name in names for line in _lines_over(points, name, names)]
 
 
 def _lines_over(points: Points, name: str, names: Sequence[str]) -> Iterator[HopfLine]:
-    """Lines over a parameter with at least two finite values; lines over F begin at 0.
+    """Yields the lines over a parameter with at least two finite values.
 
-    The rod may already oscillate below the smallest force of the points; the Hopf point below is stored too.
-    Arms with equal parameters and different profiles have no line, because a file cannot distinguish such
-    arms.
+    names: all parameters of the lines. Lines over F begin at 0, because the Hopf point may lie below the
+    smallest force of the points. Arms with equal parameters and different profiles have no line, because a
+    file cannot distinguish such arms.
     """
     columns = {n: points.of_rods[n] for n in names}
     others = [n for n in names if n != name]
@@ -106,7 +108,10 @@ def _ends(values: np.ndarray) -> tuple[float, float]:
 def hopf_variables(
     names: Collection[str], lines: Sequence[HopfLine], found: "Sequence[Transitions | None]"
 ) -> tuple[Filled, ...]:
-    """Hopf points of all lines, line after line, as variables of a file with these parameters."""
+    """Hopf points of all lines, line after line, as variables of a file.
+
+    names: parameters of the file. found: result of the search on each line.
+    """
     known = [(line, each) for line, each in zip(lines, found, strict=True) if each is not None]
     rows = [_row(line, crossing) for line, each in known for crossing in each.crossings]
     proved = sum(each.proved_to_the_end for _, each in known)
@@ -118,7 +123,7 @@ def hopf_variables(
 
 
 def _row(line: HopfLine, crossing: "Crossing") -> dict[str, Any]:
-    """A Hopf point as variables of the file."""
+    """Variables of the file for one Hopf point on a line."""
     rod = line.fixed | {line.name: crossing.at}
     return {f"hopf_{name}": rod[name] for name in HOPF_ALONG if name in rod} | {
         "hopf_along": HOPF_ALONG.index(line.name),

@@ -1,1 +1,1 @@
-"""The job of a config, the plan of the file, and unforeseen exceptions."""
+"""The job of a config, the plan of its result file, and the treatment of unforeseen exceptions."""

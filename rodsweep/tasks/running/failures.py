@@ -1,4 +1,4 @@
-"""Reasons why points failed, each with its first point, for the last lines of a run and for the file."""
+"""Reasons why points failed, each with one example, for the last lines of a run and for the result file."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -18,18 +18,19 @@ def parameters_in_words(values: Mapping[str, float]) -> str:
 
 @dataclass(frozen=True, slots=True)
 class FailureReasons:
-    """The first point of each distinct reason, in words, by the reason without numbers.
+    """Distinct reasons why points failed, each with the first point that failed for this reason.
 
-    where: a point's parameters in words, from the point's index.
+    where: function from the index of a point to its parameters in words. examples: point, status and message
+    in words, by the reason with all numbers removed.
     """
 
     where: Callable[[int], str]
     examples: dict[str, str] = field(default_factory=dict)
 
     def add(self, index: Indices, result: Any) -> list[str]:
-        """Notes the reasons of failed points: of one outcome, or of a stretch with n indices, (n,).
+        """Adds the reasons of failed points; returns the examples of reasons that are new.
 
-        Returns the new ones, a line each.
+        index: of one point with its outcome, or of the n points of a stretch, (n,), with their result.
         """
         new = []
         for at, outcome in _failed(index, result):
@@ -43,7 +44,7 @@ class FailureReasons:
 
 
 def _failed(index: Indices, result: Any) -> Iterable[tuple[int, str]]:
-    """Yields (index, status and message) of failed points."""
+    """Yields (index, status and message in words) of the failed points of a result."""
     if isinstance(result, StretchResult):
         for i in np.flatnonzero(~result.succeeded):
             yield int(np.asarray(index)[i]), result.message(int(i))

@@ -19,15 +19,16 @@ from ...solve.exclusive import solving
 from ...sweep.points.ranges import Shard
 from .job import Job, plan_of
 
-Stored = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
-"""Dimensions, values and attributes of a variable of a file."""
+StoredVariable = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
+"""Variable of a file: (dimensions, values, attributes)."""
 
 
 @solving
 def solved_view(job: Job) -> View:
-    """The solved points of a job without chains and joint variables, as `show` reads them from a file.
+    """Solves all points of a job; returns the results in the form in which `show` reads a file.
 
-    Raises EnvironmentIncomplete if this process cannot solve.
+    The job has no chains and no variables that depend on all points. Raises EnvironmentIncomplete if PETSc or
+    SLEPc is missing.
     """
     require_solvers()
     started = now()
@@ -36,7 +37,8 @@ def solved_view(job: Job) -> View:
     solver.warm_up()
     count = job.points.count
     flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in plan.layout.empty_point.items()}
-    with blas().limit(limits=1, user_api="blas"):  # as in the command: threads change the order of sums
+    # One thread, as in the command: threads change the order of sums.
+    with blas_pool().limit(limits=1, user_api="blas"):
         for index in range(count):
             record = solver.record(index, solver.solve(index))
             for name, array in flat.items():
@@ -51,12 +53,13 @@ def solved_view(job: Job) -> View:
 def view_in_memory(
     job: Job, plan: Plan, values: Mapping[str, np.ndarray], filled: Sequence[Filled] = ()
 ) -> View:
-    """Solved points in the form in which `show` reads a file, with the attributes `task` and
-    `config_resolved` only.
+    """Results in the form in which `show` reads a file, with the attributes `task` and `config_resolved`
+    only.
 
-    values: variables of the layout, shape (points, own dimensions). filled: further variables.
+    values: variables of the layout by name, shape (points, own dimensions). filled: variables of the file
+    that do not belong to single points.
     """
-    coordinates, variables = stored(plan, values, filled)
+    coordinates, variables = stored_variables(plan, values, filled)
     return View(
         Path(job.name),
         {"task": job.config.task, "config_resolved": json.dumps(plan.config)},
@@ -69,12 +72,12 @@ def view_in_memory(
     )
 
 
-def stored(
+def stored_variables(
     plan: Plan, values: Mapping[str, np.ndarray], filled: Sequence[Filled]
-) -> tuple[dict[str, Stored], dict[str, Stored]]:
-    """(coordinates, variables) of the file of a plan with the given values, as for `view_in_memory`."""
+) -> tuple[dict[str, StoredVariable], dict[str, StoredVariable]]:
+    """(coordinates, variables) of the file of a plan, by name; values and filled as for `view_in_memory`."""
     coordinates = _coordinates(plan)
-    variables: dict[str, Stored] = {}
+    variables: dict[str, StoredVariable] = {}
     for variable in plan.layout.variables:
         dimensions = (*plan.dimensions, *variable.extra)
         variables[variable.name] = (dimensions, values[variable.name], variable.attributes)
@@ -87,10 +90,10 @@ def stored(
     return coordinates, variables
 
 
-def _coordinates(plan: Plan) -> dict[str, Stored]:
-    """Coordinates of the points and of the other dimensions."""
+def _coordinates(plan: Plan) -> dict[str, StoredVariable]:
+    """Coordinates of the points and of all further dimensions of a plan, by name."""
     points = plan.points
-    found: dict[str, Stored] = {}
+    found: dict[str, StoredVariable] = {}
     if not points.axes:
         rows = np.arange(1, points.count + 1, dtype="<i4")
         found["point"] = (("point",), rows, dimension_attributes("point"))
@@ -106,13 +109,13 @@ def _coordinates(plan: Plan) -> dict[str, Stored]:
 
 @cache
 def blas_kernels() -> str:
-    """The BLAS kernels of this process."""
+    """Names of the BLAS kernels that this process uses."""
     from ...solve.backend.blas_kernel import blas as kernel
 
     return kernel()
 
 
 @cache
-def blas() -> ThreadpoolController:
-    """The BLAS libraries of this process. PETSc must have loaded a BLAS before."""
+def blas_pool() -> ThreadpoolController:
+    """Controller of the threads of all loaded BLAS libraries. PETSc must be loaded before the first call."""
     return ThreadpoolController()

@@ -1,4 +1,6 @@
-"""The job of a config file, everything a run needs except PETSc and MPI; and the plan of its result file."""
+"""The job of a config, which is all that a run needs except PETSc and MPI, and the plan of its result
+file.
+"""
 
 import os
 from collections.abc import Sequence
@@ -28,17 +30,17 @@ from ..arm.points import SkippingSolver, sharing_equal_rods
 from ..arm.validity import ArmValidity
 from ..protocol import Solver, Task
 
-LARGEST_FILE = 2**63 - 1
-"""Maximum size of a file in bytes, and the largest number of a point."""
-BYTES_A_VALUE = 40
-"""Memory per value of an axis, in bytes, while a run is set up: four arrays; 33 to 36 were measured."""
-LARGEST_RECORD = 100_000_000
-"""Maximum size of a point's results in bytes; the results are held in memory and written at once."""
+MAX_FILE_BYTES = 2**63 - 1
+"""Maximum size of a file in bytes; also the maximum number of points."""
+BYTES_PER_VALUE = 40
+"""Memory per value of an axis while a run is set up, in bytes: four arrays; 33 to 36 bytes were measured."""
+MAX_RECORD_BYTES = 100_000_000
+"""Maximum size of the results of one point in bytes: they are held in memory and written at once."""
 
 
 @dataclass(frozen=True)
 class Job:
-    """A validated config with points and task."""
+    """A validated config with its points, its task and the layout of its results."""
 
     path: Path
     config: Config
@@ -47,9 +49,9 @@ class Job:
     points: Points
     task: Task
     resolved: dict[str, Any]
-    """The config with all defaults."""
+    """The config as a tree of keys with all defaults."""
     layout: Layout
-    """Variables of the results."""
+    """Variables of the results of a point."""
 
     @property
     def text(self) -> str:
@@ -78,7 +80,9 @@ class Job:
         return SkippingSolver(once, coverage, self.points.failures, self.layout).solver()
 
     def _in_si(self, solver: Solver) -> Solver:
-        """The solver, with results in SI units and the validity of the model added to every record."""
+        """The solver, with values in SI units and the validity of the model added to the results of a
+        point.
+        """
         layout = LAYOUTS[self.config.task](self.resolved)
         quantities = at_points(self.quantities, self.points)
         validity = ArmValidity(self.config, self.points, solver.statuses)
@@ -98,48 +102,57 @@ class Job:
         )
 
 
-def memory() -> int:
+def machine_memory() -> int:
     """Memory of this machine in bytes."""
     return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
 
 
 def make_job(path: Path, overrides: tuple[str, ...]) -> Job:
-    """The job of a config file; InputError for all errors that can be found before the run."""
+    """The job of a config file; InputError for every error that can be detected before the run.
+
+    overrides: texts KEY=VALUE that override keys of the config.
+    """
     return job_of(path, *load_config(path, overrides))
 
 
 def job_of(
     path: Path, config: Config, source: str | dict[str, Any], flutter: FlutterForces | None = None
 ) -> Job:
-    """The job of a config and its source; a file of points is relative to the folder of `path`."""
+    """The job of a config. A file of points is relative to the folder of the config file `path`.
+
+    source: the config as the user wrote it. flutter: flutter forces of rods with a load relative to flutter;
+    None to solve for these forces. Raises InputError if the results do not fit into memory or a file.
+    """
     values = sum(axis.size for axis in config.parameters.axes.values())  # checked before arrays are made
-    if values * BYTES_A_VALUE > memory():
+    if values * BYTES_PER_VALUE > machine_memory():
         raise InputError(
             f"{path}: parameters make {grid_size(config):.6g} points, whose axes of {values:.6g} values take "
-            f"{values * BYTES_A_VALUE / 1e9:.3g} GB, more than the {memory() / 1e9:.3g} GB of memory of this "
+            f"{values * BYTES_PER_VALUE / 1e9:.3g} GB, more than the {machine_memory() / 1e9:.3g} GB of "
+            "memory of this "
             "machine; use fewer values"
         )
     count = grid_size(config)
     resolved = canonical(config)
     layout = layout_of(resolved)
     each = layout.bytes_per_point
-    if count * each > LARGEST_FILE:
+    if count * each > MAX_FILE_BYTES:
         raise InputError(
             f"{path}: parameters make a grid of {count:.6g} points, whose results take "
-            f"{count * each:.3g} bytes, more than a file can have ({LARGEST_FILE:.3g}); use "
+            f"{count * each:.3g} bytes, more than a file can have ({MAX_FILE_BYTES:.3g}); use "
             "fewer values"
         )
-    if each > LARGEST_RECORD:
+    if each > MAX_RECORD_BYTES:
         raise InputError(
             f"{path}: the results of one point take {each / 1e9:.3g} GB, more than the "
-            f"{LARGEST_RECORD / 1e9:.3g} GB that a record may have; use fewer values"
+            f"{MAX_RECORD_BYTES / 1e9:.3g} GB allowed; reduce the options of {config.task} that set how many "
+            "values are stored"
         )
     points = replace(points_of(config, path.parent, flutter), build=config.build)
     return Job(path, config, source, points, TASKS[config.task](config, points), resolved, layout)
 
 
 def plan_without_solver(config: Config, points: Points) -> Plan:
-    """Plan of a config on given points, without attributes and flags."""
+    """Plan of the result file of a config on given points, without attributes and status flags."""
     resolved = canonical(config)
     task = TASKS[config.task](config, replace(points, build=config.build))
     return _plan(task, resolved, layout_of(resolved))
@@ -161,7 +174,7 @@ def _plan(task: Task, resolved: dict[str, Any], layout: Layout) -> Plan:
 
 
 def plan_in_memory(job: Job, statuses: Sequence[PointStatus]) -> Plan:
-    """Plan of the results of a job, without the attributes of a file."""
+    """Plan of the results of a job with these statuses, without the attributes of a file."""
     return replace(
         _plan(job.task, job.resolved, job.layout),
         quantities=job.quantities,
@@ -170,13 +183,16 @@ def plan_in_memory(job: Job, statuses: Sequence[PointStatus]) -> Plan:
 
 
 def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
-    """Plan of the file that a run of the job, with these BLAS kernels, creates or continues."""
+    """Plan of the result file that a run of the job creates or continues.
+
+    shard: part of the points that the run solves. kernels: BLAS kernels of all ranks.
+    """
     attributes = attributes_of(job, solver.statuses, kernels) | {"shard": str(shard) if shard.of > 1 else ""}
     return replace(plan_in_memory(job, solver.statuses), attributes=attributes)
 
 
 def attributes_of(job: Job, statuses: Sequence[PointStatus], kernels: str) -> dict[str, Any]:
-    """Attributes of a file with all points of a job, computed by these BLAS kernels."""
+    """Attributes of a result file with all points of a job; kernels: BLAS kernels that compute the points."""
     from ...solve.backend import petsc
 
     attributes = {

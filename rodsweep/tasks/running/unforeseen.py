@@ -1,6 +1,7 @@
-"""Unforeseen exceptions, which are bugs: the point gets the status `failed`, and the sweep continues.
+"""Treatment of unforeseen exceptions, which are bugs: the point gets the status `failed`, the sweep
+continues.
 
-Refusals and errors of the operating system are no bugs and are not caught: they concern every point.
+Refusals and errors of the operating system are no bugs and are not caught, because they concern every point.
 """
 
 import os
@@ -25,41 +26,43 @@ from ...sweep.points.chains import State
 from ...sweep.points.stretches import StretchResult
 from ..protocol import Solver
 
-PASSED_ON = (Refusal, OSError)
+RUN_ENDING_EXCEPTIONS = (Refusal, OSError)
 """Exceptions that concern the whole run, not a point: the run ends with a sentence."""
-MAX_NOTES = 1000
-"""Maximum number of exceptions written to the log per rank; a larger number would repeat one bug."""
-FAILED = "failed"
+MAX_LOGGED_EXCEPTIONS = 1000
+"""Maximum number of exceptions that a rank writes into the log; more exceptions would repeat the same bug."""
+FAILED_STATUS = "failed"
 """Status, in every task, of a point with an unforeseen exception in the solver."""
-Note = Callable[[Sequence[int], Exception], None]
-"""Called with the flat indices of the failed points and their exception."""
+PointNote = Callable[[Sequence[int], Exception], None]
+"""Function called with the flat indices of the points that a solver solved together, and its exception."""
 UnitNote = Callable[[str, Exception], None]
-"""Called with the name of a unit of work and its exception."""
+"""Function called with the name of a unit of joint work and the exception of its solver."""
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
-    """A point with a finished record: every variable of the layout by name."""
+class RecordedOutcome:
+    """Outcome of a point with the values of all variables of the layout by name."""
 
     status: PointStatus
     message: str
     values: dict[str, Any]
 
 
-def guarded(solver: Solver, layout: Layout, note: Note) -> Solver:
-    """A solver that catches unforeseen exceptions, calls `note`, and gives the point fill values.
+def guarded_solver(solver: Solver, layout: Layout, note: PointNote) -> Solver:
+    """A solver that catches unforeseen exceptions, calls `note`, and gives a failed point fill values.
 
-    After an exception in a stretch, each point of the stretch is solved alone, so that only failing points
-    lose spectra.
+    After an exception in a stretch, each point of the stretch is solved alone, so that only the points that
+    fail alone have no spectrum.
     """
     return _Guard(solver, layout, note).solver()
 
 
 @dataclass(frozen=True, slots=True)
 class _Guard:
+    """Makes the guarded solver of `guarded_solver` from the solver `inner`."""
+
     inner: Solver
     layout: Layout
-    note: Note
+    note: PointNote
 
     def solver(self) -> Solver:
         """The guarded solver."""
@@ -67,30 +70,30 @@ class _Guard:
 
     def _outcome(
         self, index: int, start: State, solve: Callable[[], tuple[Any, State]]
-    ) -> tuple[Outcome, State]:
-        """(outcome, state for the neighbour) of a point whose solve or record may raise an exception."""
+    ) -> tuple[RecordedOutcome, State]:
+        """(outcome, state for the next point) of a point whose solve or record may raise an exception."""
         began = time.perf_counter()
         try:
             found, state = solve()
-            return Outcome(found.status, found.message, self.inner.record(index, found)), state
-        except PASSED_ON:
+            return RecordedOutcome(found.status, found.message, self.inner.record(index, found)), state
+        except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:
             forget_all()
             self.note([index], error)
             return self._failed(error, time.perf_counter() - began), None
 
-    def _failed(self, error: Exception, seconds: float) -> Outcome:
+    def _failed(self, error: Exception, seconds: float) -> RecordedOutcome:
         """Outcome of a failed point, with the fill value of every variable."""
-        status = next(status for status in self.inner.statuses if status.name == FAILED)
+        status = next(status for status in self.inner.statuses if status.name == FAILED_STATUS)
         values = {SECONDS.name: seconds, STATUS.name: int(status)}
-        return Outcome(status, describe_unforeseen(error), self.layout.empty_point | values)
+        return RecordedOutcome(status, describe_unforeseen(error), self.layout.empty_point | values)
 
     def _together(self, indices: NDArray[np.int64]) -> StretchResult:
         assert self.inner.stretched is not None
         try:
             return self.inner.stretched[1](indices)
-        except PASSED_ON:
+        except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:
             forget_all()
@@ -110,7 +113,7 @@ class _Guard:
 
 
 def describe_unforeseen(error: Exception) -> str:
-    """An unforeseen exception in one line: class, message, and the place where it was raised."""
+    """An unforeseen exception in one line: class, message, and the line of code that raised the exception."""
     said = " ".join(str(error).split())
     place = traceback.extract_tb(error.__traceback__)[-1]
     where = f"{Path(place.filename).name}, line {place.lineno}, in {place.name}"
@@ -118,36 +121,40 @@ def describe_unforeseen(error: Exception) -> str:
 
 
 def log_file(output: Path) -> Path:
-    """File beside a result with the tracebacks of failed points."""
+    """Path of the log with the tracebacks of failed points, beside the result file `output`."""
     return output.with_name(output.name + ".log")
 
 
-class Log:
-    """Tracebacks of a rank's points, appended to a file beside the result that all ranks share."""
+class TracebackLog:
+    """Log of unforeseen exceptions: a file beside the result to which all ranks append tracebacks."""
 
     def __init__(self, output: Path, rank: int, where: Callable[[int], str], strict: bool = False):
-        """where: the parameters of a point in words, from the point's index. strict: whether an exception is
-        raised again, with its place, after it is written.
+        """output: the result file. where: function from the index of a point to its parameters in words.
+        strict: whether an exception is raised again after it is written.
         """
         self.strict = strict
         self.path = log_file(output)
         self.rank = rank
         self.where = where
         self.count = 0
-        """Number of exceptions on this rank."""
+        """Number of unforeseen exceptions on this rank."""
         self._known: set[str] = set()
 
     def __call__(self, indices: Sequence[int], error: Exception) -> None:
-        """Appends a traceback, or only the last line of a traceback that this rank has written before."""
+        """Appends the exception of points, named by their parameters, to the log."""
         points = self.where(indices[0])
         if len(indices) > 1:
             points = f"{len(indices)} points together, from {points} to {self.where(indices[-1])}"
         self.note(points, error)
 
     def note(self, place: str, error: Exception) -> None:
-        """Appends a traceback under the name of a place."""
+        """Appends the exception of a point or a unit of work to the log.
+
+        place: name of the point or unit. Of a traceback that this rank has written before, only the last line
+        is appended.
+        """
         self.count += 1
-        if self.count <= MAX_NOTES:
+        if self.count <= MAX_LOGGED_EXCEPTIONS:
             self._write(place, error)
         if self.strict:
             error.add_note(f"at {place}")

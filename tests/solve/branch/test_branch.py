@@ -254,7 +254,7 @@ def test_branch_that_cannot_be_followed_says_where_and_why(monkeypatch):
     assert found.status == BranchStatus.stopped
     assert first.special[-1].kind == SpecialKind.end
     assert first.special[-1].reason == EndReason.no_cycle_found
-    said = "no cycle is found beyond: there is no cycle near on the branch at F = "
+    said = "no further cycle of the branch is found: there is no cycle near on the branch at F = "
     assert f"branch 1: {said}{first.points[-1].at:.9g}; branch 2: {said}" in found.message
     assert first.points[-1].at > 75
     assert second.hopf == 1  # the other end is tried by itself
@@ -269,12 +269,12 @@ def test_list_that_is_full_says_so():
 
 def test_search_that_fails_is_a_status(monkeypatch):
     def failing(*_):
-        raise Unsolvable("no a-priori bound on the eigenvalues applies")
+        raise Unsolvable("no a-priori bound on the eigenvalues applies to this rod")
 
     monkeypatch.setattr(branches, "pair_crossings", failing)
     found = solve_branches(SHORT, BranchRequest("F", 0.0, 200.0, 1e-7, True, 500, 50))
     assert found.status == BranchStatus.failed
-    assert found.message == "no a-priori bound on the eigenvalues applies"
+    assert found.message == "no a-priori bound on the eigenvalues applies to this rod"
 
 
 def test_place_of_a_long_solve_says_how_far_it_is(monkeypatch):

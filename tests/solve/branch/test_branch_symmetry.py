@@ -36,7 +36,7 @@ from rodsweep.solve.branch.symmetry import (
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.orbit.matrix.right_sides import equations
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.tasks.branch import record
+from rodsweep.tasks.branch import branch_values
 
 ROUGH, STOP = 1e-3, 20.5
 """Accuracy of the branches; special points are located to 1e-5 here, which takes a tenth of the time."""
@@ -176,7 +176,7 @@ def test_a_multiplier_that_passes_minus_one_is_told_by_the_symmetry(has, kind):
 
 def test_the_file_says_which_branches_meet(symmetric, asymmetric):
     found = BranchesOfRod(status=BranchStatus.ok, curves=(symmetric, asymmetric))
-    values = record(found, "F", 200, 8)
+    values = branch_values(found, "F", 200, 8)
     assert values["branch_count"] == 2
     assert values["special_meets"][:7] == [-1, 2, -1, 1, -1, -1, -1]
     assert values["special_branch"][:6] == [1, 1, 1, 2, 2, 2]

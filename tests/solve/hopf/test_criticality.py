@@ -31,7 +31,7 @@ from rodsweep.solve.hopf.criticality import (
 from rodsweep.solve.hopf.normal_form import accurate_normal_form, normal_form
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import Unsolvable
-from rodsweep.tasks.criticality import record
+from rodsweep.tasks.criticality import criticality_values
 from rodsweep.tasks.running.job import make_job
 
 INF = math.inf
@@ -257,13 +257,13 @@ def test_hopf_point_that_fails_does_not_lose_the_others(monkeypatch):
 
 def test_search_that_fails_is_a_status(monkeypatch):
     def lost(*_, **__):
-        raise Unsolvable("no a-priori bound on the eigenvalues applies")
+        raise Unsolvable("no a-priori bound on the eigenvalues applies to this rod")
 
     monkeypatch.setattr(criticality, "_hopf_points", lost)
     found = solved(STRETCHABLE)
     assert (found.status, found.message) == (
         CriticalityStatus.failed,
-        "no a-priori bound on the eigenvalues applies",
+        "no a-priori bound on the eigenvalues applies to this rod",
     )
 
 
@@ -371,7 +371,7 @@ def test_record_has_all_variables_of_the_layout_and_no_other(tmp_path):
     config = tmp_path / "c.yaml"
     config.write_text(CONFIG.format(k1=200))
     names = {variable.name for variable in make_job(config, ()).layout.variables}
-    assert set(record(solved(STRETCHABLE), 16)) == names
+    assert set(criticality_values(solved(STRETCHABLE), 16)) == names
 
 
 def test_rod_answers_in_python():

@@ -33,7 +33,7 @@ class PhaseLost(ArithmeticError):
     """The change of phase could not be determined; nodes: number of nodes used."""
 
     def __init__(self, nodes: int):
-        super().__init__("an eigenvalue lies too close to the line, or the box is too large")
+        super().__init__("an eigenvalue lies too close to the contour, or the contour is too long")
         self.nodes = nodes
 
 
@@ -67,7 +67,7 @@ def count_right_of(
     faster. Raises no error: a failed count is a Count without a number, with the reason.
     """
     if not math.isfinite(hull.a):
-        return Count(None, 0, "no a-priori bound on the eigenvalues applies")
+        return Count(None, 0, "no a-priori bound on the eigenvalues applies to this rod")
     if line >= hull.box(max(-line, 0.0))[0]:
         return Count(0, 0)
     known = known[error < ARM_COUNT.sharp * np.abs(known.real - line)]
@@ -82,7 +82,7 @@ def count_right_of(
         return Count(None, 0, str(unresolved))
     number = round(total / math.pi)
     if abs(total / math.pi - number) > COUNT.not_an_integer:
-        return Count(None, nodes, "the winding number is not an integer within rounding")
+        return Count(None, nodes, "the winding number of D is not an integer within rounding errors")
     return Count(number + int((known.real > line).sum()), nodes)
 
 

@@ -33,7 +33,7 @@ from ....model.compiled.compilation import compiled, compiled_for_vectors
 from .elimination import elimination_matrix
 from .minor_rates import (
     C3,
-    ENTRIES,
+    PADDED,
     SM,
     TM,
     TS,
@@ -61,7 +61,7 @@ class IntegrationMatrices(NamedTuple):
 
 @compiled
 def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: IntegrationMatrices) -> Array:
-    """Terms of w/W of the elements of n arms, (n, elements, terms, ENTRIES); no terms where MAX_TERMS are too
+    """Terms of w/W of the elements of n arms, (n, elements, terms, PADDED); no terms where MAX_TERMS are too
     few.
 
     F: forces, (n,). local: `LocalCoefficients`, (6, n, elements, STAGES). lengths: (elements,).
@@ -77,7 +77,7 @@ def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: I
                 for q in range(6):
                     for i in range(ARM_ELEMENTS.stages):
                         coefficients[arm, b, q, i, lane] = local[q, arm, e, i] * lengths[e]
-    terms = np.zeros((n, batches * ARM_ELEMENTS.lanes, ARM_ELEMENTS.max_terms, ENTRIES))
+    terms = np.zeros((n, batches * ARM_ELEMENTS.lanes, ARM_ELEMENTS.max_terms, PADDED))
     most = fill_terms(F, W, coefficients, method, terms)
     if most > ARM_ELEMENTS.max_terms:
         return terms[:, :, :0].copy()
@@ -89,7 +89,7 @@ def fill_terms(F: Array, W: float, coefficients: Array, method: IntegrationMatri
     """Fills the terms of the elements of n arms; returns how many are needed, MAX_TERMS + 1 for more.
 
     F: forces, (n,). coefficients: `LocalCoefficients` times the lengths of the elements, (n, batches, 6,
-    STAGES, LANES). terms: of w/W, (n, batches * LANES, MAX_TERMS, ENTRIES), all 0.
+    STAGES, LANES). terms: of w/W, (n, batches * LANES, MAX_TERMS, PADDED), all 0.
     """
     most = 1
     values = np.empty((MINORS, ARM_ELEMENTS.stages, ARM_ELEMENTS.width))
@@ -135,7 +135,7 @@ def _fill_batch(
     work: tuple[Array, Array],
     terms: Array,
 ) -> int:
-    """Fills the terms of some elements, (LANES, MAX_TERMS, ENTRIES); returns how many are needed.
+    """Fills the terms of some elements, (LANES, MAX_TERMS, PADDED); returns how many are needed.
 
     load: (F, W). local: (6, STAGES, WIDTH). method: the second is `elimination_matrix` in lanes. work: values
     of the minors and their rates, (MINORS, STAGES, WIDTH) each.
@@ -200,7 +200,7 @@ def _integrate_eliminated(turning: Array, rates: Array, out: Array) -> None:
 
 @compiled
 def _end_values(weights: Array, rates: Array, n: int, terms: Array) -> bool:
-    """Fills term n, (LANES, MAX_TERMS, ENTRIES), from rates; whether it is negligible in all elements."""
+    """Fills term n, (LANES, MAX_TERMS, PADDED), from rates; whether it is negligible in all elements."""
     end = np.zeros((MINORS, ARM_ELEMENTS.width))
     _add_ends(weights, rates, end)
     done = True

@@ -14,48 +14,50 @@ def elimination_matrix(F: float, c3: Array, g: Array, Q: Array) -> Array:
     M eliminates theta^m and y^m: M Q integrates the rates of theta^s and y^theta, and M 1 belongs to a start
     value of 1. Q: integrals. c3, g: coefficients times the length of the element.
     """
-    system = np.zeros((ARM_ELEMENTS.stages, ARM_ELEMENTS.stages))
-    right = np.ones((ARM_ELEMENTS.stages, 1 + ARM_ELEMENTS.stages))
-    right[:, 1:] = Q
-    _add_twice_integrated(F, c3, g, Q, system)
-    _solve(system, right)
-    return right
+    stages = ARM_ELEMENTS.stages
+    # The matrix, the right-hand sides 1 and Q, and columns of zeros: rows are whole vector instructions.
+    system = np.zeros((stages, 2 * stages + ARM_ELEMENTS.lanes))
+    row = np.empty(system.shape[1])
+    row[:stages] = g
+    _add_twice_integrated(F, c3, row, Q, system)
+    for i in range(stages):
+        system[i, i] += 1.0
+        system[i, stages] = 1.0
+        system[i, stages + 1 : 2 * stages + 1] = Q[i]
+    _solve(system, row)
+    return system[:, stages : 2 * stages + 1]
 
 
 @compiled_for_vectors
 def _add_twice_integrated(F: float, c3: Array, g: Array, Q: Array, system: Array) -> None:
-    """Adds 1 + F Q c3 Q g to a matrix, (STAGES, STAGES)."""
-    for i in range(ARM_ELEMENTS.stages):
-        system[i, i] += 1.0
-        for k in range(ARM_ELEMENTS.stages):
+    """Adds F Q c3 Q g to the leading (STAGES, STAGES) part of a matrix; g: (STAGES or more,)."""
+    stages = Q.shape[0]  # no constant: the compiler would unroll the inner loop instead of vectorizing it
+    for i in range(stages):
+        for k in range(stages):
             factor = F * Q[i, k] * c3[k]
-            for j in range(ARM_ELEMENTS.stages):
+            for j in range(stages):
                 system[i, j] += factor * Q[k, j] * g[j]
 
 
 @compiled_for_vectors
-def _solve(A: Array, right: Array) -> None:
-    """Solves A x = right, (STAGES, columns), in place, by elimination with pivoting, which destroys A."""
-    columns = right.shape[1]
+def _solve(system: Array, row: Array) -> None:
+    """Solves A x = right in place for a system (A, right), (STAGES, columns), by elimination with pivoting.
+
+    row: (columns,), overwritten.
+    """
+    columns = system.shape[1]
     for column in range(ARM_ELEMENTS.stages):
         pivot = column
         for i in range(column + 1, ARM_ELEMENTS.stages):
-            if abs(A[i, column]) > abs(A[pivot, column]):
+            if abs(system[i, column]) > abs(system[pivot, column]):
                 pivot = i
-        if pivot != column:
-            for j in range(ARM_ELEMENTS.stages):
-                A[column, j], A[pivot, j] = A[pivot, j], A[column, j]
-            for j in range(columns):
-                right[column, j], right[pivot, j] = right[pivot, j], right[column, j]
-        scale = 1 / A[column, column]
-        for j in range(ARM_ELEMENTS.stages):
-            A[column, j] *= scale
+        scale = 1 / system[pivot, column]
         for j in range(columns):
-            right[column, j] *= scale
+            row[j] = system[pivot, j] * scale
+            system[pivot, j] = system[column, j]
         for i in range(ARM_ELEMENTS.stages):
-            if i != column:
-                factor = A[i, column]
-                for j in range(ARM_ELEMENTS.stages):
-                    A[i, j] -= factor * A[column, j]
-                for j in range(columns):
-                    right[i, j] -= factor * right[column, j]
+            factor = system[i, column]
+            for j in range(columns):
+                system[i, j] -= factor * row[j]
+        for j in range(columns):
+            system[column, j] = row[j]

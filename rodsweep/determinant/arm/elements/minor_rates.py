@@ -12,6 +12,8 @@ from .settings import ARM_ELEMENTS, MINORS
 SM, TS, TM, YT, YM = range(MINORS)
 """Places of the minors s^m, theta^s, theta^m, y^theta and y^m."""
 ENTRIES = MINORS * MINORS
+PADDED = 28
+"""Entries of a stored propagator: ENTRIES and zeros, a multiple of 4, the doubles of a vector instruction."""
 NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
 """Places of the `LocalCoefficients`."""
 

@@ -37,7 +37,7 @@ def _method() -> IntegrationMatrices:
 
 
 def element_propagators(F: Sequence[float], local: Array, lengths: Array, W: float) -> Array:
-    """The coefficients of C in powers of w/W, (n, elements, terms, ENTRIES), each C column by column.
+    """The coefficients of C in powers of w/W, (n, elements, terms, PADDED), each C column by column.
 
     F: forces of n arms. local: `LocalCoefficients` at the Gauss points, (6, n, elements, stages). lengths:
     lengths of the elements, in L, (elements,). Raises FloatingPointError if `max_terms` powers do not resolve
@@ -45,5 +45,7 @@ def element_propagators(F: Sequence[float], local: Array, lengths: Array, W: flo
     """
     terms = propagator_terms(np.array(F, float), W, local, lengths, _method())
     if not terms.size:
-        raise FloatingPointError(f"{ARM_ELEMENTS.max_terms} powers of w are too few for these elements")
+        raise FloatingPointError(
+            f"{ARM_ELEMENTS.max_terms} powers of w do not resolve the elements of this arm at |w| = {W:g}"
+        )
     return terms

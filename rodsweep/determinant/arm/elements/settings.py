@@ -54,6 +54,21 @@ class ArmElementSettings(CompiledSettings):
         """Number of initial values of all lanes: the length of the last axis of arrays over elements."""
         return MINORS * self.lanes
 
+    @property
+    def largest_of_terms(self) -> tuple[float, ...]:
+        """The largest |z| at which the first n powers of z are enough, for n = 0, 1, 2, ...
+
+        At |z| = R > 1 the exponents of an element are at most q sqrt(R), q = `longest`. By Cauchy's bound
+        with the best R, term n of the propagator is at most (e q/(2 n))^(2 n) |z|^n. From n on, such a term
+        of the derivative is at most `negligible`, and each term at most half of the one before.
+        """
+        factors = [(math.e * self.longest / (2 * n)) ** 2 for n in range(2, self.max_terms)]
+        sizes = [
+            min((self.negligible / (n * factor**n)) ** (1 / (n - 1)), 1 / (3 * factor))
+            for n, factor in enumerate(factors, start=2)
+        ]
+        return (0.0, 0.0, *sizes)
+
     def __post_init__(self) -> None:
         CompiledSettings.__post_init__(self)
         if self.stages % 4:

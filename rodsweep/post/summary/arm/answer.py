@@ -43,7 +43,11 @@ def _applied(view: View, done: np.ndarray) -> Lines:
     """Lines about points, with the validity of the model."""
     rods = done & (view.variables["status"] < NOT_SLENDER)
     if not rods.any():
-        return ["no rod covers any of these arms"] if done.any() else []
+        return (
+            ["none of these arms corresponds to a rod of the model; the statuses say why"]
+            if done.any()
+            else []
+        )
     validity = {variable.name: view.variables[variable.name][rods] for variable in VALIDITY}
     caveat = validity_sentence(validity)
     inside = rods & (view.variables["model_applies"] != Validity.does_not_apply)

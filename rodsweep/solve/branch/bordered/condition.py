@@ -54,7 +54,7 @@ class BorderCondition:
             report()
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
             if not change <= ORBIT_NEWTON.longest_step:
-                raise Unsolvable("no cycle of the branch is near the start of Newton's method")
+                raise Unsolvable("Newton's method finds no cycle of the branch near its starting point")
             orbit = moved(orbit, self.scale.name, step)
             off = off + change
             rate = change / last if off > change else np.inf  # known from the second step with one matrix on
@@ -70,7 +70,7 @@ class BorderCondition:
             else:
                 step = matrix.correction(orbit, self.border, self.residual(orbit))
                 last = change
-        raise Unsolvable(f"Newton's method on the branch does not converge; last step {change:.0e}")
+        raise Unsolvable(f"Newton's method on the branch does not converge; its last step is {change:.0e}")
 
     def on(
         self, mesh: OrbitMesh, found: ConvergedOrbit, tolerance: float, distance: float = np.inf
@@ -84,11 +84,14 @@ def moved(orbit: Orbit, name: str, change: Array) -> Orbit:
     try:
         form = orbit.form.with_coordinate(name, orbit.form.rod.coordinate(name) + float(change[-1]))
     except (ValueError, ZeroDivisionError) as error:
-        raise Unsolvable(f"the branch leaves the range of possible rods: {error}") from error
+        raise Unsolvable(f"the branch leaves the allowed range of the parameters: {error}") from error
     result = replace(orbit, form=form, values=orbit.values + change[:-1])
     # Where gamma3 passes the least eliminated drag, states have other unknowns and cannot be compared.
     if form.omega_unknown != orbit.form.omega_unknown:
-        raise Unsolvable(f"gamma3 = {form.rod.gamma3:.3g} changes the unknowns of the discretization")
+        raise Unsolvable(
+            f"at gamma3 = {form.rod.gamma3:.3g} Omega becomes an unknown or is eliminated, and cycles cannot "
+            "be followed across"
+        )
     if not result.period > 0:
         raise Unsolvable("Newton's method lost the cycle: its period is not positive")
     return result

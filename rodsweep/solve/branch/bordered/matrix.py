@@ -179,5 +179,5 @@ class BorderedMatrix:
 def bordered(found: ConvergedOrbit) -> BorderedMatrix:
     """The bordered matrix of an orbit solved on a branch; TypeError if the orbit has another matrix."""
     if not isinstance(found.matrix, BorderedMatrix):
-        raise TypeError("the orbit was solved without the parameter as an unknown")
+        raise TypeError("the orbit has no bordered matrix: it was solved without the parameter as an unknown")
     return found.matrix

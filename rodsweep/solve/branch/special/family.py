@@ -129,7 +129,7 @@ class CycleFamily:
                     last, errors=CurveErrors(error / abs(last.at), lasting_tails(last.orbit), mesh)
                 )
             last = fine
-        raise Unsolvable("no allowed mesh reaches the accuracy")
+        raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
 
 
 class _SecantAcross:

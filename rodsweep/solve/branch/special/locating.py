@@ -96,9 +96,9 @@ def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) 
             if not mesh.allowed:
                 break
         if point is None or np.isnan(point.error):
-            raise Unsolvable("no allowed mesh reaches the accuracy")
+            raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
     except Unsolvable as why:
-        return _between(kind, start, end, f"the {kind.name} is not located: {why}")
+        return _between(kind, start, end, f"the special point ({kind.name}) is not located: {why}")
     return point
 
 
@@ -205,7 +205,7 @@ def _zero(
         last = abs(step)
         step = -f / slope
         if not abs(step) < segment.length:
-            raise Unsolvable("the secant method leaves the step between the two cycles")
+            raise Unsolvable("the secant method leaves the interval between the two cycles")
         # A short step that does not halve any more is rounding error.
         if abs(step) <= enough or last / 2 < abs(step) <= LOCATING.stalled_secant * segment.length:
             _, orbit, tangent = segment.known
@@ -215,4 +215,4 @@ def _zero(
             return at + step, moved(orbit, segment.start.scale.name, change), slope
         before = at, f
         at += step
-    raise Unsolvable("the secant method does not converge")
+    raise Unsolvable("the secant method for the special point does not converge")

@@ -179,9 +179,12 @@ def with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
     try:
         form = replace(orbit.form, rod=orbit.form.rod.changed(**changed))
     except (ValueError, ZeroDivisionError) as error:
-        raise Unsolvable(f"the curve leaves the range of possible rods: {error}") from error
+        raise Unsolvable(f"the curve leaves the allowed range of the parameters: {error}") from error
     if form.omega_unknown != orbit.form.omega_unknown:
-        raise Unsolvable(f"gamma3 = {form.rod.gamma3:.3g} changes the unknowns of the discretization")
+        raise Unsolvable(
+            f"at gamma3 = {form.rod.gamma3:.3g} Omega becomes an unknown or is eliminated, and cycles cannot "
+            "be followed across"
+        )
     return replace(orbit, form=form)
 
 

@@ -111,7 +111,9 @@ class AxisPlaces:
         if found.unstable_count < 0:
             raise Unsolvable(f"{self.problem.path.at(p)}: {found.status.name} {found.message}".rstrip())
         if _needed(found) > max(modes, AXIS_PLACES.max_known_modes):
-            raise Unsolvable(f"{self.problem.path.at(p)}: {found.unstable_count} modes grow")
+            raise Unsolvable(
+                f"{self.problem.path.at(p)}: {found.unstable_count} modes grow, more than the search follows"
+            )
         slopes = found.eigenvalues.copy()
         for i, w in enumerate(found.eigenvalues.tolist()):
             slopes[i] = self.problem.eigenvalue(w, p)[1] if w.imag >= 0 else slopes[i - 1].conjugate()

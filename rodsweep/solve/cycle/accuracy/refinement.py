@@ -89,8 +89,9 @@ def _predicted_cycle(
 ) -> RefinedCycle:
     """A single cycle as coarser meshes predict it, on a mesh or on a finer one.
 
-    The best cycle is returned if no allowed mesh reaches the accuracy. Raises Unsolvable if a coarser mesh
-    has no such cycle, if the errors do not decrease, or if the cycle is far from its prediction.
+    The best cycle is returned if no mesh of allowed size reaches the requested accuracy. Raises Unsolvable if
+    a coarser mesh has no such cycle, if the errors do not decrease, or if the cycle is too far from its
+    predictor.
     """
     coarser = CoarserMeshes(mesh, near, accuracy, workspace)
     last = inf
@@ -125,7 +126,8 @@ def calibrated_cycle(
 ) -> RefinedCycle:
     """A cycle with measured errors, on finer meshes if necessary; raises Unsolvable.
 
-    before: calibration at a nearby cycle. The best cycle is returned if no allowed mesh reaches the accuracy.
+    before: calibration at a nearby cycle. The best cycle is returned if no mesh of allowed size reaches the
+    requested accuracy.
     """
     best = None
     last = inf
@@ -142,7 +144,7 @@ def calibrated_cycle(
             break
         found = _on(finer, found, accuracy, parameter)
     if best is None:
-        raise Unsolvable("no allowed mesh reaches the accuracy")
+        raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
     return best
 
 

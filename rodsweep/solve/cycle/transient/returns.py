@@ -76,7 +76,9 @@ def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:
     if not run.message and np.isfinite(end).all() and not beam.is_convex(end):
         why = f"the energy of a section is not convex, {returns} returns from the start"
         return EarlyEnd(True, why)
-    why = "too many steps" if run.ending == RunEnding.too_many_steps else "no step succeeds"
+    why = "the integrator finds no step of acceptable error"
+    if run.ending == RunEnding.too_many_steps:
+        why = "the integrator reached its maximum number of steps"
     return EarlyEnd(False, run.message or why)
 
 
@@ -141,4 +143,4 @@ def why_not_settled(waited: int, returns: int, last: float) -> str:
         return f"{waited} returns of the tip, the last at a relative distance of {last:.1e}"
     if isnan(last):
         return f"the tip passes theta = 0 {counted(returns, 'time')} in all, so that no period is seen"
-    return "its deflection has decayed to rounding error, but the straight rod is not stable"
+    return "the deflection has decayed to rounding error, but the straight rod is not stable"

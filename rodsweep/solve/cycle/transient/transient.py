@@ -156,7 +156,7 @@ class Transient:
             return f"{counted(self.waited, 'return')} of the tip{work}, none periodic"
         unstable = self.straight.stable is False
         why = "the straight rod is unstable" if unstable else "its stretch has not relaxed"
-        return f"its deflection has decayed after {self.waited} returns, but {why}"
+        return f"the deflection has decayed after {counted(self.waited, 'return')} of the tip, but {why}"
 
     def _bends_visibly(self, z: Array) -> bool:
         """Whether bending and shear exceed rounding errors."""

@@ -35,7 +35,7 @@ from .following import (
 from .prediction import Track, guess_at, guess_two, mates_of
 
 Level = tuple[float, Array, Array]
-"""(W, propagators, derivatives of the propagators by p), arrays of shape (elements, terms, 16)."""
+"""(W, propagators, derivatives of the propagators by p), arrays of shape (elements, terms, PADDED)."""
 
 
 @compiled

@@ -150,7 +150,7 @@ def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
         if change > last:
             break
         last = change
-    raise Unsolvable("the corrections of the test function do not converge")
+    raise Unsolvable("the iteration for the test function of the special point does not converge")
 
 
 def _parts(vector: Array) -> Array:

@@ -94,13 +94,13 @@ class NearbyCycles:
                 self._eliminate(orbit)
                 off = 0.0
             last = off
-        raise Unsolvable(f"the corrections of a cycle do not converge; last step {change:.0e}")
+        raise Unsolvable(f"Newton's corrections of a cycle do not converge; the last step is {change:.0e}")
 
     def _corrected(self, orbit: Orbit, condition: BorderCondition) -> tuple[Orbit, float]:
         """(orbit after one correction, relative change); raises Unsolvable."""
         step = self.matrix.correction(orbit, self.border, condition.residual(orbit))
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
         if not change <= ORBIT_NEWTON.longest_step:
-            raise Unsolvable("no cycle of the branch is near the start of the corrections")
+            raise Unsolvable("Newton's corrections find no cycle of the branch near their starting point")
         self.distance += change
         return moved(orbit, self.scale.name, step), change

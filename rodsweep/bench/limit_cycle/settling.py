@@ -1,0 +1,153 @@
+"""Methods that reach a limit cycle from a given start: integration until the motion is periodic, and
+solve_cycle.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from math import inf, isfinite, log, nan
+
+import numpy as np
+
+from ...solve.motion.leading_mode import leading_mode
+from ..study import Contender, TimedRuns, by_method, markdown_table, race
+from .integrators import IntegrationTask
+from .tracking import (
+    CYCLE_FORCE,
+    FOLLOWED_PERIODS,
+    SETTLED_WITHIN,
+    START_DEFLECTION,
+    ReferenceCycle,
+    cycle_at,
+    orbit_of,
+    state_on_cycle,
+    tip_returns,
+)
+
+NEAR_HOPF_F = 27.43
+"""Force 0.003 above the Hopf point, at which a motion approaches the cycle very slowly."""
+SOLVE_NAME = "solve_cycle"
+"""Name, in the table, of the solution by rodsweep's solve_cycle."""
+WAITING_PREFIX = "waiting, "
+"""Beginning of the names, in the table, of integrations until the motion is periodic."""
+WAITING_PERIODS = 15
+"""Duration, in periods, of an integration that should reach the cycle."""
+
+
+@dataclass(frozen=True, slots=True)
+class SettlingMethod:
+    """A method that reaches the limit cycle from a given start, with its error.
+
+    force: F. way: name of the method. setting: tolerance. returns: number of returns of the tip until the
+    motion is periodic, nan if it is not. run: the timed function. times: duration of the whole method in
+    units of the duration of `run`. failed: looser tolerances at which the integration failed.
+    """
+
+    force: float
+    way: str
+    setting: str
+    returns: float
+    error: float
+    run: Callable[[], object]
+    times: float = 1.0
+    failed: tuple[str, ...] = ()
+
+    @property
+    def settled(self) -> bool:
+        """Whether the method reaches the cycle."""
+        return isfinite(self.returns)
+
+    def row(self, timed: TimedRuns) -> dict[str, str | float]:
+        """Values of a row of `settling_table` by name; timed: times of `run`."""
+        about = "about " if self.times != 1 else ""
+        return {
+            "force": self.force,
+            "way": self.way + (f" (fails at {', '.join(self.failed)})" if self.failed else ""),
+            "tolerance": self.setting,
+            "returns": f"{about}{self.returns:.0f}" if self.settled else f"not settled in {WAITING_PERIODS}",
+            "milliseconds": f"{about}{1e3 * self.times * timed.median:.0f}" if self.settled else "",
+            "error": self.error if self.settled else nan,
+        }
+
+
+def compare_settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int) -> str:
+    """Runs all methods that reach the cycle, at F = 50 and near the Hopf point; returns their table.
+
+    every: contenders of the race WAITING.
+    """
+    waiting = {method: _waited(at, settings) for method, settings in by_method(every).items()}
+    cycle = cycle_at(CYCLE_FORCE)
+    left = _error(at, cycle.measures.period, cycle.measures.tip_y_max)
+    waits = [SettlingMethod(CYCLE_FORCE, SOLVE_NAME, "", cycle.periods, left, partial(cycle_at, CYCLE_FORCE))]
+    waits += waiting.values()
+    waits += _near_hopf([c for c in every if waiting[c.method].setting == c.setting])
+    return settling_table(waits, race([wait.run for wait in waits], [rounds] * len(waits)))
+
+
+def settling_table(waits: Sequence[SettlingMethod], raced: Sequence[TimedRuns]) -> str:
+    """Table of the methods that reach the cycle: returns, times and errors."""
+    return (
+        f"From a start of {START_DEFLECTION:g} L to the settled cycle. Waiting ends when two successive "
+        "returns "
+        f"agree to {SETTLED_WITHIN:.0e}, at the loosest tolerance that settles with no larger error; the "
+        "user is assumed to know this tolerance. solve_cycle has the same accuracy; its time includes the "
+        f"choice of mesh and the proof of stability. At F = {NEAR_HOPF_F:g} the number of periods is "
+        f"estimated from below as ln({SETTLED_WITHIN:.0e})/ln(largest multiplier), and the time from the "
+        "time per period; the errors are solve_cycle's estimate and, for waiting, the target.\n\n"
+    ) + markdown_table(
+        "F | way | tolerance | returns | ms | error left",
+        "{force:g} | {way} | {tolerance} | {returns} | {milliseconds} | {error:.0e}",
+        [wait.row(timed) for wait, timed in zip(waits, raced, strict=True)],
+    )
+
+
+def _error(at: ReferenceCycle, period: float, height: float) -> float:
+    return max(abs(period / at.period - 1), abs(height / at.tip_y_max - 1))
+
+
+def _waited(at: ReferenceCycle, settings: Sequence[Contender]) -> SettlingMethod:
+    """Integration at the loosest tolerance at which two successive returns agree and are accurate.
+
+    settings: contenders of one integrator, from the loosest tolerance.
+    """
+    leg = IntegrationTask(
+        at.beam, START_DEFLECTION * leading_mode(at.beam).z.real, WAITING_PERIODS * at.period
+    )
+    way = WAITING_PREFIX + settings[0].method
+    failed: tuple[str, ...] = ()
+    for contender in settings:
+        try:
+            found = tip_returns(at.beam, contender.run(leg))
+        except ArithmeticError:
+            failed += (contender.setting,)
+            continue
+        sizes = np.linalg.norm(found.states[1:], axis=1)
+        distances = np.linalg.norm(np.diff(found.states, axis=0), axis=1) / sizes
+        settled = list(map(int, np.flatnonzero(distances <= SETTLED_WITHIN)))
+        for k in settled[:1]:
+            left = _error(at, float(found.times[k + 1] - found.times[k]), float(found.heights[k]))
+            if left <= SETTLED_WITHIN:
+                again = partial(contender.run, leg._replace(duration=float(found.times[k + 1])))
+                return SettlingMethod(CYCLE_FORCE, way, contender.setting, k + 2, left, again, failed=failed)
+    return SettlingMethod(CYCLE_FORCE, way, "", nan, inf, lambda: None, failed=failed)
+
+
+def _near_hopf(settled: Sequence[Contender]) -> list[SettlingMethod]:
+    """Methods that reach the cycle near the Hopf point.
+
+    The number of periods until an integrated motion is periodic is estimated from the largest Floquet
+    multiplier.
+    """
+    cycle = cycle_at(NEAR_HOPF_F)
+    leg = IntegrationTask(*state_on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
+    count = log(SETTLED_WITHIN) / log(cycle.multiplier)
+    error = max(cycle.errors.period_error, cycle.errors.amplitude_error)
+    waits = [
+        SettlingMethod(NEAR_HOPF_F, SOLVE_NAME, "", cycle.periods, error, partial(cycle_at, NEAR_HOPF_F))
+    ]
+    for contender in settled:
+        run = partial(contender.run, leg)
+        times = count / FOLLOWED_PERIODS
+        way = WAITING_PREFIX + contender.method
+        waits.append(SettlingMethod(NEAR_HOPF_F, way, contender.setting, count, SETTLED_WITHIN, run, times))
+    return waits

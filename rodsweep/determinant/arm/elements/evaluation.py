@@ -1,0 +1,197 @@
+"""Propagators of elements at one z = w/W, from polynomials in z, and their products with minors.
+
+A propagator has the ENTRIES of its columns one after the other, and then zeros up to PADDED: loops over
+PADDED entries are whole vector instructions. Real and imaginary parts are rows of their own, so that a sum
+over powers of z is a vector instruction over the entries. At real z there are no imaginary parts.
+
+powers: result of `powers_of`, (terms, 4). polynomial: coefficients of an element, (at least as many terms,
+PADDED). Minors: (2, MINORS), real and imaginary parts.
+"""
+
+import numpy as np
+
+from ....arrays import Array
+from ....model.compiled.compilation import compiled, compiled_for_vectors
+from .minor_rates import PADDED, SM
+from .settings import ARM_ELEMENTS, MINORS
+
+RE, IM, RE_SLOPE, IM_SLOPE = range(4)
+"""Rows of powers and of propagators: real and imaginary parts of the value and of its derivative by z."""
+
+
+@compiled
+def _needed_terms(size: float, terms: int) -> int:
+    """The number of powers of z that matter to C and dC/dz at |z| = size, at most `terms`."""
+    needed = terms
+    while needed > 2 and size <= ARM_ELEMENTS.largest_of_terms[needed - 1]:
+        needed -= 1
+    return needed
+
+
+@compiled
+def powers_of(z: complex, terms: int) -> Array:
+    """The powers z^n that matter, and their derivatives n z^(n-1): real and imaginary parts, (n, 4).
+
+    terms: number of powers in the polynomials.
+    """
+    powers = np.zeros((_needed_terms(abs(z), terms), 4))
+    powers[0, RE] = 1.0
+    for n in range(1, len(powers)):
+        # A product of two halves has a few rounding errors, n - 1 factors z would have n - 1.
+        half = complex(powers[n // 2, RE], powers[n // 2, IM])
+        here = z if n == 1 else complex(powers[n - n // 2, RE], powers[n - n // 2, IM]) * half
+        powers[n, RE] = here.real
+        powers[n, IM] = here.imag
+        powers[n, RE_SLOPE] = n * powers[n - 1, RE]
+        powers[n, IM_SLOPE] = n * powers[n - 1, IM]
+    return powers
+
+
+@compiled_for_vectors
+def fill_propagator(polynomial: Array, powers: Array, out: Array) -> None:
+    """Writes C and dC/dz into out, (4, PADDED)."""
+    for k in range(PADDED):
+        out[RE, k] = polynomial[0, k]
+        out[IM, k] = out[RE_SLOPE, k] = out[IM_SLOPE, k] = 0.0
+    terms = len(powers)
+    for n in range(1, terms - 1, 2):  # two terms at a time save passes over `out`
+        a, b, c, d = powers[n, RE], powers[n, IM], powers[n, RE_SLOPE], powers[n, IM_SLOPE]
+        p, q, r, s = powers[n + 1, RE], powers[n + 1, IM], powers[n + 1, RE_SLOPE], powers[n + 1, IM_SLOPE]
+        for k in range(PADDED):
+            x = polynomial[n, k]
+            y = polynomial[n + 1, k]
+            out[RE, k] += a * x + p * y
+            out[IM, k] += b * x + q * y
+            out[RE_SLOPE, k] += c * x + r * y
+            out[IM_SLOPE, k] += d * x + s * y
+    if terms % 2 == 0:
+        for row in range(4):
+            for k in range(PADDED):
+                out[row, k] += powers[terms - 1, row] * polynomial[terms - 1, k]
+
+
+@compiled_for_vectors
+def fill_value(polynomial: Array, powers: Array, out: Array) -> None:
+    """Writes C alone into out, (2, PADDED)."""
+    _fill_rows(polynomial, powers, (RE, IM), out)
+
+
+@compiled_for_vectors
+def fill_real_propagator(polynomial: Array, powers: Array, out: Array) -> None:
+    """Writes C and dC/dz at real z into out, (2, PADDED)."""
+    _fill_rows(polynomial, powers, (RE, RE_SLOPE), out)
+
+
+@compiled_for_vectors
+def _fill_rows(polynomial: Array, powers: Array, rows: tuple[int, int], out: Array) -> None:
+    """Writes the sums of a polynomial with two rows of the powers into out, (2, PADDED)."""
+    first, second = rows
+    for k in range(PADDED):
+        out[0, k] = powers[0, first] * polynomial[0, k]
+        out[1, k] = powers[0, second] * polynomial[0, k]
+    terms = len(powers)
+    done = 1
+    for n in range(1, terms - 3, 4):  # four terms at a time save passes over `out`
+        a, b, c, d = powers[n, first], powers[n + 1, first], powers[n + 2, first], powers[n + 3, first]
+        p, q, r, s = powers[n, second], powers[n + 1, second], powers[n + 2, second], powers[n + 3, second]
+        for k in range(PADDED):
+            x = polynomial[n, k]
+            y = polynomial[n + 1, k]
+            z = polynomial[n + 2, k]
+            last = polynomial[n + 3, k]
+            out[0, k] += a * x + b * y + c * z + d * last
+            out[1, k] += p * x + q * y + r * z + s * last
+        done = n + 4
+    for n in range(done, terms):
+        a = powers[n, first]
+        p = powers[n, second]
+        for k in range(PADDED):
+            out[0, k] += a * polynomial[n, k]
+            out[1, k] += p * polynomial[n, k]
+
+
+@compiled_for_vectors
+def fill_real_value(polynomial: Array, powers: Array, out: Array) -> None:
+    """Writes C alone at real z into out, (PADDED,)."""
+    for k in range(PADDED):
+        out[k] = polynomial[0, k]
+    for n in range(1, len(powers)):
+        for k in range(PADDED):
+            out[k] += powers[n, RE] * polynomial[n, k]
+
+
+@compiled_for_vectors
+def multiply(C: Array, x: Array, out: Array) -> None:
+    """out = C x; C: rows RE and IM of a propagator, (2 or more, PADDED); x, out: minors, (2, MINORS)."""
+    for i in range(MINORS):
+        out[0, i] = out[1, i] = 0.0
+    for j in range(MINORS):
+        a = x[0, j]
+        b = x[1, j]
+        for i in range(MINORS):
+            out[0, i] += C[RE, MINORS * j + i] * a - C[IM, MINORS * j + i] * b
+            out[1, i] += C[RE, MINORS * j + i] * b + C[IM, MINORS * j + i] * a
+
+
+@compiled_for_vectors
+def multiply_both(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
+    """out = C t + change x; C, change: (2 or more, PADDED); t, x, out: minors, (2, MINORS)."""
+    for i in range(MINORS):
+        out[0, i] = out[1, i] = 0.0
+    for j in range(MINORS):
+        a = t[0, j]
+        b = t[1, j]
+        c = x[0, j]
+        d = x[1, j]
+        for i in range(MINORS):
+            k = MINORS * j + i
+            out[0, i] += C[RE, k] * a - C[IM, k] * b + change[RE, k] * c - change[IM, k] * d
+            out[1, i] += C[RE, k] * b + C[IM, k] * a + change[RE, k] * d + change[IM, k] * c
+
+
+@compiled_for_vectors
+def multiply_real(C: Array, x: Array, out: Array) -> None:
+    """out = C x, of a real propagator, (PADDED,), and real minors, (MINORS,)."""
+    for i in range(MINORS):
+        out[i] = 0.0
+    for j in range(MINORS):
+        a = x[j]
+        for i in range(MINORS):
+            out[i] += C[MINORS * j + i] * a
+
+
+@compiled_for_vectors
+def multiply_real_both(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
+    """out = C t + change x, of real propagators, (PADDED,), and real minors, (MINORS,)."""
+    for i in range(MINORS):
+        out[i] = 0.0
+    for j in range(MINORS):
+        a = t[j]
+        b = x[j]
+        for i in range(MINORS):
+            out[i] += C[MINORS * j + i] * a + change[MINORS * j + i] * b
+
+
+@compiled
+def size_of_products(C: Array, x: Array) -> float:
+    """The sum of the moduli of the products whose sum is s^m at the end of an element, C x.
+
+    C: rows RE and IM of a propagator, (2 or more, PADDED). x: minors, (2, MINORS).
+
+    Minors differ in size by powers of the wave number. The rounding error of D follows these products, which
+    may be larger than all minors at the tip near a root of D.
+    """
+    total = 0.0
+    for j in range(MINORS):
+        entry = complex(C[RE, MINORS * j + SM], C[IM, MINORS * j + SM])
+        total += abs(entry * complex(x[RE, j], x[IM, j]))
+    return total
+
+
+@compiled_for_vectors
+def size_of_real_products(C: Array, x: Array) -> float:
+    """`size_of_products` of a real propagator, (PADDED,), and real minors, (MINORS,)."""
+    total = 0.0
+    for j in range(MINORS):
+        total += abs(C[MINORS * j + SM] * x[j])
+    return total
