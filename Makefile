@@ -168,9 +168,10 @@ endef
 	chmod +x $(BIN)/mpiexec
 	# Compile the formulas now, not in the first run, on two cores.
 	warm_up() { $(BIN)/python -c "from rodsweep.solve.$$1 import warm_up; warm_up()"; }
-	warm_up spectrum.path.stretch & spectra=$$!
-	warm_up cycle.reference_rod
-	wait $$spectra
+	warm_up cycle.reference_rod & cycle=$$!
+	warm_up spectrum.path.stretch
+	warm_up further_kernels
+	wait $$cycle
 	touch $@
 	echo 'Installed. Next: . .venv/bin/activate'
 

@@ -72,7 +72,10 @@ class Rod:
                 PARAMETERS[name].require(value)
         # The dataclass is frozen; fields computed from others are set once, here.
         object.__setattr__(self, "values", values)
-        coefficients = coefficients_of(values) if self.build.standard and self.taper == 1 else None
+        coefficients = None
+        if self.build.standard and self.taper == 1:
+            # Floats only: for a whole number all kernels would be compiled anew.
+            coefficients = Coefficients(*map(float, coefficients_of(values)))
         object.__setattr__(self, "_coefficients", coefficients)
         if coefficients is None and not self.crushing_force > self.F:
             raise Crushed(f"F = {self.F} is not below {self.crushing_force:.15g}, which crushes the arm")

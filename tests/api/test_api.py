@@ -26,6 +26,7 @@ from rodsweep.config.document.reading import yaml_of
 from rodsweep.config.schema import Config
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
+from rodsweep.post.figures import draw
 from rodsweep.post.figures.request import KINDS, ROOTS
 
 NAMES = [
@@ -388,6 +389,17 @@ def test_a_sweep_is_written_read_and_drawn(tmp_path):
         rs.plot(data.isel(k2=0))
     with pytest.raises(rs.InputError, match="not a complete rodsweep result"):
         rs.plot(xr.Dataset())
+
+
+@pytest.mark.parametrize(("name", "times"), [("a: b.png", 1), ("d.svg", 2)])
+def test_a_file_in_the_format_of_the_display_is_drawn_once(tmp_path, monkeypatch, name, times):
+    draws = []
+    monkeypatch.setattr("rodsweep.api.answers.picture.draw", lambda *a, **k: draws.append(a) or draw(*a, **k))
+    data = rs.sweep("thresholds", k1=200, k2=[10, 100], gamma3=1e-4, F_max=60)
+    picture = rs.plot(data, tmp_path / name)
+    assert len(draws) == times
+    assert picture.shown == "critical forces against k2"
+    assert (picture.image == (tmp_path / name).read_bytes()) == (times == 1)
 
 
 def test_own_data_go_into_a_figure(tmp_path):

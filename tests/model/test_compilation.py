@@ -7,10 +7,12 @@ import sys
 from pathlib import Path
 
 import numba
+import numpy as np
 import pytest
 from numba.core import event
 
 from rodsweep.model.compiled import compilation
+from rodsweep.model.rod import Rod
 
 SOLVED_BEFORE = """
 from rodsweep.solve.branch import branches
@@ -286,3 +288,25 @@ def test_a_changed_setting_compiles_the_functions_that_read_it(made):
     reordered = SETTINGS.replace("    count: int = 2\n", "") + "\n"
     reordered = reordered.replace("(1.0, 2.0)\n", "(1.0, 2.0)\n    other: float = 9.0\n    count: int = 2\n")
     assert made(reordered, READERS) == ((6.0, 4.0), set())
+
+
+def test_an_array_is_assigned_to_a_slice_of_its_shape_only_and_no_text_is_compiled(tmp_path, monkeypatch):
+    """numba's own message states both shapes, which would be made to text in every compiled function."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+
+    @compilation.compiled
+    def assign(rows, row):
+        rows[1] = row
+        return rows.sum()
+
+    assert assign(np.zeros((2, 3)), np.ones(3)) == 3.0
+    with pytest.raises(ValueError, match="cannot assign"):
+        assign(np.zeros((2, 3)), np.ones(2))
+    (code,) = assign.inspect_llvm().values()
+    assert "unicode" not in code
+
+
+def test_whole_numbers_of_a_rod_compile_nothing_anew():
+    """numba compiles a function once for each type of its arguments."""
+    whole, real = Rod(F=50, k1=10000, k2=100, gamma3=1), Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1.0)
+    assert numba.typeof(whole.coefficients) == numba.typeof(real.coefficients)

@@ -1,5 +1,7 @@
 """The compiled balance with the algebra of space, se(3), and with rods that are not uniform, on meshes."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -49,6 +51,25 @@ def equations(x, rod, grid):
     out = np.empty(len(x))
     velocity_balance.of(ALGEBRAS[len(G)])(x, out, rod, grid.matrices)
     return np.append(G.ravel(), out[len(G) * grid.nodes :])
+
+
+@ALL
+@pytest.mark.parametrize("kept", [(), (2,)], ids=["eliminated", "kept"])
+def test_compiled_functions_do_what_their_loops_do(material, kept):
+    """The loops themselves run in Python, with the algebra as an argument."""
+    grid = mesh(2, 3)
+    rod, d = nodal_rod(material, grid, kept), len(material.drag)
+    g, n = ALGEBRAS[d], d * grid.nodes + len(kept) * (grid.nodes + 1)
+    x = np.random.default_rng(d).standard_normal(n)
+    found = []
+    for run, slope in ((balance.of(g), jacobian.of(g)), (partial(balance, g), partial(jacobian, g))):
+        V, G = np.empty((2, d, grid.nodes + 1))
+        J, tip = np.full((n, n), np.nan), np.full((d, n), np.nan)
+        run(x, V, G, rod, grid.matrices)
+        slope(x, V, J, tip, rod, grid.matrices)
+        found.append((V, G, J, tip))
+    for compiled, plain in zip(*found, strict=True):
+        assert np.abs(compiled - plain).max() <= 1e-13 * np.abs(plain).max()
 
 
 @MESHES

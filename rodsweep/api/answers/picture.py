@@ -179,10 +179,13 @@ def plot(
     views = [section(view_of_result(one, PLOT_EXAMPLE), values) for one in several]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
     choices |= {"look": FigureLook(**look), "shapes": SolvedShapes()}
+    file = None if output is None else named_file_path(output, PLOT_EXAMPLE)
+    ending = ".gif" if what == "animation" else ".png"
     with TemporaryDirectory(prefix="rodsweep-") as place:
-        path = Path(place, "figure.gif" if what == "animation" else "figure.png")
-        shown = draw(views, path, **choices).partition(": ")[2]
+        # A file in the format of the display is the display: the figure is drawn once.
+        path = file if file is not None and file.suffix == ending else Path(place, f"figure{ending}")
+        shown = draw(views, path, **choices).removeprefix(f"wrote {path}: ")
         picture = Picture(views, choices, as_python_arguments(shown), path.read_bytes())
-    if output is not None:
-        picture.save(named_file_path(output, PLOT_EXAMPLE))
+    if file is not None and file != path:
+        picture.save(file)
     return picture

@@ -30,6 +30,7 @@ from numba.core.sigutils import normalize_signature
 
 from ...watch import report
 from .digest import FunctionText, digest, kernel_of, type_text
+from .slice_assignment import shorten_message
 
 VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__)
 """Versions that are part of the digest, because compiled code is valid for one combination only."""
@@ -62,6 +63,7 @@ class KernelCache(_Cache):
             content = _read(directory / name)
             if content is not None:
                 return CompileResult._rebuild(target_context, *pickle.loads(content))
+        shorten_message()  # numba compiles the function next
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from functools import lru_cache
 
+import numba
 import numpy as np
 import pytest
 from surveyed import survey_only
@@ -10,6 +11,7 @@ from surveyed import survey_only
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.rod import Rod
+from rodsweep.solve import further_kernels
 from rodsweep.solve.branch import beginning as begun
 from rodsweep.solve.branch import branches, following
 from rodsweep.solve.branch.beginning import first_cycle, hopf_point
@@ -23,6 +25,7 @@ from rodsweep.solve.branch.special.cycle_curves import CurveEnd
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.orbit.matrix.linearisation import reduced_variations
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import Unsolvable
 from rodsweep.watch import reporting_to
@@ -85,6 +88,23 @@ def test_branch_from_the_first_hopf_point_of_fig_2c_arrives_at_its_restabilizati
         if not is_steep
     )
     assert 0 < sum(steep) < len(steep) / 2
+
+
+def test_a_fold_needs_no_compilation_beyond_that_of_the_installation(monkeypatch):
+    called = []
+
+    def recorded(*arguments):
+        called.append(tuple(map(numba.typeof, arguments)))
+        return reduced_variations(*arguments)
+
+    for module in (further_kernels, matrix):
+        monkeypatch.setattr(module, "reduced_variations", recorded)
+    further_kernels.warm_up()
+    (compiled,) = called
+    (curve,) = solve_branches(SHORT, BranchRequest("F", 0.0, 200.0, 1e-4, True, 500, 50)).curves
+    assert "fold" in kinds(curve)
+    assert len(called) > 1
+    assert set(called) == {compiled}
 
 
 def test_forward_and_backward_give_the_same_cycle():

@@ -42,7 +42,7 @@ def chain():
     ],
 )
 def test_polynomials_with_as_many_terms_are_predicted_exactly(places, orders):
-    places, orders = np.array(places), np.array(orders)
+    places, orders = np.array(places), np.array(orders, dtype=float)
     size = np.abs(places).max() or 1.0
     p = np.polynomial.Polynomial(np.random.default_rng(2).normal(size=len(places) + 1), [0, size], [0, 1])
     here = CyclePredictor(None, places, orders, np.empty(0))

@@ -102,7 +102,7 @@ def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:
     along = local.reshape(6, len(F), -1)
     regions = np.full((len(F), AVERAGED_WEIGHT.trial_count, 2), inf)
     for i in np.flatnonzero(((along[5] > 0) & (along[1] > 0)).all(axis=1)).tolist():
-        regions[i] = averaged_regions(u, along[:, i], float(F[i]))
+        regions[i] = averaged_regions(u, np.ascontiguousarray(along[:, i]), float(F[i]))
     return regions
 
 

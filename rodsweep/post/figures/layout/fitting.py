@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.text import Text
 
+from .remembered_ticks import remembered_ticks
 from .ticks import thin_ticks
 
 MIN_ASPECT = 0.45
@@ -71,7 +72,8 @@ def _lay_out(figure: Figure) -> None:
     if not isinstance(canvas, FigureCanvasAgg):
         canvas = FigureCanvasAgg(figure)  # otherwise each text creates a canvas to measure itself
     if engine := figure.get_layout_engine():
-        engine.execute(figure)
+        with remembered_ticks(figure):
+            engine.execute(figure)
     for legend in figure.legends:
         legend.draw(canvas.get_renderer())  # drawing places the entries
 
