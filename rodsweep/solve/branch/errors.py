@@ -1,10 +1,12 @@
-"""Errors of a cycle of a branch at the stored value of the parameter.
+"""Error estimates of the cycles of a branch: of period, extrema and multiplier at equal parameter, and of the
+parameter.
 
-Two finer meshes, one in space and one in time, have the cycle at the same arc length, which is regular at a
-fold. The cycles on the finer meshes lie at slightly different values of the parameter; slid along the branch
-to the stored value, they give the errors of period, extrema and multiplier. The difference of the parameter
-at an equal deflection is the error of the parameter. It stays small beside a Hopf point and beside a fold,
-where all other numbers vary steeply with the parameter.
+The cycle is solved at the same arc length on two finer meshes, one finer in space and one finer in time; this
+system is regular at a fold. The three cycles have slightly different parameter values. The finer cycles are
+therefore moved along the branch to the parameter value of the rough cycle. The remaining differences are the
+errors of period, extrema and multiplier at equal parameter. The error of the parameter is the parameter
+difference of the cycles at equal deflection. This error stays small near a Hopf point and near a fold, where
+all other quantities vary steeply with the parameter.
 """
 
 from dataclasses import dataclass, replace
@@ -30,24 +32,25 @@ from .bordered.scale import Scale
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchErrorSettings:
-    """Settings of the error estimates of the cycles of a branch."""
+    """Settings for the error estimates of the cycles of a branch."""
 
     steep_slope: float = 120.0
-    """Sensitivity |(p/y) dy/dp| of the largest y to the parameter p, above which errors at an equal p may
-    exceed the accuracy in proportion, as beside a Hopf point or a fold: p itself has an error. It is a fifth
-    above the promised 100, since slopes are taken between cycles."""
+    """Limit of the sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p. Above this limit, as
+    near a Hopf point or a fold, errors at equal p may exceed the accuracy in proportion to the sensitivity,
+    because p has an error too. The limit is a fifth above the documented limit of 100, because a user takes
+    the sensitivity between two cycles."""
     min_deflection_share: float = 0.1
-    """Smallest derivative of the deflection along the branch, in units of the parameter's derivative, used
-    for the parameter's error at an equal deflection; where the deflection is stationary that error is
-    undefined."""
+    """Smallest derivative of the deflection by arc length, in units of the derivative of the parameter, in
+    the parameter error at equal deflection. This error is undefined where the deflection is stationary along
+    the branch."""
     interpolation_factor: float = 2.0
     """Safety factor on interpolated errors."""
     negligible_error: float = 1e-16
-    """Smallest error; smaller differences are rounding."""
+    """Smallest error; smaller differences between meshes are rounding errors."""
     newton_share: float = 0.01
-    """Tolerance of Newton's method on the finer meshes, in units of the accuracy."""
+    """Tolerance of Newton's method on the two finer meshes, in units of the accuracy."""
     slope_step: float = 1e-4
-    """Arc length of the difference quotient that gives the slope of the largest y."""
+    """Arc length of the difference quotient for the sensitivity of the largest tip y."""
 
 
 BRANCH_ERRORS = BranchErrorSettings()
@@ -55,28 +58,30 @@ BRANCH_ERRORS = BranchErrorSettings()
 
 @dataclass(frozen=True, eq=False)
 class CyclePlace:
-    """A cycle's scale and tangent, and how fast both and the multiplier change along the branch."""
+    """Derivatives of a branch at one of its cycles: tangent, curvature and multiplier rate, in the units of a
+    scale."""
 
     scale: Scale
     tangent: Array
-    """Tangent of the branch, of unit length in the scale, (N + 1,)."""
+    """Tangent of the branch with unit arc length, (N + 1,): derivatives of orbit values and parameter
+    coordinate."""
     ahead: Array
-    """The tangent as a direction of `Scale.place`, (3,)."""
+    """The tangent in the components of `Scale.place`, (3,), a unit vector."""
     curvature: float
-    """Second derivative of the parameter along the branch, in the scale's units."""
+    """Second derivative of the scaled parameter coordinate by arc length."""
     multiplier_rate: float
-    """Derivative of the largest multiplier along the branch."""
+    """Derivative of the largest multiplier by arc length."""
 
     @property
     def rate(self) -> float:
-        """Derivative of the parameter along the branch, in the scale's units."""
+        """Derivative of the scaled parameter coordinate by arc length; 0 at a fold."""
         return float(self.ahead[2])
 
     def slide(self, off: float) -> float:
-        """Arc length over which the parameter changes by `off`, in the scale's units.
+        """Arc length over which the scaled parameter coordinate changes by `off`.
 
-        Beside a fold the parameter may not reach that change; the result is then twice the length to the
-        fold.
+        Near a fold, where the parameter may never change by `off`, the result is 2 sqrt(|off/curvature|), an
+        upper bound of any such length.
         """
         # Away from a fold the quadratic term changes the linear solution by an eighth at most.
         if self.rate**2 >= 4 * abs(self.curvature * off):
@@ -89,10 +94,11 @@ class CyclePlace:
 
 @dataclass(frozen=True, eq=False)
 class BranchCalibration:
-    """Errors of a mesh at a cycle of a branch.
+    """Measured errors of a mesh at a cycle of a branch.
 
-    known: at an equal parameter. parameter: relative error of the parameter at an equal deflection, in space
-    and in time, (2,). slope: |(p/y) dy/dp|.
+    at_parameter: errors at equal parameter. parameter_errors: relative errors of the parameter at equal
+    deflection, in space and in time, (2,). sensitivity: |(p/y) dy/dp| of the largest tip y to the parameter
+    p.
     """
 
     known: Calibration
@@ -104,11 +110,11 @@ class BranchCalibration:
         return self.known.mesh
 
     def errors(self, accuracy: float) -> CycleErrors:
-        """Errors of the cycle at the stored value of the parameter."""
+        """Errors of the cycle at equal parameter, not smaller than a share of the accuracy."""
         return self.known.errors(accuracy)
 
     def parameter_error(self, accuracy: float) -> float:
-        """Relative error of the parameter at an equal deflection."""
+        """Relative error of the parameter at equal deflection, with a safety factor."""
         return max(
             CALIBRATION.safety * float(self.parameter.sum()),
             CYCLE_ERRORS.min_claim * accuracy,
@@ -116,20 +122,22 @@ class BranchCalibration:
         )
 
     def largest(self, accuracy: float) -> float:
-        """The error that must not exceed the accuracy."""
+        """The error that is compared with the relative accuracy, reduced where the sensitivity exceeds
+        `steep_slope`."""
         return self._demanded.errors(accuracy).largest
 
     def planned(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh that is expected to reach the accuracy."""
+        """The cheapest mesh expected to reach a relative accuracy of the cycle."""
         return self._demanded.planned(accuracy)
 
     def planned_for_parameter(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh whose parameter at an equal deflection is expected to have the accuracy."""
+        """The cheapest mesh expected to reach a relative accuracy of the parameter at equal deflection."""
         return self._of_parameter.planned(accuracy)
 
     @cached_property
     def _demanded(self) -> Calibration:
-        """Errors that determine the mesh; the parameter's error counts like the period's."""
+        """Errors that determine the mesh, reduced where the sensitivity exceeds `steep_slope`; the parameter
+        error counts like the period error."""
         # Where y is steep in p, errors at equal p grow with the slope although the mesh is as good as
         # elsewhere.
         steep = max(1.0, self.slope / BRANCH_ERRORS.steep_slope)
@@ -140,7 +148,7 @@ class BranchCalibration:
 
     @cached_property
     def _of_parameter(self) -> Calibration:
-        """A calibration with the parameter's error in place of every error."""
+        """A calibration in which every error equals the parameter error at equal deflection."""
         numbers = [PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH]
         parts = [self.known.space.copy(), self.known.time.copy()]
         for part, own in zip(parts, self.parameter, strict=True):
@@ -148,10 +156,12 @@ class BranchCalibration:
         return replace(self.known, space=parts[0], time=parts[1])
 
     def towards(self, other: "BranchCalibration", share: float, slope: float) -> "BranchCalibration":
-        """Errors of a cycle between two cycles with measured errors on one mesh. share: fraction of the way
-        to `other`; slope: slope at the cycle.
+        """Interpolated errors of a cycle that lies on the branch between two measured cycles with the same
+        mesh.
 
-        Each error is interpolated geometrically and multiplied by BRANCH_ERRORS.interpolation_factor.
+        other: errors of the second measured cycle. share: fraction of the arc length to this cycle.
+        sensitivity: |(p/y) dy/dp| at the interpolated cycle. Each error is interpolated geometrically and
+        multiplied by BRANCH_ERRORS.interpolation_factor.
         """
         mean = [
             _interpolated(one, another, share)
@@ -166,7 +176,11 @@ class BranchCalibration:
 
 
 def _interpolated(one: Array, other: Array, share: float) -> Array:
-    """Errors at a share of the way, times `interpolation_factor`, at most the larger; of any shape."""
+    """Geometric interpolation of two arrays of errors of any common shape, at a fraction `share` from `one`
+    to `other`.
+
+    The result is multiplied by `interpolation_factor`, and at most the larger of both errors.
+    """
     # Errors of a mesh change by factors along a branch, so their logarithms are interpolated.
     logarithms = np.log(np.maximum([one, other], BRANCH_ERRORS.negligible_error))
     means = np.exp(logarithms[0] + share * (logarithms[1] - logarithms[0]))
@@ -177,8 +191,12 @@ def _interpolated(one: Array, other: Array, share: float) -> Array:
 def measured_errors(
     found: ConvergedOrbit, place: CyclePlace, accuracy: float, before: Calibration | None
 ) -> BranchCalibration:
-    """Errors of a cycle's mesh, from two finer meshes; raises Unsolvable. before: errors of a neighbouring
-    cycle."""
+    """Errors of the mesh of the cycle `found`, measured by comparison with two finer meshes; raises
+    Unsolvable.
+
+    place: derivatives of the branch at the cycle. accuracy: relative accuracy of the cycle. before:
+    calibration at a previous cycle, with convergence rates.
+    """
     mesh = mesh_of(found.orbit)
     orbit = found.orbit
     finer, share = finer_meshes(mesh)
@@ -196,10 +214,11 @@ def measured_errors(
 
 
 def _difference(rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, place: CyclePlace) -> Array:
-    """Differences of a cycle from the same cycle on a finer mesh, (6,).
+    """Differences, (6,), of a cycle on a rough mesh from the same cycle on a fine mesh.
 
-    The first five, as in `Calibration.space`, are differences at the rough mesh's value of the parameter; the
-    last is the difference of the parameter at an equal deflection.
+    The first five differences, as in `Calibration.space`, hold at the parameter value of the rough cycle. The
+    last is the parameter difference at equal deflection. multipliers: nontrivial multipliers of the rough
+    cycle, (rank - 1,).
     """
     orbit = rough.orbit
     scale = place.scale
@@ -207,7 +226,7 @@ def _difference(rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, pl
     length = place.slide(off)
     target = mesh_of(fine.orbit)
     along = np.append(carried_change(orbit, place.tangent[:-1], target), place.tangent[-1])
-    # The two cycles differ in the parameter; the finer one is moved along the branch to the same value.
+    # The two cycles differ in the parameter; the fine cycle is moved along the branch to the same value.
     slid = moved(fine.orbit, scale.name, length * along)
     change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(length * place.multiplier_rate)
     by_deflection = abs(place.ahead[0])
@@ -219,7 +238,11 @@ def _difference(rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, pl
 
 
 def slope_at(path: CyclePath, place: CyclePlace) -> float:
-    """Sensitivity |(p/y) dy/dp| of the largest y to the parameter p along a branch."""
+    """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch, by a difference
+    quotient.
+
+    path: the cycle. place: derivatives of the branch at the cycle.
+    """
     orbit: Orbit = path.orbit
     ahead = CyclePath(moved(orbit, place.scale.name, BRANCH_ERRORS.slope_step * place.tangent))
     y = path.extrema["tip_y_max"]

@@ -1,4 +1,4 @@
-"""A branch of cycles, followed from a Hopf point or symmetry breaking to the end."""
+"""Continuation of one branch of cycles, from a Hopf point or a symmetry breaking to the end of the branch."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -27,25 +27,27 @@ from .work import share_done
 
 @dataclass(frozen=True, slots=True)
 class BranchLimits:
-    """Limits within which branches are followed, and known points where they may end."""
+    """Limits of all branches of a rod: parameter range, number of cycles, and the Hopf points and symmetry
+    breakings where a branch may end."""
 
     hopfs: Sequence[HopfBirth]
-    """Hopf points of the rod."""
+    """Hopf points of the rod within the range."""
     ends: tuple[float, float]
-    """Coordinates of the parameter at which branches end."""
+    """Smallest and largest coordinate of the continuation parameter; a branch ends at either."""
     reasons: tuple[EndReason, EndReason]
-    """Why branches end at each of the two coordinates."""
+    """Reasons for the end of a branch at the smallest and at the largest coordinate."""
     accuracy: float
     max_cycles: int
-    """Maximum number of stored cycles of a branch."""
+    """Maximum number of cycles of the branch."""
     workspace: NewtonWorkspace
-    """Memory of all matrices."""
+    """Memory of Newton's matrices."""
     breakings: Sequence[SymmetryBreaking] = ()
-    """Known symmetry breakings of the rod."""
+    """Symmetry breakings found so far on the branches of the rod."""
 
 
 def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
-    """The branch from Hopf point `number` of the list; a failure is its last special point."""
+    """The branch from the Hopf point `limits.hopfs[number]`; a failure becomes the last special point of the
+    branch."""
     hopf = limits.hopfs[number]
     curve = BranchCurve(hopf=number)
     curve.add(special_hopf(hopf))
@@ -53,8 +55,8 @@ def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
 
 
 def follow_without_symmetry(which: int, name: str, limits: BranchLimits) -> BranchCurve:
-    """The branch of asymmetric cycles along the parameter `name`, from symmetry breaking
-    `limits.breakings[which]`."""
+    """The branch of asymmetric cycles along the parameter `name` from the symmetry breaking
+    `limits.breakings[which]`; a failure becomes its last special point."""
     breaking = limits.breakings[which]
     curve = BranchCurve(hopf=-1, breaking=breaking)
     curve.add(replace(breaking.point, message="", orbit=None))
@@ -66,7 +68,8 @@ def follow_without_symmetry(which: int, name: str, limits: BranchLimits) -> Bran
 
 
 def _followed(curve: BranchCurve, limits: BranchLimits, first: Callable[[], ArcPoint]) -> BranchCurve:
-    """A branch from a special point to its end. first: gives the first cycle or raises Unsolvable."""
+    """The branch `curve`, which has only its first special point, followed to its end. first: function that
+    returns the first cycle or raises Unsolvable."""
     if limits.max_cycles < 1:
         curve.end(BranchEnd(_end_beside(curve, EndReason.list_full), complete=False, full=True))
         return curve
@@ -83,7 +86,8 @@ def _followed(curve: BranchCurve, limits: BranchLimits, first: Callable[[], ArcP
 
 
 def followed_from(curve: BranchCurve, first: ArcPoint, limits: BranchLimits) -> BranchCurve:
-    """A branch followed to its end from a first cycle with measured errors."""
+    """The branch `curve`, which has only its first special point, followed to its end from the cycle `first`,
+    which has measured errors."""
     trail = Trail(curve, limits.accuracy, first)
     going: ArcPoint | BranchEnd = first
     while isinstance(going, ArcPoint):
@@ -94,9 +98,10 @@ def followed_from(curve: BranchCurve, first: ArcPoint, limits: BranchLimits) -> 
 
 
 def _place_on(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> SolvePosition:
-    """Position of a branch's last cycle, and the fraction of the branch's work that is done."""
+    """Progress for a display: parameter value at the last cycle `start` of a branch, and the fraction of the
+    branch's work that is done."""
     name = start.scale.name
-    # The end of the range towards which the parameter moves at present; behind a fold it is the other one.
+    # The end of the range towards which the parameter moves at present; it changes at a fold.
     aim = limits.ends[1 if start.ahead[-1] > 0 else 0]
     value = PARAMETERS[name].value(start.at)
     aim_value = PARAMETERS[name].value(aim)
@@ -105,7 +110,7 @@ def _place_on(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> Solv
 
 
 def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
-    """The end of a branch that has no cycle, at its first special point."""
+    """The end of a branch without any cycle, at the first special point of the branch."""
     born = curve.special[0]
     return replace(
         born,
@@ -118,7 +123,8 @@ def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> Spe
 
 
 def _beyond(point: ArcPoint, limits: BranchLimits) -> int:
-    """Index of the end of the range that a cycle lies beyond, -1 within the range."""
+    """Index of the end of the parameter range beyond which a cycle lies: 0 below the range, 1 above, -1
+    within."""
     low, high = limits.ends
     if point.at < low:
         return 0
@@ -126,21 +132,22 @@ def _beyond(point: ArcPoint, limits: BranchLimits) -> int:
 
 
 def _next(trail: Trail, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """The next cycle, added to the branch with the special points before it; or the end of the branch."""
+    """The next cycle after `start`, appended to the branch behind the special points between the two cycles;
+    or the end of the branch."""
     curve = trail.curve
     if len(curve.points) >= limits.max_cycles:
         return BranchEnd(end_at(start, EndReason.list_full), complete=False, full=True)
     try:
         end = next_point(start, limits.accuracy)
         if _passed_mirror_image(start, end, limits):
-            # Beyond the point of symmetry the branch runs back through its own mirror images.
+            # Beyond this point the branch continues through the mirror images of its cycles.
             return (_end_at_hopf if start.orbit.symmetric else _end_at_breaking)(start, end, limits)
         outside = _beyond(end, limits)
         range_end = range_end_condition(start, limits.ends[outside]) if outside >= 0 else None
         if range_end is not None:
             end = cycle_at_range_end(start, end, range_end, limits.accuracy)
         if range_end is not None and _hides_corner(start, end):
-            range_end = None  # after the cycle half way
+            range_end = None  # a cycle half way comes first
             end = point_at(start, arc_between(start, end) / 2, limits.accuracy)
         # h1 = 0: the model ends here, whatever the discrete equations still solve.
         if stretch_at(end) <= 0:
@@ -160,23 +167,27 @@ def _next(trail: Trail, start: ArcPoint, limits: BranchLimits) -> ArcPoint | Bra
 
 
 def _add_special_points(curve: BranchCurve, start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> None:
-    """Adds the special points between the last stored cycle and the next cycle, which is not stored yet."""
+    """Appends the special points between the last cycle of a branch, `start`, and the next cycle `end`, which
+    is not appended yet."""
 
     step = partial(point_at, accuracy=limits.accuracy)
     curve.add_found(*special_points(start, end, step, limits.accuracy))
 
 
 def _passed_mirror_image(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> bool:
-    """Whether the branch passes its own mirror image between two cycles."""
+    """Whether the branch reaches its own mirror image between two cycles: at a Hopf point, or at a symmetric
+    cycle."""
     if start.orbit.symmetric:
         return turned_round(start, end)
     return mirrored(start, end, limits.breakings, limits.accuracy)
 
 
 def _hides_corner(start: ArcPoint, end: ArcPoint) -> bool:
-    """Whether the largest y has a corner between a cycle and the last one, too far from it to be located.
+    """Whether the largest tip y may have a corner between the cycle `start` and the last cycle `end`, too far
+    from `end` for a figure to show.
 
-    At a corner another maximum of y(t) becomes the largest. A figure finds it from two cycles on each side.
+    At a corner a different maximum of y(t) becomes the largest. A figure locates a corner from two cycles
+    before and two cycles after it.
     """
     apart = abs(end.cycle.path.time_of_largest_y - start.cycle.path.time_of_largest_y)
     other = min(apart, 1 - apart) > ENDINGS.same_maximum
@@ -184,10 +195,10 @@ def _hides_corner(start: ArcPoint, end: ArcPoint) -> bool:
 
 
 def turned_round(start: ArcPoint, end: ArcPoint) -> bool:
-    """Whether the bending moments at t = 0 have changed sign between two cycles, as they do beyond a Hopf
-    point.
+    """Whether the bending moments at t = 0 have opposite signs at two cycles, because a Hopf point lies
+    between.
 
-    The tip's y is no criterion: on a large cycle an extremum of y may pass through 0.
+    The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0.
     """
     mesh = mesh_of(end.orbit)
     layout = end.orbit.form.layout
@@ -198,7 +209,11 @@ def turned_round(start: ArcPoint, end: ArcPoint) -> bool:
 
 
 def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """The Hopf point between two cycles where the branch ends; or the first cycle, for a shorter step."""
+    """The end of the branch at a Hopf point between two cycles; or the cycle `start` with half the step
+    length, if the cycles are still too large.
+
+    Raises Unsolvable if no shorter step is allowed.
+    """
     shorter = arc_between(start, end) / 2
     if start.cycle.measures.tip_y_max > ENDINGS.small_cycle:
         if shorter < ARC_STEPS.shortest:
@@ -206,7 +221,7 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
         return replace(start, length=shorter)
     # Near a Hopf point parameter and period are quadratic in the deflection.
     tangent = start.tangent
-    # Back to deflection d = 0 a parabola p = p0 + k d^2 changes by half of what its tangent says.
+    # From d to 0 the parabola p = p0 + k d^2 changes by half as much as its tangent at d.
     share = start.deflection / (2 * start.ahead[0] * start.scale.deflection)
     at = start.at - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
@@ -217,12 +232,13 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
         period_tolerance += ENDINGS.period_tolerance * hopf.period
         if abs(at - hopf.coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
             return BranchEnd(special_hopf(hopf), complete=True, end_hopf=number)
-    why = "cycles shrink to zero amplitude where no Hopf point is known"
+    why = "the cycles shrink to zero amplitude, but no known Hopf point is there"
     return BranchEnd(end_at(start, EndReason.no_cycle_found, why), complete=False)
 
 
 def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """The symmetry breaking between two cycles where the branch ends; else the first, for a shorter step."""
+    """The end of an asymmetric branch at a symmetry breaking between two cycles; or the cycle `start` with
+    half the step length, if the cycles are still too asymmetric."""
     which = breaking_between(start, end, limits.breakings, limits.accuracy)
     if which is None:
         return replace(start, length=arc_between(start, end) / 2)
@@ -230,5 +246,5 @@ def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> Ar
         breaking = limits.breakings[which]
         special = replace(breaking.point, message="", orbit=None)
         return BranchEnd(special, complete=True, end_breaking=breaking)
-    why = "the cycles become symmetric at a cycle of a branch that was not followed"
+    why = "the cycles become symmetric, but no known symmetry breaking is there"
     return BranchEnd(end_at(start, EndReason.no_cycle_found, why), complete=False)

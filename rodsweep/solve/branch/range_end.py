@@ -1,4 +1,4 @@
-"""The last cycle of a branch, at an end of the range of its parameter."""
+"""The last cycle of a branch, at an end of the parameter range."""
 
 import numpy as np
 
@@ -11,23 +11,27 @@ from .special.segment import BranchSegment
 from .symmetry import ENDINGS
 
 ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
-"""Direction of `Scale.place` along the parameter."""
+"""Unit vector along the parameter, (3,), in the components of `Scale.place`."""
 
 
 def range_end_condition(start: ArcPoint, limit: float) -> BorderCondition:
-    """The condition for the cycle at a limit of the parameter's coordinate."""
+    """The condition that the parameter coordinate of a cycle equals `limit`, in the scale of the cycle
+    `start`."""
     return BorderCondition(start.scale, ALONG_PARAMETER, limit / start.scale.coordinate)
 
 
 def cycle_at_range_end(
     start: ArcPoint, end: ArcPoint, range_end: BorderCondition, accuracy: float
 ) -> ArcPoint:
-    """The cycle at an end of the range, between two cycles; raises Unsolvable."""
+    """The cycle at an end of the parameter range, between the cycles `start` and `end`; raises Unsolvable.
+
+    range_end: condition that the cycle fulfils.
+    """
     scale = start.scale
     segment = BranchSegment(start, end)
 
     def beyond(length: float) -> float:
-        # On the predicted cubic, without solving a cycle: the condition itself is solved for once below.
+        # On the predicted cubic; the only cycle is solved below, with the exact condition.
         return -range_end.residual(segment.predicted(length))
 
     ends = beyond(0.0), beyond(segment.length)

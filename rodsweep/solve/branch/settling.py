@@ -1,6 +1,6 @@
-"""Measurement of the errors of the cycles of a branch, and choice of the mesh from these errors.
+"""Choice of the mesh for the cycles of a branch, from measured errors.
 
-Errors are measured at every third cycle or so (`errors`) and interpolated at the cycles between.
+Errors are measured at about every third cycle (`errors`) and interpolated at the cycles between.
 """
 
 from collections.abc import Sequence
@@ -20,40 +20,45 @@ from .errors import BranchCalibration, measured_errors, slope_at
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SettlingSettings:
-    """Settings for the choice of the meshes of a branch, and of the cycles at which errors are measured."""
+    """Settings for the choice of meshes on a branch, and of the cycles whose errors are measured."""
 
     max_meshes: int = 8
     """Maximum number of meshes tried for one cycle."""
     cheaper_cost: float = 0.5
-    """A cheaper mesh is taken if its cost is below this fraction of the present cost."""
+    """Largest cost, in units of the cost of the present mesh, of a cheaper mesh that replaces the present
+    mesh."""
     planned_share: float = 0.5
-    """Fraction of the accuracy for which a mesh is planned, so that the mesh serves the next cycles too."""
+    """Error for which a mesh is planned, in units of the accuracy. It is below 1 so that the mesh suffices
+    for the next cycles too."""
     min_rate_share: float = 0.7
-    """Smallest rate of the parameter along the branch, in units of the slower rate at the two measured
-    cycles, for interpolated errors: beside a fold the rate is smaller, and the measured errors are no
-    bound."""
+    """Smallest derivative of the parameter by arc length at a cycle with interpolated errors, in units of the
+    smaller derivative at the two measured cycles. Near a fold the derivative is smaller, and the measured
+    errors are no bound."""
     max_tail_growth: float = 2.0
-    """Largest growth of the estimated errors since either measured cycle for interpolated errors."""
+    """Largest growth of the error estimate, since the measured cycle with the smaller growth, at which errors
+    are interpolated."""
     max_unmeasured: int = 3
-    """Errors are measured at least at every third cycle."""
+    """Maximum number of steps between two cycles with measured errors."""
     remeasure_growth: float = 4.0
-    """Errors are measured anew once the coefficient tails suggest growth by this factor."""
+    """Growth of the errors since the last measurement, estimated by the coefficient tails, above which the
+    errors are measured again."""
 
 
 SETTLING = SettlingSettings()
 
 
 def first_point(found: ConvergedOrbit, scale: Scale, side: Array, born: float, accuracy: float) -> ArcPoint:
-    """The first cycle of a branch with its errors, on a finer mesh if necessary; raises Unsolvable.
+    """The first cycle of a branch, with measured errors within the accuracy, on a finer mesh if necessary;
+    raises Unsolvable.
 
-    side: direction in which the branch goes on, (3,). born: distance from the point of birth, in the scale;
-    parameter and multipliers are quadratic in this distance.
+    side: direction of the branch in the components of `Scale.place`, (3,). born: arc length from the special
+    point where the branch starts; parameter and multipliers are quadratic in this length.
     """
     place = cycle_place(found, scale, tangent_at(found.orbit, scale, side, bordered(found)))
     multipliers = multipliers_of(found)[0]
     lost = abs(multipliers[0] - 1) if len(multipliers) else 0.0
-    # From the Hopf point, where rate and lost multiplier vanish: one is linear in the deflection, the other
-    # quadratic.
+    # At the Hopf point the parameter's rate is 0 and a second multiplier is 1. From there the rate is linear
+    # and the multiplier quadratic in the deflection.
     place = replace(place, curvature=place.rate / born, multiplier_rate=2 * lost / born)
     calibration = measured_errors(found, place, accuracy, None)
     cycle = with_calibrated_errors(calibration.known, found, accuracy)
@@ -63,29 +68,29 @@ def first_point(found: ConvergedOrbit, scale: Scale, side: Array, born: float, a
 
 
 def measurement_due(point: ArcPoint) -> bool:
-    """Whether the errors of a cycle must be measured."""
+    """Whether the errors of a cycle must be measured, because the last measured cycle is too far away."""
     growth = float(point.calibration.known.on_branch(point.orbit).growth.max())
     return point.unmeasured >= SETTLING.max_unmeasured or growth > SETTLING.remeasure_growth
 
 
 def measured(point: ArcPoint, accuracy: float) -> ArcPoint:
-    """The cycle with errors measured at it; raises Unsolvable."""
+    """The same cycle with its errors measured on two finer meshes; raises Unsolvable."""
     before = point.calibration.known
     return with_calibration(point, measured_errors(point.cycle.fine, point.place, accuracy, before), accuracy)
 
 
 def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: float) -> ArcPoint:
-    """The cycle with errors from a calibration."""
+    """The same cycle with the errors of a calibration that holds at this cycle."""
     cycle = with_calibrated_errors(calibration.known, point.cycle.fine, accuracy)
     return replace(point, cycle=cycle, calibration=calibration, unmeasured=0, arc_since_measured=0.0)
 
 
 def refined(point: ArcPoint, accuracy: float, condition: BorderCondition | None = None) -> ArcPoint:
-    """The cycle with measured errors within the accuracy, on the cheapest mesh found; raises Unsolvable
-    without one.
+    """The same cycle with measured errors within the accuracy, on a mesh chosen for this accuracy; raises
+    Unsolvable if no allowed mesh suffices.
 
-    condition: holds on every mesh; by default the arc length along the branch is kept. A much cheaper mesh
-    replaces a mesh that is too fine.
+    A sufficient mesh is replaced only by a much cheaper mesh. condition: equation that identifies the cycle
+    on every mesh; by default its arc length.
     """
     condition = condition or point.condition(0.0)
     finest = False
@@ -95,8 +100,7 @@ def refined(point: ArcPoint, accuracy: float, condition: BorderCondition | None 
         known = point.calibration
         enough = known.largest(accuracy) <= accuracy
         planned = known.planned(SETTLING.planned_share * accuracy)
-        # A mesh that is good enough is left only for a much cheaper one, and never once it was too coarse
-        # before.
+        # A sufficient mesh is replaced only by a much cheaper mesh, and never after an insufficient mesh.
         if enough and (finest or planned.cost > SETTLING.cheaper_cost * known.mesh.cost):
             return point
         if not enough:
@@ -109,7 +113,8 @@ def refined(point: ArcPoint, accuracy: float, condition: BorderCondition | None 
 
 
 def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accuracy: float) -> ArcPoint:
-    """The cycle on another mesh, without measured errors; raises Unsolvable."""
+    """The same cycle solved on another mesh, without measured errors; raises Unsolvable. condition: equation
+    that identifies the cycle."""
     found = condition.on(mesh, point.cycle.fine, newton_tolerance(accuracy), matrix_distance(accuracy))
     tangent = tangent_at(found.orbit, point.scale, point.ahead, bordered(found))
     known = point.place
@@ -129,11 +134,12 @@ def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accura
 def settled(
     last: ArcPoint, points: Sequence[ArcPoint], accuracy: float, condition: BorderCondition | None
 ) -> list[ArcPoint]:
-    """The cycles after a measured one, all with errors within the accuracy; raises Unsolvable.
+    """The cycles `points`, which follow the measured cycle `last`, all with errors within the accuracy;
+    raises Unsolvable.
 
-    condition: holds for the last cycle on every mesh; by default its arc length is kept. Errors are measured
-    at the last cycle and interpolated between; a cycle that is too inaccurate is solved again on the mesh of
-    the last cycle.
+    Errors are measured at the last of `points` and interpolated at the others. A cycle that is too inaccurate
+    is solved again on the mesh of the last of `points`. condition: equation that identifies the last of
+    `points` on every mesh; by default its arc length.
     """
     *between, end = points
     whole = end.arc_since_measured
@@ -142,7 +148,7 @@ def settled(
         _with_errors_between(last, point, end, point.arc_since_measured / whole, accuracy)
         for point in between
     ]
-    # Only after the errors between were interpolated, since those belong to the old mesh.
+    # Only after the interpolation, because the interpolated errors belong to the old mesh.
     end = refined(end, accuracy, condition)
     again = [
         point if point.calibration.largest(accuracy) <= accuracy else _on_mesh_of(end, point, accuracy)
@@ -152,9 +158,10 @@ def settled(
 
 
 def _on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
-    """A cycle solved on the mesh of a later cycle, with errors of that cycle; raises Unsolvable."""
+    """The cycle `point` solved again on the mesh of the later cycle `end`, with errors calibrated there;
+    raises Unsolvable."""
     solved = on_mesh(point, mesh_of(end.orbit), point.condition(0.0), accuracy)
-    # With the errors of the end, on whose mesh the cycle now is.
+    # With share 1 the errors are those of `end`, on whose mesh the cycle now is.
     solved = _with_errors_between(end, solved, end, 1.0, accuracy)
     return refined(solved, accuracy)
 
@@ -162,10 +169,12 @@ def _on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
 def _with_errors_between(
     last: ArcPoint, point: ArcPoint, end: ArcPoint, share: float, accuracy: float
 ) -> ArcPoint:
-    """A cycle at a share of the way between two on the same mesh, with interpolated errors.
+    """The cycle `point` with errors interpolated between the measured cycles `last` and `end`, all on the
+    same mesh; raises Unsolvable.
 
-    Its errors are measured instead if its coefficient tails are larger, or if the parameter changes more
-    slowly, as beside a fold: the errors at the ends are then no bound. Raises Unsolvable.
+    share: fraction of the arc length from `last` to `end`. The errors of `point` are measured instead if its
+    coefficient tails are larger, or if the parameter changes more slowly, as near a fold: the errors at
+    `last` and `end` are then no bound.
     """
     ends = (last, end)
     slow = abs(point.rises) < SETTLING.min_rate_share * min(abs(one.rises) for one in ends)

@@ -116,7 +116,7 @@ def test_states_that_multipliers_on_the_circle_leave_undecided_have_a_status(mon
         StableStates.undecided,
     ]
     assert row.status == CoexistenceStatus.special_undecided
-    assert "undecided at 2 places, F = 60 to 70" in row.message
+    assert "undecided at 2 values of F, from 60 to 70" in row.message
 
 
 def test_a_list_of_special_points_that_is_full_is_told():
