@@ -1,4 +1,5 @@
-"""Curves of folds and torus points of cycles, from a point located on a row to their ends."""
+"""Continuation of a curve of folds or torus points over two parameters, from a point on a row to an end of
+the curve."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -35,8 +36,8 @@ CURVE_STEPS = StepControl(
     growth=2.0,
     most=400,
 )
-"""Step lengths along a curve; the rows' axis has length 1, the other three directions are those of
-`Scale.place`."""
+"""Step length control along a curve of special points. Arc length has four components: three of
+`Scale.place`, and the axis coordinate of the rows' parameter, from 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,19 +45,22 @@ class CycleCurveSettings:
     """Settings for the ends of a curve of special points."""
 
     min_loop_points: int = 5
-    """Minimum number of points of a closed curve."""
+    """Number of points of a curve below which the curve cannot be closed."""
     on_edge: float = 1e-8
-    """Largest scaled distance from an edge of a point on the edge."""
+    """Largest distance of a point on an edge of the plane from this edge; each axis has length 1."""
     edge_bracket: float = 1e-10
-    """Fraction of a step to which the crossing of an edge is located."""
+    """Tolerance of the point at which a curve crosses a limit, in units of the step."""
     crushing_margin: float = 1e-3
-    """Relative distance below the crushing force k1 at which a curve ends."""
+    """Relative distance of F from the crushing force k1 at which a curve ends."""
     crushing_accuracy: float = 1e-6
-    """Relative accuracy of the shortened step that ends halfway into this margin."""
+    """Relative tolerance of the length of a step that is shortened to end in the middle of
+    `crushing_margin`."""
     vanishing: float = 0.01
-    """Largest tip y, in L, from which a curve is extrapolated to the Hopf point where its cycles vanish."""
+    """Largest tip y, in L, of a cycle at which a curve ends, because the curve is extrapolated from there to
+    the Hopf point where the cycles vanish."""
     almost_real: float = 0.2
-    """Angle of a multiplier from the real axis, in radians, below which its pair is about to become real."""
+    """Sine of the angle between a multiplier and the real axis, below which a lost curve of torus points ends
+    at a resonance: the complex pair is about to become real."""
 
 
 CYCLE_CURVES = CycleCurveSettings()
@@ -66,18 +70,19 @@ ALONG_BRANCH = np.array([1.0, 0.0])
 
 
 EDGE_COUNT = 4
-"""Number of edges of the plane; the margins of a curve begin with the distances from these."""
+"""Number of edges of the parameter plane; the first margins of a curve are the distances from these edges."""
 ROW_EDGES = (2, 3)
-"""Indices of the margins whose edges are rows."""
+"""Indices of the margins for the two edges of the plane that are rows."""
 END_AT_MARGIN = (*EDGE_COUNT * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_model, CurveEnd.hopf)
-"""Reason for the end of a curve, by the margin that becomes 0."""
+"""Reason for the end of a curve, by the index of the margin that becomes 0."""
 
 
 @dataclass(frozen=True, slots=True)
 class CurveLimits:
-    """Limits of the curves of one kind of special points: the line's and the rows' axis.
+    """Continuation problem for curves of one kind of special points in a parameter plane.
 
-    side: 1 or -1, first direction along the rows' axis. workspace: memory of all matrices.
+    line: axis of the parameter along a row. rows: axis of the rows' parameter. side: 1 or -1, first direction
+    along the rows' axis. workspace: memory of Newton's matrices.
     """
 
     kind: SpecialKind
@@ -87,14 +92,14 @@ class CurveLimits:
     side: float = 1.0
 
     def followed(self, special: SpecialPoint, row: float) -> tuple[list[OnCurve], CurveEnd]:
-        """(points from a special point of a row to an end of its curve, reason for the end); raises
-        Unsolvable."""
+        """(points of a curve in order from the special point `special` on a row, reason for the end of the
+        curve); raises Unsolvable. row: value of the rows' parameter."""
         first = first_on_curve(special, self.line.name, self.rows, row, self.workspace)
         curve = follow(self, first, CURVE_STEPS, self._report)
         return errors_between(curve.solutions), self._why_ended(curve)
 
     def _why_ended(self, curve: Curve[OnCurve]) -> CurveEnd:
-        """Reason for the end of a curve."""
+        """Reason for the end of a followed curve, as it is stored."""
         if curve.end is CurveStop.margin:
             return END_AT_MARGIN[curve.margin]
         if curve.end is CurveStop.closed:
@@ -102,13 +107,13 @@ class CurveLimits:
         return self._why_lost(curve.solutions[-1]) if curve.end is CurveStop.lost else CurveEnd.not_followed
 
     def _report(self, points: Sequence[OnCurve]) -> None:
-        """Reports the position along the curve."""
+        """Reports the last point of a curve to the progress display."""
         report(
             lambda: SolvePosition(f"{self.rows.name} = {points[-1].row:.5g}, {counted(len(points), 'point')}")
         )
 
     def step(self, behind: Sequence[OnCurve], length: float) -> StepResult[OnCurve]:
-        """The point a step ahead; raises Unsolvable."""
+        """The point of the curve one step of a given length ahead of `behind[-1]`; raises Unsolvable."""
         last = behind[-1]
         if len(behind) == 1:
             start = last.orbit
@@ -137,12 +142,14 @@ class CurveLimits:
         return CycleFamily.about(self.kind, self.rows, point, self.workspace)
 
     def _predicted(self, points: Sequence[OnCurve], step: float) -> tuple[Orbit, float]:
-        """(orbit, place) a step beyond the last of some points; raises Unsolvable."""
+        """(orbit, rows' axis coordinate) predicted by a polynomial one step beyond the last of `points`;
+        raises Unsolvable."""
         known = points[-CURVE_IDENTITY.max_interpolated :]
         return self._mixed(known, weights_at(lengths_of(known), step), mesh_of(known[-1].orbit))
 
     def _step_before_crushing(self, points: Sequence[OnCurve], step: float) -> float:
-        """The step length, shortened if its prediction would lie beyond the crushing margin."""
+        """The step length, shortened if the predicted rod would be closer to crushing than half of
+        `crushing_margin`."""
         from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
         known = points[-CURVE_IDENTITY.max_interpolated :]
@@ -162,15 +169,16 @@ class CurveLimits:
     def _mixed(
         self, points: Sequence[OnCurve], weights: Sequence[float] | Array, mesh: OrbitMesh
     ) -> tuple[Orbit, float]:
-        """(orbit, place): weighted means of some points, (points,); raises Unsolvable."""
+        """(orbit, rows' axis coordinate): weighted sums over `points`, on a given mesh; raises Unsolvable.
+        weights: (points,)."""
         values = np.dot(weights, [mesh.carry(point.orbit).values for point in points])
         at, place = (float(np.dot(weights, [getattr(p, n) for p in points])) for n in ("at", "place"))
         changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
         return with_parameters(replace(mesh.carry(points[-1].orbit), values=values), changed), place
 
     def margins(self, point: OnCurve) -> Array:
-        """Scaled distances from the four edges, distance from crushing, least h1, and the cycle's size,
-        (7,)."""
+        """Margins of a point of the curve, (7,): distances from the four edges, distance from crushing,
+        smallest h1, and largest tip y above `vanishing`."""
         x = self.line.scaled(point.at)
         y = point.place
         rod = point.orbit.form.rod
@@ -196,7 +204,8 @@ class CurveLimits:
         return replace(point, errors=outer.errors and outer.errors.carried)
 
     def _where_zero(self, inner: OnCurve, outer: OnCurve, margin: int, ends: tuple[float, float]) -> OnCurve:
-        """The point between two at which a margin is 0. ends: margin at the two points. Raises Unsolvable."""
+        """The point of the curve between `inner` and `outer` at which a margin is 0; raises Unsolvable. ends:
+        values of the margin at both points."""
         found: dict[float, OnCurve] = {1.0: outer}
 
         def left(share: float) -> float:
@@ -206,7 +215,8 @@ class CurveLimits:
         return found[zero_along(left, ends, 1.0, CYCLE_CURVES.edge_bracket, CYCLE_CURVES.edge_bracket)]
 
     def closes(self, behind: Sequence[OnCurve], point: OnCurve) -> bool:
-        """Whether the first point of the curve lies between its last point and the next."""
+        """Whether the first point of the curve lies on the step from `behind[-1]` to the next point
+        `point`."""
         first = behind[0]
         last = behind[-1]
         step = point.step_from(last)
@@ -217,20 +227,21 @@ class CurveLimits:
         return len(behind) > CYCLE_CURVES.min_loop_points and 0 <= passed <= 1 and near
 
     def between(self, one: OnCurve, other: OnCurve, share: float) -> OnCurve:
-        """The point at a fraction of the way between two, without error; raises Unsolvable."""
+        """The point of the curve at a fraction `share` of the chord from `one` to `other`, without error
+        estimate; raises Unsolvable."""
         start, place = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.across(other.step_from(one))
         return self._family(other).nearest(start, place, across, other.rates)
 
     def on_row(self, one: OnCurve, other: OnCurve, place: float) -> OnCurve:
-        """The point at a scaled place of the rows' axis between two points, without error; raises
-        Unsolvable."""
+        """The point of the curve between `one` and `other` with the rows' axis coordinate `place`, without
+        error estimate; raises Unsolvable."""
         share = (place - one.place) / (other.place - one.place) if other.place != one.place else 0.0
         start, _ = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         return self._family(other).nearest(start, place, ALONG_BRANCH, other.rates)
 
     def _why_lost(self, last: OnCurve) -> CurveEnd:
-        """Reason why a curve cannot be followed beyond a point."""
+        """Reason why a curve was lost beyond its last point: a resonance, or none known (`not_followed`)."""
         if self.kind == SpecialKind.torus:
             pair = crossing_pair(BorderedMatrix(last.orbit, last.scale, self.workspace))
             if pair is None or abs(pair.imag) < CYCLE_CURVES.almost_real * abs(pair):

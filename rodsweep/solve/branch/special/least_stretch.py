@@ -1,4 +1,4 @@
-"""The least stretch h1 of a cycle over the whole rod and period; the model is valid for h1 > 0 only."""
+"""Smallest axial stretch h1 of a cycle over the whole rod and period; the model is valid only for h1 > 0."""
 
 from dataclasses import dataclass
 from math import inf
@@ -15,26 +15,29 @@ from ..arc import ArcPoint
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeastStretchSettings:
-    """Settings for the search for the least stretch of a cycle."""
+    """Settings for the search for the smallest stretch h1 of a cycle."""
 
     places_per_node: int = 8
-    """Number of places per node at which the least stretch is sampled."""
+    """Number of sampled positions on the rod per node of the mesh."""
     times_per_harmonic: int = 8
-    """Number of times per harmonic at which the least stretch of one place is sampled."""
+    """Number of sampled times per harmonic, for the smallest stretch at one position on the rod."""
     place_tolerance: float = 1e-9
-    """Tolerance of the place of the least stretch, in L; the stretch has the square of this as its error."""
+    """Tolerance of the position of the smallest stretch, in L; the stretch, which is stationary there, has an
+    error of second order."""
     safe_at_nodes: float = 0.2
-    """If h1 exceeds this limit at all nodes, h1 is positive between the nodes too."""
+    """Limit of h1 at all nodes above which no search between the nodes is needed: h1 is positive there
+    too."""
     safe_at_places: float = 0.02
-    """If h1 exceeds this limit at all sampled places, h1 is positive everywhere: a resolved polynomial hardly
-    varies more."""
+    """Limit of h1 at all sampled positions above which no search between the positions is needed: a resolved
+    polynomial varies less."""
 
 
 LEAST_STRETCH = LeastStretchSettings()
 
 
 def stretch_at(point: ArcPoint) -> float:
-    """The least h1 of a cycle in space and time; the least nodal value if that is far from 0."""
+    """Smallest h1 of a cycle of a branch over rod and period; only the smallest nodal value if this exceeds
+    `safe_at_nodes`."""
     rough = point.cycle.measures.least_stretch
     if rough > LEAST_STRETCH.safe_at_nodes:
         return rough
@@ -42,7 +45,8 @@ def stretch_at(point: ArcPoint) -> float:
 
 
 def stretch_of(orbit: Orbit) -> float:
-    """`stretch_at` for an orbit alone."""
+    """Smallest h1 of an orbit over rod and period; only the smallest nodal value if this exceeds
+    `safe_at_nodes`."""
     rough = orbit.form.least_stretch(orbit.points)
     if rough > LEAST_STRETCH.safe_at_nodes:
         return rough
@@ -50,10 +54,10 @@ def stretch_of(orbit: Orbit) -> float:
 
 
 def least_stretch(path: CyclePath, enough: float = inf) -> float:
-    """The least h1 of a cycle over the whole rod and the whole period.
+    """Smallest h1 of a cycle over the whole rod and the whole period.
 
-    enough: if the least sampled value exceeds this, that value is returned without a search between the
-    samples.
+    enough: limit of the smallest sampled value above which this value is returned, without a search between
+    the sampled positions.
     """
     from scipy.optimize import minimize_scalar  # slow import: 0.1 s, for few runs
 

@@ -1,8 +1,9 @@
-"""Location of special points on a branch: the zero of a test function, with a cycle solved at each place.
+"""Location of special points on a branch: zeros of test functions of arc length, with a cycle solved at every
+argument.
 
-The zero is bracketed on the branch's own mesh, then found by the secant method on two finer meshes; their
-difference is the error. Each cycle takes one elimination: its test function is corrected with the factors of
-a nearby matrix (`augmented`).
+The zero is bracketed on the mesh of the branch, then found by the secant method on two finer meshes. The
+difference between the two zeros gives the error. Each cycle takes only one matrix factorisation, because its
+test function is corrected with the factors of a nearby matrix (`augmented`).
 """
 
 from dataclasses import replace
@@ -28,12 +29,14 @@ from .segment import BranchSegment
 
 
 def through_minus_one(orbit: Orbit) -> SpecialKind:
-    """Kind of special point where a multiplier over the solved interval passes -1."""
+    """Kind of the special point at which a multiplier of this orbit, over the solved time interval, passes
+    -1."""
     return SpecialKind.symmetry_breaking if orbit.symmetric else SpecialKind.period_doubling
 
 
 def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrbit) -> float:
-    """The test function of a kind, zero at its special points, at the cycle just found; raises Unsolvable."""
+    """The test function that is zero at special points of a kind, at the cycle `found`, which `segment`
+    solved last; raises Unsolvable."""
     if kind == SpecialKind.fold:
         return segment.rises()
     if kind == SpecialKind.left_the_model:
@@ -47,20 +50,24 @@ def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrb
 
 
 def test_of_multipliers(kind: SpecialKind, h: Complex) -> float:
-    """The test function of a kind from multipliers over the solved interval, (rank,); raises Unsolvable."""
+    """The test function of torus points, symmetry breakings or period doublings, from the nontrivial
+    multipliers h over the solved time interval, (rank,); raises Unsolvable."""
     real = np.abs(h.imag) <= LOCATING.real_multiplier * np.abs(h)
     if kind != SpecialKind.torus:
         # The sign of det(h + 1) changes only when a multiplier crosses -1, whichever multiplier is nearest.
         return float((-1) ** (h[real].real < -1).sum() * np.abs(h + 1).min())
-    # A pair that met on the real axis is no pair any more.
+    # A complex pair that has become real has no test function.
     if real.all():
-        raise Unsolvable("the multiplier that crosses the unit circle is lost")
+        raise Unsolvable("all multipliers are real, so no complex pair crosses the unit circle")
     beyond = np.abs(h[~real]) - 1
     return float(beyond[np.argmin(np.abs(beyond))])
 
 
 def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> float:
-    """The test function at a known cycle; scale, ahead: as for the segment. Raises Unsolvable."""
+    """The test function of a kind at `point`, a cycle at an end of a segment; raises Unsolvable.
+
+    scale, ahead: scale and tangent, (3,), of the segment's start.
+    """
     if kind == SpecialKind.fold:
         # In lengths along the segment's own direction, in which the zero is sought.
         rate = float(scale.moved(point.orbit, point.tangent) @ ahead)
@@ -71,8 +78,8 @@ def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> f
 
 
 def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
-    """The special point of a kind between two cycles. The error of a point that is not found is the distance
-    of the two cycles."""
+    """The special point of a kind between two cycles, to a relative accuracy. If the point is not located,
+    its message says why, and its error is the parameter difference of the two cycles."""
     aim = min(accuracy, LOCATING.accuracy)
     try:
         segment = BranchSegment(start, end)
@@ -103,7 +110,8 @@ def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) 
 
 
 def _finer(mesh: OrbitMesh, excess: float) -> OrbitMesh:
-    """The next finer mesh. excess: error of a point on this mesh in units of the accuracy."""
+    """The next finer mesh. excess: error on this mesh in units of the accuracy; 1 for the smallest
+    refinement."""
     # Errors fall with a power of the number of intervals that is proportional to the stages.
     growth = excess ** (1 / (LOCATING.power_by_stages * mesh.stages))
     growth = min(max(growth, LOCATING.more_intervals), LOCATING.max_interval_ratio)
@@ -112,10 +120,11 @@ def _finer(mesh: OrbitMesh, excess: float) -> OrbitMesh:
 
 
 def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: ArcPoint) -> SpecialPoint:
-    """A special point with errors: the differences from the same point on a coarser mesh, with a safety
-    factor.
+    """The special point with errors from its differences to `last`, the same point on a coarser mesh, with a
+    safety factor.
 
-    Period and size also have the error of the last secant step in arc length.
+    start, end: the cycles on both sides of the point, by which the errors of period and largest tip y include
+    the arc length error of the last secant step.
     """
     place = LOCATING.secant_end_at_fold if point.kind is SpecialKind.fold else LOCATING.secant_end
     one = start.cycle.measures
@@ -133,7 +142,8 @@ def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: 
 
 
 def _point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
-    """The special point at a cycle, without error. name: name of the parameter."""
+    """The special point of a kind at a solved cycle `orbit`, with errors NaN. name: continuation
+    parameter."""
     path = CyclePath(orbit)
     return SpecialPoint(
         kind=kind,
@@ -146,7 +156,8 @@ def _point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
 
 
 def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) -> SpecialPoint:
-    """A special point that is known only to lie between two cycles."""
+    """The special point for a zero that was not located between the cycles `start` and `end`, placed at
+    `end`; errors: differences of the two cycles."""
     name = start.scale.name
     measures = end.cycle.measures
     before = start.cycle.measures
@@ -165,10 +176,8 @@ def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) ->
 
 
 def _enclosed(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
-    """(approximate zero of the test function, its slope), bracketed by the ends of the segment.
-
-    Raises Unsolvable.
-    """
+    """(arc length of the approximate zero of the test function, slope of the test function there), by
+    bracketing on a segment; raises Unsolvable."""
     start = segment.start
     known = ((0.0, start), (segment.length, segment.end))
     values = {at: _at_end(kind, start.scale, start.ahead, point) for at, point in known}
@@ -180,7 +189,7 @@ def _enclosed(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
     ends = values[0.0], values[segment.length]
     least = LOCATING.enclosure_share * min(map(abs, ends))
     at = zero_along(kept, ends, segment.length, least, LOCATING.enclosure_share)
-    # The nearest other place and this zero give the slope.
+    # The nearest other arc length with a known value and this zero give the slope.
     other = min((x for x in values if x != at), key=lambda x: abs(x - at))
     slope = (values[at] - values[other]) / (at - other)
     return at - values[at] / slope, slope
@@ -189,9 +198,10 @@ def _enclosed(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
 def _zero(
     kind: SpecialKind, segment: BranchSegment, guess: float, slope: float
 ) -> tuple[float, Orbit, float]:
-    """(zero of the test function near a guess, the cycle there, the slope of the test function).
+    """(arc length of the zero of the test function near `guess`, the cycle there, slope of the test
+    function), by the secant method; raises Unsolvable.
 
-    slope: approximate, as on a coarser mesh. Raises Unsolvable.
+    slope: approximate slope, for the first step.
     """
     linear = LOCATING.linear_step_at_fold if kind == SpecialKind.fold else LOCATING.linear_step
     enough = segment.length * linear

@@ -1,9 +1,10 @@
-"""Special points of a branch: folds, torus points, symmetry breakings, period doublings.
+"""Detection of special points of a branch: folds, torus points, symmetry breakings, period doublings.
 
-Each is a sign change of a test function between two cycles. Fold: derivative of the parameter along the
-branch. Torus point: modulus of a complex pair of multipliers minus 1. Symmetry breaking: a multiplier of half
-a period and the reflection, plus 1. Period doubling of an asymmetric cycle: a multiplier of the whole period,
-plus 1. The number of multipliers outside the unit circle must change accordingly.
+A special point lies between two cycles at which its test function has opposite signs. Fold: derivative of the
+parameter by arc length. Torus point: modulus of a complex pair of multipliers minus 1. Symmetry breaking:
+multiplier of the half-period map composed with the reflection, plus 1. Period doubling of an asymmetric
+cycle: multiplier over the period, plus 1. The change of the number of multipliers outside the unit circle
+must agree.
 """
 
 from collections.abc import Callable
@@ -16,21 +17,21 @@ from .locating import located, through_minus_one
 from .point import LOCATING, SpecialKind, SpecialPoint
 
 Step = Callable[[ArcPoint, float], ArcPoint]
-"""Returns the cycle at an arc length from a given cycle; raises Unsolvable."""
+"""Function that returns the cycle at an arc length ahead of a cycle; raises Unsolvable."""
 
 
 def unstable_multipliers(point: ArcPoint) -> int:
-    """Number of multipliers outside the unit circle."""
+    """Number of multipliers outside the unit circle, from the multipliers over the solved time interval."""
     return int((np.abs(point.partial_multipliers) > 1).sum())
 
 
 def changes_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], bool]:
-    """(kinds of special points between two cycles, whether they account for the change of the
-    multipliers)."""
+    """(kinds of the special points between two cycles, whether these kinds explain the change of the number
+    of multipliers outside the unit circle)."""
     found = []
     if start.rises * end.rises < 0:
         found.append(SpecialKind.fold)
-    # Two multipliers may pass -1 together or meet there; an odd difference needs a crossing.
+    # Two multipliers may pass -1 together or become a pair near -1; an odd difference needs a crossing.
     if (_beyond_minus_one(start) - _beyond_minus_one(end)) % 2:
         found.append(through_minus_one(start.orbit))
     change = abs(unstable_multipliers(end) - unstable_multipliers(start))
@@ -42,7 +43,7 @@ def changes_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], 
 
 
 def _beyond_minus_one(point: ArcPoint) -> int:
-    """Number of real multipliers below -1."""
+    """Number of real multipliers below -1, over the solved time interval of a cycle."""
     h = point.partial_multipliers
     return int(((h.real < -1) & (np.abs(h.imag) <= LOCATING.real_multiplier * np.abs(h))).sum())
 
@@ -63,16 +64,18 @@ def special_points(
     accuracy: float,
     depth: int = 0,
 ) -> tuple[list[SpecialPoint], bool]:
-    """(special points between two cycles, in order, whether they account for the change of the multipliers).
+    """(special points between two cycles in order, whether these points explain the change of the number of
+    multipliers outside the unit circle).
 
-    accuracy: accuracy of the branch. The step is halved if several changes lie within it, or if a special
-    point is not located: near crushing a prediction over the whole step may leave the model.
+    step: function that returns a cycle between. accuracy: relative accuracy of the branch. depth: number of
+    halvings so far. The step is halved if the multipliers show several special points, or if a special point
+    is not located, as near crushing, where a prediction over the whole step may leave the model.
     """
     kinds, explained = changes_between(start, end)
     points = [located(kind, start, end, accuracy) for kind in kinds] if explained else []
     if depth < LOCATING.max_halvings and (not explained or any(point.message for point in points)):
         try:
-            # Half the step parts special points that are too close to be told apart by counts.
+            # Half the step separates special points whose changes of the count cancel or add up.
             middle = step(start, arc_between(start, end) / 2)
         except Unsolvable:
             pass
