@@ -1,10 +1,10 @@
 """The limit cycle of one rod by time integration alone: task `limit_cycle` with `method: integration`.
 
-ARKIMEX integrates the motion until it repeats. Neither collocation nor D takes part in it; D only gives the
-leading eigenvalue of the straight rod beside it. No Floquet multiplier is computed; a motion that settles
-shows that the cycle is stable in the plane. Period and extrema are measured on two settled motions, the
-second on a finer mesh with a smaller tolerance; their difference is the error estimate. Near a Hopf point a
-motion may not settle within the allowed periods.
+ARKIMEX integrates the motion until the motion repeats. This method is independent of collocation and of D,
+but for the stored leading eigenvalue of the straight rod, which comes from D. No Floquet multiplier is
+computed; a motion that settles shows that the cycle is stable in the plane. Period and extrema are measured
+on two settled motions, the second on a finer mesh with a smaller tolerance; their difference is the error
+estimate. Near a Hopf point a motion may not settle within the allowed periods.
 """
 
 from collections import deque
@@ -49,9 +49,8 @@ from .transient.returns import (
 
 @dataclass(frozen=True, eq=False)
 class _SettledMotion:
-    """A settled motion. z: its state, (unknowns,). turns: returns of the tip per period. step: last time
-    step.
-    """
+    """A motion settled on a cycle. z: last state, (unknowns,). turns: returns of the tip per period. step: in
+    tau2."""
 
     z: Array
     turns: int
@@ -59,7 +58,8 @@ class _SettledMotion:
 
 
 class _NoCycle(Exception):
-    """The motion has an outcome that is not a cycle."""
+    """Raised if a motion does not end on a cycle. status, why: outcome of the motion, and the message for the
+    user."""
 
     def __init__(self, status: MarchedStatus, why: str) -> None:
         super().__init__(why)
@@ -68,7 +68,8 @@ class _NoCycle(Exception):
 
 
 def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
-    """The cycle that the rod reaches from its leading mode; a failure becomes a status."""
+    """The cycle that a rod reaches from its leading mode, by time integration alone; a failure becomes a
+    status, never an exception."""
 
     def failed(cause: str) -> Cycle:
         forget_integrators()  # after an error inside PETSc its objects are unusable
@@ -78,7 +79,7 @@ def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
 
 
 class _MarchedMotion:
-    """The motion of one rod, on successively finer meshes."""
+    """Integration of the motion of one rod until it settles, on successively finer meshes."""
 
     def __init__(self, rod: Rod, request: CycleRequest) -> None:
         self.request = request
@@ -91,7 +92,7 @@ class _MarchedMotion:
         self.waited = 0
 
     def cycle(self) -> Cycle:
-        """The outcome: a cycle with errors, or a different end of the motion."""
+        """The outcome for the rod: a cycle with errors, or another end of the motion."""
         w = straight_rod(self.limit).w  # exact; the mesh's own eigenvalue has errors up to 1e-3
         straight = Cycle(status=MarchedStatus.straight, linear_growth_rate=w.real, linear_frequency=w.imag)
         try:
@@ -117,7 +118,8 @@ class _MarchedMotion:
         return Beam(self.rod, self.mesh)
 
     def _refined(self, settled: _SettledMotion) -> _SettledMotion:
-        """The settled motion on a finer mesh with a smaller tolerance, started from the settled state."""
+        """The settled motion on a finer mesh with a smaller tolerance, started from the last state of
+        `settled`; raises _NoCycle."""
         before = self.beam
         self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MARCHING.more_orders)
         self.scheme = replace(self.scheme, tolerance=MARCHING.tolerance_ratio * self.scheme.tolerance)
@@ -126,7 +128,8 @@ class _MarchedMotion:
         return self._settled(relaxed(self.beam, z, self.mode.period))
 
     def _settled(self, z: Array) -> _SettledMotion:
-        """The settled motion that starts from z, (unknowns,); raises _NoCycle."""
+        """The motion from the state z, (unknowns,), integrated until it settles on a cycle; raises
+        _NoCycle."""
         past: deque[Array] = deque(maxlen=RETURNS.max_returns_per_period + 1)
         row = angle_weights(self.beam)
         step = self.mode.period / MARCHING.first_steps
@@ -153,13 +156,13 @@ class _MarchedMotion:
                 continue
             turns, distance = repetition(list(past))
             noise = MARCHING.return_noise * self.scheme.tolerance
-            # Within the noise the quotient of two distances says nothing about the contraction per return.
+            # Below the noise the quotient of two distances is not the contraction rate per return.
             if last > noise:
                 rate = min(max(distance, noise) / last, 1.0) ** (turns / MARCHING.returns_per_test)
             elif isnan(last):
                 rate = 0.0 if distance <= noise else 1.0
             last = distance
-            # A geometric sequence of distances has distance/(1 - rate) left to its limit.
+            # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
             if distance <= MARCHING.settled_distance * self.request.accuracy * (1 - rate):
                 return _SettledMotion(z, turns, step)
         raise _NoCycle(MarchedStatus.not_settled, why_not_settled(self.waited, len(past), last))
@@ -167,9 +170,8 @@ class _MarchedMotion:
     def _run(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
     ) -> Trajectory:
-        """A complete run, by default with the scheme of the motion; raises _NoCycle if the run fails or
-        leaves the model.
-        """
+        """The motion from the state z, (unknowns,), integrated up to a duration or a limit; raises _NoCycle
+        if the integration fails or leaves the model. scheme: None for `self.scheme`."""
         run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
         if end := early_end(self.beam, run, self.waited):
             status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed
@@ -177,10 +179,8 @@ class _MarchedMotion:
         return run
 
     def _crossings(self, run: Trajectory) -> tuple[Array, Array]:
-        """Times, (k,), and states, (k, unknowns), at which theta of the tip rises through 0 on a run.
-
-        Each crossing is integrated to from the step before: a cubic between two steps is less accurate.
-        """
+        """(times, (k,), states, (k, unknowns)) at which the tip's theta rises through 0 on a run. The motion
+        is integrated to each crossing, because a cubic between two time steps is less accurate."""
         times = section_crossings(self.beam, run)[0]
         row = angle_weights(self.beam)
         states = np.empty((len(times), self.beam.unknowns))
@@ -198,7 +198,7 @@ class _MarchedMotion:
         return times, states
 
     def _path(self, settled: _SettledMotion) -> CyclePath:
-        """One period of the settled motion; raises _NoCycle."""
+        """The cycle of a settled motion: one more integration over a period; raises _NoCycle."""
         returns = settled.turns + 2
         limit = until_returns(angle_weights(self.beam), settled.z, returns)
         scheme = replace(self.scheme, tolerance=min(self.scheme.tolerance, MARCHING.measured_tolerance))
@@ -220,7 +220,8 @@ class _MarchedMotion:
         )
 
     def _limit_errors(self, settled: _SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
-        """The errors plus the effect of integrating a rod near the limit, not in it; raises _NoCycle."""
+        """The errors plus the error because the integrated rod is near a limit, not in the limit; raises
+        _NoCycle."""
         known = path.orbit.form.rod
         limit = self.limit
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
@@ -238,7 +239,7 @@ class _MarchedMotion:
         )
 
     def _measured(self, straight: Cycle, path: CyclePath, errors: CycleErrors) -> Cycle:
-        """The outcome with the cycle's numbers."""
+        """The outcome `straight` with status, measures and errors of a settled cycle."""
         enough = errors.largest <= self.request.accuracy
         cycle = replace(
             straight,

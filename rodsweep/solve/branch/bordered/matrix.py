@@ -144,7 +144,7 @@ class BorderedMatrix:
         return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._columns[:, :, 1], 0.0)
 
     def closing(self, jump: Array, columns: Array, ends: Array) -> Array:
-        """Right-hand sides, (m n,), of the conditions that each leg (time interval of multiple shooting) ends
+        """Right-hand sides, (m n,), of the conditions that each leg (interval of multiple shooting) ends
         where the next leg starts.
 
         jump: right-hand side of the last leg, (n,). columns: eliminated right-hand sides of the stages, (K,

@@ -1,4 +1,4 @@
-"""Outcome of the integration of a motion (`transient`)."""
+"""Outcome of integrating a motion until its cycle is found (`transient`)."""
 
 from dataclasses import dataclass
 
@@ -8,10 +8,8 @@ from ..status import CycleStatus
 
 @dataclass(frozen=True, eq=False)
 class TransientOutcome:
-    """Outcome of the transient. periods: returns of the tip; found: the cycle, if the motion reached one.
-
-    around: the unstable cycle inside a torus.
-    """
+    """Outcome of integrating a motion. periods: number of returns of the tip. found: the cycle, if the motion
+    reached a cycle. around: the unstable cycle inside the torus, if the motion is on a torus."""
 
     status: CycleStatus
     message: str
