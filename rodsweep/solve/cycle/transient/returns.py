@@ -144,7 +144,7 @@ def why_not_settled(waited: int, returns: int, last: float) -> str:
     return; NaN for too few returns, inf for a decayed motion.
     """
     if isfinite(last):
-        return f"{waited} returns of the tip, the last at a relative distance of {last:.1e} from an earlier return"
+        return f"{waited} returns of the tip, the last at a relative distance {last:.1e} from an earlier one"
     if isnan(last):
         return f"the tip returned to theta = 0 only {counted(returns, 'time')}, so no period is known"
     return "the deflection has decayed to rounding error, but the straight rod is not stable"
