@@ -20,7 +20,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc import ArcPoint, next_point
 from rodsweep.solve.branch.beginning import first_cycle, hopf_point
 from rodsweep.solve.branch.branch_curve import BranchPoint
-from rodsweep.solve.branch.settling import measurement_due, settled
+from rodsweep.solve.branch.settling import measurement_due, with_errors_in_accuracy
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
@@ -96,7 +96,7 @@ def cycles_of(case: Case) -> Iterator[ArcPoint]:
             return
         waiting.append(here)
         if measurement_due(here):
-            yield from (points := settled(last, waiting, case.accuracy, None))
+            yield from (points := with_errors_in_accuracy(last, waiting, case.accuracy, None))
             here = last = points[-1]
             waiting = []
 

@@ -22,7 +22,7 @@ from ...discretization.beam import Beam
 from ...discretization.elements.mesh import mesh
 from ...model.rod import Rod
 from ...solve.cycle.limit_cycle import Cycle, CycleRequest, solve_cycle
-from ...solve.cycle.transient.returns import angle_weights
+from ...solve.cycle.transient.returns import tip_angle_row
 from ...solve.motion.integrator import RunLimit, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
 from ...solve.orbit.matrix.workspace import NewtonWorkspace
@@ -141,7 +141,7 @@ class TipReturns:
 
 def returns_of(beam: Beam, run: Trajectory) -> TipReturns:
     """All returns of a run."""
-    row = angle_weights(beam)
+    row = tip_angle_row(beam)
     y = beam.tip(run.states)[1]
     angle = run.states @ row
     rising = list(map(int, np.flatnonzero((angle[:-1] < 0) & (angle[1:] >= 0))))

@@ -19,10 +19,10 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, multiplier_change, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of
-from .bordered.condition import BorderCondition, moved
-from .bordered.matrix import BorderedMatrix, bordered
+from .bordered.condition import BorderCondition, moved_orbit
+from .bordered.matrix import BorderedMatrix, bordered_matrix_of
 from .bordered.scale import Scale, deflection_of
-from .errors import BranchCalibration, CyclePlace
+from .errors import BranchCalibration, BranchDerivatives
 
 ARC_STEPS = StepControl(
     first=0.02,
@@ -52,7 +52,7 @@ class ArcPoint:
     step."""
 
     cycle: RefinedCycle
-    place: CyclePlace
+    place: BranchDerivatives
     length: float
     """Arc length of the step to the next cycle."""
     calibration: BranchCalibration
@@ -109,7 +109,7 @@ class ArcPoint:
     def partial_multipliers(self) -> Complex:
         """Nontrivial multipliers, (rank - 1,): of the half-period map composed with the reflection for a
         symmetric cycle, of the whole period for an asymmetric cycle."""
-        values = bordered(self.cycle.fine).partial_multipliers
+        values = bordered_matrix_of(self.cycle.fine).partial_multipliers
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
     def condition(self, length: float) -> BorderCondition:
@@ -122,7 +122,7 @@ class ArcPoint:
         change = length * self.tangent
         if self.before is not None:
             change = length ** np.arange(1, 4) @ self._taylor(self.before)
-        return moved(self.orbit, self.scale.name, change)
+        return moved_orbit(self.orbit, self.scale.name, change)
 
     def _taylor(self, before: PreviousCycle) -> Array:
         """Coefficients, (3, N + 1), of the arc length, its square and its cube in the predicting cubic."""
@@ -144,7 +144,7 @@ class ArcPoint:
         return np.array([self.tangent, 3 * A - 2 * B, (A - B) * (2 / step)])
 
 
-def cycle_place(found: ConvergedOrbit, scale: Scale, tangent: Array) -> CyclePlace:
+def branch_derivatives(found: ConvergedOrbit, scale: Scale, tangent: Array) -> BranchDerivatives:
     """Scale and unit tangent of a branch at a cycle. tangent: tangent of any length, (N + 1,).
 
     Curvature and multiplier rate are 0 in the result; the caller replaces both.
@@ -152,7 +152,7 @@ def cycle_place(found: ConvergedOrbit, scale: Scale, tangent: Array) -> CyclePla
     own = Scale.of(found.orbit, scale.name, scale.least)
     ahead = own.moved(found.orbit, tangent)
     unit = float(np.linalg.norm(ahead))
-    return CyclePlace(own, tangent / unit, ahead / unit, 0.0, 0.0)
+    return BranchDerivatives(own, tangent / unit, ahead / unit, 0.0, 0.0)
 
 
 def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix) -> Array:
@@ -170,7 +170,7 @@ def next_point(start: ArcPoint, accuracy: float) -> ArcPoint:
     return replace(end.solution, length=ARC_STEPS.next_length(length, end, ARC_STEPS.order))
 
 
-def point_at(start: ArcPoint, length: float, accuracy: float) -> ArcPoint:
+def cycle_at_length(start: ArcPoint, length: float, accuracy: float) -> ArcPoint:
     """The cycle at an arc length `length` from `start`; raises Unsolvable if the cycle may lie on another
     branch."""
     return ARC_STEPS.accepted(_stepped(start, accuracy, length)).solution
@@ -188,17 +188,17 @@ def _stepped(start: ArcPoint, accuracy: float, length: float) -> StepResult[ArcP
     off = relative_change(predicted, found.orbit.values - predicted.values)
     if start.before is None and off <= ARC_STEPS.far:
         off = ARC_STEPS.aim  # the error of the tangent predictor does not predict the error of the cubic
-    tangent = tangent_at(found.orbit, start.scale, start.ahead, bordered(found))
+    tangent = tangent_at(found.orbit, start.scale, start.ahead, bordered_matrix_of(found))
     cosine = float(start.scale.moved(found.orbit, tangent) @ start.ahead)  # both have unit length
-    return StepResult(cycle_ahead(start, found, tangent, length, length, accuracy), off, cosine)
+    return StepResult(unmeasured_cycle(start, found, tangent, length, length, accuracy), off, cosine)
 
 
-def arc_between(start: ArcPoint, end: ArcPoint) -> float:
+def arc_length_between(start: ArcPoint, end: ArcPoint) -> float:
     """Arc length from the cycle `start` to the cycle `end`, projected on the tangent at `start`."""
     return float(start.ahead @ (start.scale.place(end.orbit) - start.scale.place(start.orbit)))
 
 
-def cycle_ahead(
+def unmeasured_cycle(
     start: ArcPoint, found: ConvergedOrbit, tangent: Array, length: float, ahead: float, accuracy: float
 ) -> ArcPoint:
     """The solved orbit `found` as a cycle of the branch at an arc length `length` from `start`, with errors
@@ -207,7 +207,7 @@ def cycle_ahead(
     tangent: tangent of the branch at the new cycle, (N + 1,). ahead: length of the next step.
     """
     cycle = with_calibrated_errors(start.calibration.known, found, accuracy)
-    place = cycle_place(found, start.scale, tangent)
+    place = branch_derivatives(found, start.scale, tangent)
     curvature = (place.rate - start.rises) / length
     changed = multiplier_change(cycle.multipliers, start.cycle.multipliers) / length
     return ArcPoint(

@@ -26,7 +26,7 @@ from ..point import Unsolvable
 from .arc import ArcPoint
 from .bordered.condition import BorderCondition
 from .bordered.scale import Scale, deflection_of
-from .settling import first_point
+from .settling import first_measured_cycle
 from .special.point import SpecialKind, SpecialPoint
 
 
@@ -52,7 +52,7 @@ class BeginningSettings:
 BEGINNING = BeginningSettings()
 
 
-DEFLECTION = np.array([1.0, 0.0, 0.0])
+ALONG_DEFLECTION = np.array([1.0, 0.0, 0.0])
 """Unit vector along the deflection, (3,), in the components of `Scale.place`."""
 
 
@@ -135,7 +135,7 @@ def hopf_point(path: Path, crossing: Crossing) -> HopfBirth:
     )
 
 
-def special_hopf(hopf: HopfBirth) -> SpecialPoint:
+def hopf_as_special_point(hopf: HopfBirth) -> SpecialPoint:
     """The Hopf point as the first or last special point of a branch."""
     return SpecialPoint(
         kind=SpecialKind.hopf,
@@ -183,7 +183,7 @@ def _cycle_of(
     least = abs(deflection_of(start)) * BEGINNING.min_deflection_amplitude / amplitude
     scale = Scale.of(start, hopf.name, least)
     # The deflection is prescribed, not the parameter: it cannot collapse onto the straight rod.
-    border = np.sign(deflection_of(start)) * DEFLECTION
+    border = np.sign(deflection_of(start)) * ALONG_DEFLECTION
     condition = BorderCondition.at(scale, border, start)
     rough = condition.solved(start, REFINEMENT.nearby_tolerance, workspace)
     near = rough.orbit
@@ -195,7 +195,7 @@ def _cycle_of(
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
     born = abs(deflection_of(first.orbit)) / scale.deflection
-    return first_point(first, scale, border, born, accuracy)
+    return first_measured_cycle(first, scale, border, born, accuracy)
 
 
 def predicted_cycle(hopf: HopfBirth, amplitude: float) -> Orbit:

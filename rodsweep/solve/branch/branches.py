@@ -19,10 +19,10 @@ from ..point import FAILURES, cause_of, solved
 from ..status import PointStatus
 from .beginning import hopf_point
 from .branch_curve import BranchCurve
-from .following import BranchLimits, follow_branch, follow_without_symmetry
-from .special.point import LOCATING, EndReason
-from .symmetry import SymmetryBreaking, breakings_of
-from .work import shares_of_branches
+from .following import BranchLimits, follow_asymmetric_branch, follow_branch
+from .special.point import SPECIAL_POINT, EndReason
+from .symmetry import SymmetryBreaking, symmetry_breakings_in
+from .work import fractions_before_branches
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -195,7 +195,7 @@ def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
     arrived: set[int] = set()
     left = limits.max_cycles
     count = len(limits.hopfs)
-    shares = shares_of_branches([hopf.coordinate for hopf in limits.hopfs], limits.ends)
+    shares = fractions_before_branches([hopf.coordinate for hopf in limits.hopfs], limits.ends)
     for number in range(count):
         if number in arrived:
             continue
@@ -205,13 +205,13 @@ def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
         arrived.add(curve.end_hopf)
         left -= len(curve.points)
         curves.append(curve)
-    breakings = breakings_of([curve.special for curve in curves])
+    breakings = symmetry_breakings_in([curve.special for curve in curves])
     met: list[SymmetryBreaking] = []
     for which, breaking in enumerate(breakings):
         if breaking in met:
             continue
         with part(f"branch {len(curves) + 1}, without symmetry"):
-            curve = follow_without_symmetry(
+            curve = follow_asymmetric_branch(
                 which, name, replace(limits, max_cycles=left, breakings=breakings)
             )
         met += [curve.end_breaking] if curve.end_breaking else []
@@ -233,7 +233,7 @@ def _judged(
     ]
     count = sum(len(curve.special) for curve in curves)
     special = [point for curve in curves for point in curve.special]
-    tolerance = max(request.accuracy, LOCATING.accuracy)
+    tolerance = max(request.accuracy, SPECIAL_POINT.accuracy)
     inaccurate = any(point.error > tolerance * abs(point.at) for point in special)
     if any(not curve.explained for curve in curves):
         messages.append("multipliers cross the unit circle where no special point was found")

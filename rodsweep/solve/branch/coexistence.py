@@ -96,7 +96,7 @@ def solve_coexistence(
     """
     row = solve_row(rod, request)
     branches = row_branches(rod, request, special, workspace)
-    cycles = cycles_at(request.values, branches, request.certify)
+    cycles = stable_cycles_at(request.values, branches, request.certify)
     forces = request.values if request.name == "F" else np.full(len(request.values), rod.F)
     # Without a force the elastic energy decreases until the rod is straight: there is no cycle.
     cycles[forces == 0] = 0
@@ -106,7 +106,7 @@ def solve_coexistence(
     return CoexistenceRow(
         row=row,
         stable_states=states,
-        special=special_of(branches),
+        special=special_points_of(branches),
         status=status,
         message="; ".join(filter(None, [message, _undecided(request.name, undecided)])),
         seconds=row.seconds + branches.seconds,
@@ -129,7 +129,7 @@ def row_branches(
     return solve_branches(rod, asked, workspace)
 
 
-def special_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:
+def special_points_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:
     """Special points of all branches of a rod, in one tuple, branch after branch."""
     return tuple(point for curve in branches.curves for point in curve.special)
 
@@ -154,7 +154,7 @@ def _judged(
     # The gravest first: without the changes of the straight rod, branches may be missing.
     if row.status is not ThresholdStatus.ok:
         return CoexistenceStatus[row.status.name], message
-    if len(special_of(branches)) > special:
+    if len(special_points_of(branches)) > special:
         return CoexistenceStatus.special_full, message
     if branches.status is BranchStatus.special_undecided:
         return CoexistenceStatus.special_undecided, message
@@ -164,7 +164,7 @@ def _judged(
 
 
 @dataclass(frozen=True, slots=True)
-class BranchStretch:
+class StabilityInterval:
     """Interval of the parameter that a branch covers between two successive special points, and the stability
     there.
 
@@ -177,7 +177,7 @@ class BranchStretch:
     stable: int
 
 
-def cycles_at(values: Array, branches: BranchesOfRod, certify: bool) -> NDArray[np.int8]:
+def stable_cycles_at(values: Array, branches: BranchesOfRod, certify: bool) -> NDArray[np.int8]:
     """Existence of a stable cycle at each parameter value, (values,): 1 if a stable cycle exists, 0 if no
     branch has a stable cycle, -1 if undecided.
 
@@ -186,7 +186,7 @@ def cycles_at(values: Array, branches: BranchesOfRod, certify: bool) -> NDArray[
     complete = branches.status in (BranchStatus.ok, BranchStatus.special_undecided)
     known = complete and (branches.proved or not certify)
     found = np.full(len(values), 0 if known else -1, dtype=np.int8)
-    stretches = [stretch for curve in branches.curves for stretch in stretches_of(curve)]
+    stretches = [stretch for curve in branches.curves for stretch in stability_intervals(curve)]
     # No stable cycle is claimed where the stability is undecided, or within the error of an interval's end.
     for stretch in stretches:
         if stretch.stable:
@@ -197,7 +197,7 @@ def cycles_at(values: Array, branches: BranchesOfRod, certify: bool) -> NDArray[
     return found
 
 
-def stretches_of(curve: BranchCurve) -> list[BranchStretch]:
+def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
     """Intervals of the parameter between successive special points of a branch, with the stability in each
     interval."""
     stretches = []
@@ -212,7 +212,7 @@ def stretches_of(curve: BranchCurve) -> list[BranchStretch]:
         low, high = sorted((one, other), key=lambda point: point.at)
         within = low.at + _closed(low) * low.error, high.at - _closed(high) * high.error
         about = low.at - low.error, high.at + high.error
-        stretches.append(BranchStretch(within, about, stable))
+        stretches.append(StabilityInterval(within, about, stable))
     return stretches
 
 

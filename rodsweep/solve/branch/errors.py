@@ -26,7 +26,7 @@ from ..orbit.newton import ConvergedOrbit, multiplier_change, multipliers_of
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM, path_differences
-from .bordered.condition import BorderCondition, moved
+from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.scale import Scale
 
 
@@ -57,7 +57,7 @@ BRANCH_ERRORS = BranchErrorSettings()
 
 
 @dataclass(frozen=True, eq=False)
-class CyclePlace:
+class BranchDerivatives:
     """Derivatives of a branch at one of its cycles: tangent, curvature and multiplier rate, in the units of a
     scale."""
 
@@ -136,8 +136,7 @@ class BranchCalibration:
 
     @cached_property
     def _demanded(self) -> Calibration:
-        """Errors that determine the mesh, reduced where the sensitivity exceeds `steep_slope`; the parameter
-        error counts like the period error."""
+        """Errors that determine the mesh, reduced as in `largest`; they include the parameter error."""
         # Where y is steep in p, errors at equal p grow with the slope although the mesh is as good as
         # elsewhere.
         steep = max(1.0, self.slope / BRANCH_ERRORS.steep_slope)
@@ -176,11 +175,8 @@ class BranchCalibration:
 
 
 def _interpolated(one: Array, other: Array, share: float) -> Array:
-    """Geometric interpolation of two arrays of errors of any common shape, at a fraction `share` from `one`
-    to `other`.
-
-    The result is multiplied by `interpolation_factor`, and at most the larger of both errors.
-    """
+    """Geometric interpolation at a fraction `share` between two arrays of errors of any common shape, times
+    `interpolation_factor`, and at most the larger of both errors."""
     # Errors of a mesh change by factors along a branch, so their logarithms are interpolated.
     logarithms = np.log(np.maximum([one, other], BRANCH_ERRORS.negligible_error))
     means = np.exp(logarithms[0] + share * (logarithms[1] - logarithms[0]))
@@ -189,7 +185,7 @@ def _interpolated(one: Array, other: Array, share: float) -> Array:
 
 
 def measured_errors(
-    found: ConvergedOrbit, place: CyclePlace, accuracy: float, before: Calibration | None
+    found: ConvergedOrbit, place: BranchDerivatives, accuracy: float, before: Calibration | None
 ) -> BranchCalibration:
     """Errors of the mesh of the cycle `found`, measured by comparison with two finer meshes; raises
     Unsolvable.
@@ -210,10 +206,12 @@ def measured_errors(
     # The mesh finer in time removes only this share of the error in time.
     parts[1] /= share
     known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, before)
-    return BranchCalibration(known, parts[:, -1], slope_at(rough, place))
+    return BranchCalibration(known, parts[:, -1], sensitivity_of(rough, place))
 
 
-def _difference(rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, place: CyclePlace) -> Array:
+def _difference(
+    rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, place: BranchDerivatives
+) -> Array:
     """Differences, (6,), of a cycle on a rough mesh from the same cycle on a fine mesh.
 
     The first five differences, as in `Calibration.space`, hold at the parameter value of the rough cycle. The
@@ -227,7 +225,7 @@ def _difference(rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, pl
     target = mesh_of(fine.orbit)
     along = np.append(carried_change(orbit, place.tangent[:-1], target), place.tangent[-1])
     # The two cycles differ in the parameter; the fine cycle is moved along the branch to the same value.
-    slid = moved(fine.orbit, scale.name, length * along)
+    slid = moved_orbit(fine.orbit, scale.name, length * along)
     change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(length * place.multiplier_rate)
     by_deflection = abs(place.ahead[0])
     by_parameter = abs(place.rate)
@@ -237,14 +235,14 @@ def _difference(rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, pl
     return np.array([*path_differences(rough, CyclePath(slid)), change, own])
 
 
-def slope_at(path: CyclePath, place: CyclePlace) -> float:
+def sensitivity_of(path: CyclePath, place: BranchDerivatives) -> float:
     """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch, by a difference
     quotient.
 
     path: the cycle. place: derivatives of the branch at the cycle.
     """
     orbit: Orbit = path.orbit
-    ahead = CyclePath(moved(orbit, place.scale.name, BRANCH_ERRORS.slope_step * place.tangent))
+    ahead = CyclePath(moved_orbit(orbit, place.scale.name, BRANCH_ERRORS.slope_step * place.tangent))
     y = path.extrema["tip_y_max"]
     other = ahead.extrema["tip_y_max"]
     return abs((other - y) / (BRANCH_ERRORS.slope_step * y)) / max(abs(place.rate), EXPONENTS.least_divisor)

@@ -11,24 +11,29 @@ from ...wording import counted
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable
-from .arc import ARC_STEPS, ArcPoint, arc_between, next_point, point_at
-from .beginning import HopfBirth, first_cycle, special_hopf
+from .arc import ARC_STEPS, ArcPoint, arc_length_between, cycle_at_length, next_point
+from .beginning import HopfBirth, first_cycle, hopf_as_special_point
 from .branch_curve import BranchCurve, BranchEnd
 from .range_end import cycle_at_range_end, range_end_condition
 from .settling import measurement_due
-from .special.least_stretch import stretch_at
-from .special.locating import located
+from .special.least_stretch import least_stretch_of_cycle
+from .special.locating import special_point_between
 from .special.point import EndReason, SpecialKind, SpecialPoint
 from .special.points import special_points
-from .symmetry import ENDINGS, SymmetryBreaking, beginning_without_symmetry, breaking_between, mirrored
-from .trail import Trail, end_at
-from .work import share_done
+from .symmetry import (
+    BRANCH_END,
+    SymmetryBreaking,
+    first_asymmetric_cycle,
+    reaches_symmetric_cycle,
+    symmetry_breaking_between,
+)
+from .trail import BranchRecord, end_point
+from .work import fraction_done
 
 
 @dataclass(frozen=True, slots=True)
 class BranchLimits:
-    """Limits of all branches of a rod: parameter range, number of cycles, and the Hopf points and symmetry
-    breakings where a branch may end."""
+    """Limits of all branches of a rod: range, number of cycles, and special points where a branch may end."""
 
     hopfs: Sequence[HopfBirth]
     """Hopf points of the rod within the range."""
@@ -46,15 +51,14 @@ class BranchLimits:
 
 
 def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
-    """The branch from the Hopf point `limits.hopfs[number]`; a failure becomes the last special point of the
-    branch."""
+    """The branch from the Hopf point `limits.hopfs[number]`; a failure becomes its last special point."""
     hopf = limits.hopfs[number]
     curve = BranchCurve(hopf=number)
-    curve.add(special_hopf(hopf))
+    curve.add(hopf_as_special_point(hopf))
     return _followed(curve, limits, lambda: first_cycle(hopf, limits.accuracy, limits.workspace))
 
 
-def follow_without_symmetry(which: int, name: str, limits: BranchLimits) -> BranchCurve:
+def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> BranchCurve:
     """The branch of asymmetric cycles along the parameter `name` from the symmetry breaking
     `limits.breakings[which]`; a failure becomes its last special point."""
     breaking = limits.breakings[which]
@@ -62,14 +66,14 @@ def follow_without_symmetry(which: int, name: str, limits: BranchLimits) -> Bran
     curve.add(replace(breaking.point, message="", orbit=None))
 
     def first() -> ArcPoint:
-        return beginning_without_symmetry(breaking, name, limits.accuracy, limits.workspace)
+        return first_asymmetric_cycle(breaking, name, limits.accuracy, limits.workspace)
 
     return _followed(curve, limits, first)
 
 
 def _followed(curve: BranchCurve, limits: BranchLimits, first: Callable[[], ArcPoint]) -> BranchCurve:
-    """The branch `curve`, which has only its first special point, followed to its end. first: function that
-    returns the first cycle or raises Unsolvable."""
+    """The branch `curve` with its first special point, followed to its end. first: returns the first
+    cycle."""
     if limits.max_cycles < 1:
         curve.end(BranchEnd(_end_beside(curve, EndReason.list_full), complete=False, full=True))
         return curve
@@ -82,13 +86,12 @@ def _followed(curve: BranchCurve, limits: BranchLimits, first: Callable[[], ArcP
     if outside >= 0:
         curve.end(BranchEnd(_end_beside(curve, limits.reasons[outside]), complete=True))
         return curve
-    return followed_from(curve, start, limits)
+    return follow_from_cycle(curve, start, limits)
 
 
-def followed_from(curve: BranchCurve, first: ArcPoint, limits: BranchLimits) -> BranchCurve:
-    """The branch `curve`, which has only its first special point, followed to its end from the cycle `first`,
-    which has measured errors."""
-    trail = Trail(curve, limits.accuracy, first)
+def follow_from_cycle(curve: BranchCurve, first: ArcPoint, limits: BranchLimits) -> BranchCurve:
+    """The branch `curve`, followed to its end from its first cycle `first`, which has measured errors."""
+    trail = BranchRecord(curve, limits.accuracy, first)
     going: ArcPoint | BranchEnd = first
     while isinstance(going, ArcPoint):
         report(partial(_place_on, curve, going, limits))
@@ -98,15 +101,16 @@ def followed_from(curve: BranchCurve, first: ArcPoint, limits: BranchLimits) -> 
 
 
 def _place_on(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> SolvePosition:
-    """Progress for a display: parameter value at the last cycle `start` of a branch, and the fraction of the
-    branch's work that is done."""
+    """Progress along a branch: the parameter at its last cycle `start`, and the fraction of the work done."""
     name = start.scale.name
     # The end of the range towards which the parameter moves at present; it changes at a fold.
     aim = limits.ends[1 if start.ahead[-1] > 0 else 0]
     value = PARAMETERS[name].value(start.at)
     aim_value = PARAMETERS[name].value(aim)
     words = f"{name} = {value:.5g} on the way to {aim_value:.5g}, {counted(len(curve.points), 'cycle')}"
-    return SolvePosition(words, share_done(PARAMETERS[name].coordinate(curve.special[0].at), start.at, aim))
+    return SolvePosition(
+        words, fraction_done(PARAMETERS[name].coordinate(curve.special[0].at), start.at, aim)
+    )
 
 
 def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
@@ -123,20 +127,18 @@ def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> Spe
 
 
 def _beyond(point: ArcPoint, limits: BranchLimits) -> int:
-    """Index of the end of the parameter range beyond which a cycle lies: 0 below the range, 1 above, -1
-    within."""
+    """Index of the end of the range beyond which a cycle lies: 0 below the range, 1 above, -1 within."""
     low, high = limits.ends
     if point.at < low:
         return 0
     return 1 if point.at > high else -1
 
 
-def _next(trail: Trail, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """The next cycle after `start`, appended to the branch behind the special points between the two cycles;
-    or the end of the branch."""
+def _next(trail: BranchRecord, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
+    """The next cycle after `start`, appended to the branch after the special points between; or the end."""
     curve = trail.curve
     if len(curve.points) >= limits.max_cycles:
-        return BranchEnd(end_at(start, EndReason.list_full), complete=False, full=True)
+        return BranchEnd(end_point(start, EndReason.list_full), complete=False, full=True)
     try:
         end = next_point(start, limits.accuracy)
         if _passed_mirror_image(start, end, limits):
@@ -148,38 +150,39 @@ def _next(trail: Trail, start: ArcPoint, limits: BranchLimits) -> ArcPoint | Bra
             end = cycle_at_range_end(start, end, range_end, limits.accuracy)
         if range_end is not None and _hides_corner(start, end):
             range_end = None  # a cycle half way comes first
-            end = point_at(start, arc_between(start, end) / 2, limits.accuracy)
+            end = cycle_at_length(start, arc_length_between(start, end) / 2, limits.accuracy)
         # h1 = 0: the model ends here, whatever the discrete equations still solve.
-        if stretch_at(end) <= 0:
-            return BranchEnd(located(SpecialKind.left_the_model, start, end, limits.accuracy), complete=True)
+        if least_stretch_of_cycle(end) <= 0:
+            return BranchEnd(
+                special_point_between(SpecialKind.left_the_model, start, end, limits.accuracy), complete=True
+            )
         _add_special_points(curve, start, end, limits)
         trail.append(end)
         last = trail.settle(range_end) if range_end is not None or measurement_due(end) else end
     except Unsolvable as why:
         message = f"no cycle is found beyond: {why}"
-        return BranchEnd(end_at(start, EndReason.no_cycle_found, message), complete=False)
+        return BranchEnd(end_point(start, EndReason.no_cycle_found, message), complete=False)
     if range_end is None:
         return last
     at = getattr(last.orbit.form.rod, last.scale.name)
     return BranchEnd(
-        replace(end_at(last, limits.reasons[outside]), error=ENDINGS.range_end_error * abs(at)), complete=True
+        replace(end_point(last, limits.reasons[outside]), error=BRANCH_END.range_end_error * abs(at)),
+        complete=True,
     )
 
 
 def _add_special_points(curve: BranchCurve, start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> None:
-    """Appends the special points between the last cycle of a branch, `start`, and the next cycle `end`, which
-    is not appended yet."""
+    """Appends the special points between the last cycle `start` and the next cycle `end` to a branch."""
 
-    step = partial(point_at, accuracy=limits.accuracy)
+    step = partial(cycle_at_length, accuracy=limits.accuracy)
     curve.add_found(*special_points(start, end, step, limits.accuracy))
 
 
 def _passed_mirror_image(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> bool:
-    """Whether the branch reaches its own mirror image between two cycles: at a Hopf point, or at a symmetric
-    cycle."""
+    """Whether a branch reaches its mirror image between two cycles: at a Hopf point or a symmetric cycle."""
     if start.orbit.symmetric:
-        return turned_round(start, end)
-    return mirrored(start, end, limits.breakings, limits.accuracy)
+        return passed_hopf_point(start, end)
+    return reaches_symmetric_cycle(start, end, limits.breakings, limits.accuracy)
 
 
 def _hides_corner(start: ArcPoint, end: ArcPoint) -> bool:
@@ -190,11 +193,11 @@ def _hides_corner(start: ArcPoint, end: ArcPoint) -> bool:
     before and two cycles after it.
     """
     apart = abs(end.cycle.path.time_of_largest_y - start.cycle.path.time_of_largest_y)
-    other = min(apart, 1 - apart) > ENDINGS.same_maximum
-    return other and arc_between(start, end) > ENDINGS.largest_hidden_corner
+    other = min(apart, 1 - apart) > BRANCH_END.same_maximum
+    return other and arc_length_between(start, end) > BRANCH_END.largest_hidden_corner
 
 
-def turned_round(start: ArcPoint, end: ArcPoint) -> bool:
+def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
     """Whether the bending moments at t = 0 have opposite signs at two cycles, because a Hopf point lies
     between.
 
@@ -210,12 +213,9 @@ def turned_round(start: ArcPoint, end: ArcPoint) -> bool:
 
 def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
     """The end of the branch at a Hopf point between two cycles; or the cycle `start` with half the step
-    length, if the cycles are still too large.
-
-    Raises Unsolvable if no shorter step is allowed.
-    """
-    shorter = arc_between(start, end) / 2
-    if start.cycle.measures.tip_y_max > ENDINGS.small_cycle:
+    length, if the cycles are still too large. Raises Unsolvable if no shorter step is allowed."""
+    shorter = arc_length_between(start, end) / 2
+    if start.cycle.measures.tip_y_max > BRANCH_END.small_cycle:
         if shorter < ARC_STEPS.shortest:
             raise Unsolvable("the bending moments change sign within the shortest step")
         return replace(start, length=shorter)
@@ -225,26 +225,26 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
     share = start.deflection / (2 * start.ahead[0] * start.scale.deflection)
     at = start.at - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
-    rounding = max(ENDINGS.min_place_tolerance, limits.accuracy)
+    rounding = max(BRANCH_END.min_place_tolerance, limits.accuracy)
     for number, hopf in enumerate(limits.hopfs):
-        tolerance = ENDINGS.place_share * abs(start.at - hopf.coordinate) + rounding * abs(hopf.coordinate)
-        period_tolerance = ENDINGS.place_share * abs(start.orbit.period - hopf.period)
-        period_tolerance += ENDINGS.period_tolerance * hopf.period
+        tolerance = BRANCH_END.place_share * abs(start.at - hopf.coordinate) + rounding * abs(hopf.coordinate)
+        period_tolerance = BRANCH_END.place_share * abs(start.orbit.period - hopf.period)
+        period_tolerance += BRANCH_END.period_tolerance * hopf.period
         if abs(at - hopf.coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
-            return BranchEnd(special_hopf(hopf), complete=True, end_hopf=number)
+            return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
     why = "the cycles shrink to zero amplitude, but no known Hopf point is there"
-    return BranchEnd(end_at(start, EndReason.no_cycle_found, why), complete=False)
+    return BranchEnd(end_point(start, EndReason.no_cycle_found, why), complete=False)
 
 
 def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
     """The end of an asymmetric branch at a symmetry breaking between two cycles; or the cycle `start` with
     half the step length, if the cycles are still too asymmetric."""
-    which = breaking_between(start, end, limits.breakings, limits.accuracy)
+    which = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
     if which is None:
-        return replace(start, length=arc_between(start, end) / 2)
+        return replace(start, length=arc_length_between(start, end) / 2)
     if which >= 0:
         breaking = limits.breakings[which]
         special = replace(breaking.point, message="", orbit=None)
         return BranchEnd(special, complete=True, end_breaking=breaking)
     why = "the cycles become symmetric, but no known symmetry breaking is there"
-    return BranchEnd(end_at(start, EndReason.no_cycle_found, why), complete=False)
+    return BranchEnd(end_point(start, EndReason.no_cycle_found, why), complete=False)

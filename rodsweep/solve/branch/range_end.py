@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from ..continuation.follower import zero_along
+from ..continuation.follower import zero_along_step
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
-from .arc import ArcPoint, cycle_ahead, tangent_at
+from .arc import ArcPoint, tangent_at, unmeasured_cycle
 from .bordered.condition import BorderCondition
-from .bordered.matrix import bordered
+from .bordered.matrix import bordered_matrix_of
 from .special.segment import BranchSegment
-from .symmetry import ENDINGS
+from .symmetry import BRANCH_END
 
 ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
 """Unit vector along the parameter, (3,), in the components of `Scale.place`."""
@@ -35,9 +35,9 @@ def cycle_at_range_end(
         return -range_end.residual(segment.predicted(length))
 
     ends = beyond(0.0), beyond(segment.length)
-    length = zero_along(beyond, ends, segment.length, 0.0, ENDINGS.range_end_bracket)
+    length = zero_along_step(beyond, ends, segment.length, 0.0, BRANCH_END.range_end_bracket)
     tolerance = newton_tolerance(accuracy)
     predicted = segment.predicted(length)
     found = range_end.solved(predicted, tolerance, start.workspace, matrix_distance(accuracy))
-    tangent = tangent_at(found.orbit, scale, start.ahead, bordered(found))
-    return cycle_ahead(start, found, tangent, length, length, accuracy)
+    tangent = tangent_at(found.orbit, scale, start.ahead, bordered_matrix_of(found))
+    return unmeasured_cycle(start, found, tangent, length, length, accuracy)

@@ -11,15 +11,15 @@ from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance, with_
 from ..orbit.newton import ConvergedOrbit, multipliers_of
 from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_of
 from ..point import Unsolvable
-from .arc import ARC_STEPS, ArcPoint, cycle_place, tangent_at
+from .arc import ARC_STEPS, ArcPoint, branch_derivatives, tangent_at
 from .bordered.condition import BorderCondition
-from .bordered.matrix import bordered
+from .bordered.matrix import bordered_matrix_of
 from .bordered.scale import Scale
-from .errors import BranchCalibration, measured_errors, slope_at
+from .errors import BranchCalibration, measured_errors, sensitivity_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SettlingSettings:
+class BranchMeshSettings:
     """Settings for the choice of meshes on a branch, and of the cycles whose errors are measured."""
 
     max_meshes: int = 8
@@ -44,17 +44,19 @@ class SettlingSettings:
     errors are measured again."""
 
 
-SETTLING = SettlingSettings()
+BRANCH_MESH = BranchMeshSettings()
 
 
-def first_point(found: ConvergedOrbit, scale: Scale, side: Array, born: float, accuracy: float) -> ArcPoint:
+def first_measured_cycle(
+    found: ConvergedOrbit, scale: Scale, side: Array, born: float, accuracy: float
+) -> ArcPoint:
     """The first cycle of a branch, with measured errors within the accuracy, on a finer mesh if necessary;
     raises Unsolvable.
 
     side: direction of the branch in the components of `Scale.place`, (3,). born: arc length from the special
     point where the branch starts; parameter and multipliers are quadratic in this length.
     """
-    place = cycle_place(found, scale, tangent_at(found.orbit, scale, side, bordered(found)))
+    place = branch_derivatives(found, scale, tangent_at(found.orbit, scale, side, bordered_matrix_of(found)))
     multipliers = multipliers_of(found)[0]
     lost = abs(multipliers[0] - 1) if len(multipliers) else 0.0
     # At the Hopf point the parameter's rate is 0 and a second multiplier is 1. From there the rate is linear
@@ -62,7 +64,7 @@ def first_point(found: ConvergedOrbit, scale: Scale, side: Array, born: float, a
     place = replace(place, curvature=place.rate / born, multiplier_rate=2 * lost / born)
     calibration = measured_errors(found, place, accuracy, None)
     cycle = with_calibrated_errors(calibration.known, found, accuracy)
-    return refined(
+    return on_sufficient_mesh(
         ArcPoint(cycle=cycle, place=place, length=ARC_STEPS.first, calibration=calibration), accuracy
     )
 
@@ -70,10 +72,10 @@ def first_point(found: ConvergedOrbit, scale: Scale, side: Array, born: float, a
 def measurement_due(point: ArcPoint) -> bool:
     """Whether the errors of a cycle must be measured, because the last measured cycle is too far away."""
     growth = float(point.calibration.known.on_branch(point.orbit).growth.max())
-    return point.unmeasured >= SETTLING.max_unmeasured or growth > SETTLING.remeasure_growth
+    return point.unmeasured >= BRANCH_MESH.max_unmeasured or growth > BRANCH_MESH.remeasure_growth
 
 
-def measured(point: ArcPoint, accuracy: float) -> ArcPoint:
+def with_measured_errors(point: ArcPoint, accuracy: float) -> ArcPoint:
     """The same cycle with its errors measured on two finer meshes; raises Unsolvable."""
     before = point.calibration.known
     return with_calibration(point, measured_errors(point.cycle.fine, point.place, accuracy, before), accuracy)
@@ -85,7 +87,9 @@ def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: 
     return replace(point, cycle=cycle, calibration=calibration, unmeasured=0, arc_since_measured=0.0)
 
 
-def refined(point: ArcPoint, accuracy: float, condition: BorderCondition | None = None) -> ArcPoint:
+def on_sufficient_mesh(
+    point: ArcPoint, accuracy: float, condition: BorderCondition | None = None
+) -> ArcPoint:
     """The same cycle with measured errors within the accuracy, on a mesh chosen for this accuracy; raises
     Unsolvable if no allowed mesh suffices.
 
@@ -94,32 +98,32 @@ def refined(point: ArcPoint, accuracy: float, condition: BorderCondition | None 
     """
     condition = condition or point.condition(0.0)
     finest = False
-    for _ in range(SETTLING.max_meshes):
+    for _ in range(BRANCH_MESH.max_meshes):
         if point.unmeasured:
-            point = measured(point, accuracy)
+            point = with_measured_errors(point, accuracy)
         known = point.calibration
         enough = known.largest(accuracy) <= accuracy
-        planned = known.planned(SETTLING.planned_share * accuracy)
+        planned = known.planned(BRANCH_MESH.planned_share * accuracy)
         # A sufficient mesh is replaced only by a much cheaper mesh, and never after an insufficient mesh.
-        if enough and (finest or planned.cost > SETTLING.cheaper_cost * known.mesh.cost):
+        if enough and (finest or planned.cost > BRANCH_MESH.cheaper_cost * known.mesh.cost):
             return point
         if not enough:
             finest = True
             planned = finer_mesh(known.mesh, planned)
         if not planned.allowed:
             break
-        point = on_mesh(point, planned, condition, accuracy)
+        point = solved_on_mesh(point, planned, condition, accuracy)
     raise Unsolvable("no allowed mesh reaches the accuracy")
 
 
-def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accuracy: float) -> ArcPoint:
+def solved_on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accuracy: float) -> ArcPoint:
     """The same cycle solved on another mesh, without measured errors; raises Unsolvable. condition: equation
     that identifies the cycle."""
     found = condition.on(mesh, point.cycle.fine, newton_tolerance(accuracy), matrix_distance(accuracy))
-    tangent = tangent_at(found.orbit, point.scale, point.ahead, bordered(found))
+    tangent = tangent_at(found.orbit, point.scale, point.ahead, bordered_matrix_of(found))
     known = point.place
     place = replace(
-        cycle_place(found, point.scale, tangent),
+        branch_derivatives(found, point.scale, tangent),
         curvature=known.curvature,
         multiplier_rate=known.multiplier_rate,
     )
@@ -131,7 +135,7 @@ def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accura
     )
 
 
-def settled(
+def with_errors_in_accuracy(
     last: ArcPoint, points: Sequence[ArcPoint], accuracy: float, condition: BorderCondition | None
 ) -> list[ArcPoint]:
     """The cycles `points`, which follow the measured cycle `last`, all with errors within the accuracy;
@@ -143,13 +147,13 @@ def settled(
     """
     *between, end = points
     whole = end.arc_since_measured
-    end = measured(end, accuracy)
+    end = with_measured_errors(end, accuracy)
     known = [
         _with_errors_between(last, point, end, point.arc_since_measured / whole, accuracy)
         for point in between
     ]
     # Only after the interpolation, because the interpolated errors belong to the old mesh.
-    end = refined(end, accuracy, condition)
+    end = on_sufficient_mesh(end, accuracy, condition)
     again = [
         point if point.calibration.largest(accuracy) <= accuracy else _on_mesh_of(end, point, accuracy)
         for point in known
@@ -160,10 +164,10 @@ def settled(
 def _on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
     """The cycle `point` solved again on the mesh of the later cycle `end`, with errors calibrated there;
     raises Unsolvable."""
-    solved = on_mesh(point, mesh_of(end.orbit), point.condition(0.0), accuracy)
+    solved = solved_on_mesh(point, mesh_of(end.orbit), point.condition(0.0), accuracy)
     # With share 1 the errors are those of `end`, on whose mesh the cycle now is.
     solved = _with_errors_between(end, solved, end, 1.0, accuracy)
-    return refined(solved, accuracy)
+    return on_sufficient_mesh(solved, accuracy)
 
 
 def _with_errors_between(
@@ -177,9 +181,9 @@ def _with_errors_between(
     `last` and `end` are then no bound.
     """
     ends = (last, end)
-    slow = abs(point.rises) < SETTLING.min_rate_share * min(abs(one.rises) for one in ends)
+    slow = abs(point.rises) < BRANCH_MESH.min_rate_share * min(abs(one.rises) for one in ends)
     grown = min(one.calibration.known.on_branch(point.orbit).growth.max() for one in ends)
-    if slow or float(grown) > SETTLING.max_tail_growth:
-        return measured(point, accuracy)
-    known = last.calibration.towards(end.calibration, share, slope_at(point.cycle.path, point.place))
+    if slow or float(grown) > BRANCH_MESH.max_tail_growth:
+        return with_measured_errors(point, accuracy)
+    known = last.calibration.towards(end.calibration, share, sensitivity_of(point.cycle.path, point.place))
     return with_calibration(point, known, accuracy)

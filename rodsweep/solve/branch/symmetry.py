@@ -23,17 +23,17 @@ from ..orbit.orbit import Orbit, node_times
 from ..orbit.orbit_mesh import stages_for, wanted_mesh
 from ..orbit.symmetry import NO_SYMMETRY
 from ..point import Unsolvable
-from .arc import ARC_STEPS, ArcPoint, arc_between
-from .beginning import DEFLECTION
-from .bordered.condition import BorderCondition, moved
+from .arc import ARC_STEPS, ArcPoint, arc_length_between
+from .beginning import ALONG_DEFLECTION
+from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import BorderedMatrix
 from .bordered.scale import Scale, deflection_of
-from .settling import first_point
+from .settling import first_measured_cycle
 from .special.point import SpecialKind, SpecialPoint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class EndingSettings:
+class BranchEndSettings:
     """Settings for the ends of a branch: at a Hopf point, at a symmetry breaking, at an end of the parameter
     range."""
 
@@ -73,7 +73,7 @@ class EndingSettings:
     longer step is halved."""
 
 
-ENDINGS = EndingSettings()
+BRANCH_END = BranchEndSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,7 +98,7 @@ class SymmetryBreaking:
     point: SpecialPoint
 
 
-def breakings_of(branches: Sequence[Sequence[SpecialPoint]]) -> list[SymmetryBreaking]:
+def symmetry_breakings_in(branches: Sequence[Sequence[SpecialPoint]]) -> list[SymmetryBreaking]:
     """Symmetry breakings with a known cycle, from the lists of special points of all branches."""
     return [
         SymmetryBreaking(number, place, point)
@@ -108,7 +108,7 @@ def breakings_of(branches: Sequence[Sequence[SpecialPoint]]) -> list[SymmetryBre
     ]
 
 
-def over_whole_period(orbit: Orbit) -> Orbit:
+def extended_to_whole_period(orbit: Orbit) -> Orbit:
     """A symmetric orbit, which stores half a period, extended to the whole period by its symmetry, on twice
     as many intervals."""
     intervals = 2 * orbit.intervals
@@ -132,7 +132,7 @@ def _moments(states: Array, orbit: Orbit) -> Array:
     return orbit.form.layout.field(states, "m3")
 
 
-def beginning_without_symmetry(
+def first_asymmetric_cycle(
     breaking: SymmetryBreaking, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> ArcPoint:
     """The first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`; raises
@@ -142,7 +142,7 @@ def beginning_without_symmetry(
     """
     if breaking.point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
-    whole = over_whole_period(breaking.point.orbit)
+    whole = extended_to_whole_period(breaking.point.orbit)
     scale = Scale.of(whole, name, 0.0)
     matrix = BorderedMatrix(whole, scale, workspace)
     # At the symmetry breaking the linearised equations at a fixed parameter have an asymmetric solution.
@@ -150,7 +150,7 @@ def beginning_without_symmetry(
     way = way / relative_change(whole, way[:-1])
     for share in ASYMMETRIC_START.first_changes:
         try:
-            ways = [moved(whole, name, sign * share * way) for sign in (1, -1)]
+            ways = [moved_orbit(whole, name, sign * share * way) for sign in (1, -1)]
             # Both signs give mirror images. The cycle with the larger y is followed, so that the result does
             # not depend on the sign of the null vector.
             start = max(ways, key=lambda orbit: CyclePath(orbit).extrema["tip_y_max"])
@@ -167,21 +167,23 @@ def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: f
     minus deflection of the symmetric cycle.
     """
     scale = whole.scale
-    border = np.sign(change) * DEFLECTION
+    border = np.sign(change) * ALONG_DEFLECTION
     condition = BorderCondition.at(scale, border, start)
     rough = condition.solved(start, REFINEMENT.nearby_tolerance, whole.workspace)
     near = rough.orbit
     expected = asymmetry(start)
     found = float(asymmetry(near) @ expected) / float(expected @ expected)
-    if not ENDINGS.asymmetry_ratios[0] < found < ENDINGS.asymmetry_ratios[1]:
+    if not BRANCH_END.asymmetry_ratios[0] < found < BRANCH_END.asymmetry_ratios[1]:
         raise Unsolvable("Newton's method converged to a cycle without the predicted asymmetry")
     aim = max(accuracy, REFINEMENT.first_accuracy)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
-    return first_point(first, scale, border, abs(change) / scale.deflection, accuracy)
+    return first_measured_cycle(first, scale, border, abs(change) / scale.deflection, accuracy)
 
 
-def mirrored(start: ArcPoint, end: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float) -> bool:
+def reaches_symmetric_cycle(
+    start: ArcPoint, end: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float
+) -> bool:
     """Whether an asymmetric branch reaches or passes a symmetric cycle between two cycles: the asymmetry
     changes sign or almost vanishes.
 
@@ -191,7 +193,7 @@ def mirrored(start: ArcPoint, end: ArcPoint, known: Sequence[SymmetryBreaking], 
     reference = asymmetry(start.orbit)
     other = end.orbit.on(start.orbit.form.mesh, end.orbit.intervals, end.orbit.stages)
     # The asymmetry changes sign where the branch passes a symmetric cycle, or falls steeply just before.
-    if float(asymmetry(other) @ reference) < ENDINGS.lost_asymmetry * float(reference @ reference):
+    if float(asymmetry(other) @ reference) < BRANCH_END.lost_asymmetry * float(reference @ reference):
         return True
     return start.rises * end.rises < 0 and _nearly_symmetric(start) and _nearest(start, known, accuracy) >= 0
 
@@ -203,10 +205,10 @@ def _relative_asymmetry(start: ArcPoint) -> float:
 
 
 def _nearly_symmetric(start: ArcPoint) -> bool:
-    return _relative_asymmetry(start) <= ENDINGS.small_asymmetry
+    return _relative_asymmetry(start) <= BRANCH_END.small_asymmetry
 
 
-def breaking_between(
+def symmetry_breaking_between(
     start: ArcPoint, end: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float
 ) -> int | None:
     """Index of the symmetry breaking in `known` between two cycles of an asymmetric branch; -1 if `known`
@@ -215,9 +217,9 @@ def breaking_between(
     None if shorter steps must decide. Raises Unsolvable if no shorter step is allowed.
     """
     which = _nearest(start, known, accuracy) if _nearly_symmetric(start) else -1
-    if which >= 0 or _relative_asymmetry(start) <= ENDINGS.min_asymmetry:
+    if which >= 0 or _relative_asymmetry(start) <= BRANCH_END.min_asymmetry:
         return which
-    if arc_between(start, end) / 2 < ARC_STEPS.shortest:
+    if arc_length_between(start, end) / 2 < ARC_STEPS.shortest:
         raise Unsolvable("the cycle turns into its mirror image within the shortest step along the branch")
     return None
 
@@ -239,10 +241,10 @@ def _nearest(start: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float
         if symmetric is None:
             continue
         place = symmetric.form.rod.coordinate(start.scale.name)
-        tolerance = ENDINGS.place_share * abs(start.at - place)
-        tolerance += max(ENDINGS.min_place_tolerance, accuracy) * abs(place)
-        period_tolerance = ENDINGS.place_share * abs(start.orbit.period - symmetric.period)
-        period_tolerance += max(ENDINGS.period_tolerance, accuracy) * symmetric.period
+        tolerance = BRANCH_END.place_share * abs(start.at - place)
+        tolerance += max(BRANCH_END.min_place_tolerance, accuracy) * abs(place)
+        period_tolerance = BRANCH_END.place_share * abs(start.orbit.period - symmetric.period)
+        period_tolerance += max(BRANCH_END.period_tolerance, accuracy) * symmetric.period
         if abs(at - place) <= tolerance and abs(period - symmetric.period) <= period_tolerance:
             return which
     return -1

@@ -10,11 +10,11 @@ from ..point import Unsolvable
 from .arc import ArcPoint
 from .bordered.condition import BorderCondition
 from .branch_curve import BranchCurve, BranchEnd, BranchPoint
-from .settling import settled
+from .settling import with_errors_in_accuracy
 from .special.point import EndReason, SpecialKind, SpecialPoint
 
 
-def end_at(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialPoint:
+def end_point(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialPoint:
     """The special point for the end of a branch at its last cycle `point`, with errors NaN, which the caller
     replaces."""
     measures = point.cycle.measures
@@ -30,7 +30,7 @@ def end_at(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialPoin
     )
 
 
-class Trail:
+class BranchRecord:
     """Record of the cycles of a branch during the continuation. The errors of a cycle are unknown until
     errors are measured at this cycle or at a later cycle."""
 
@@ -55,7 +55,7 @@ class Trail:
         condition: equation that identifies the last cycle on every mesh; by default its arc length.
         """
         if self._waiting:
-            points = settled(self._measured, self._waiting, self.accuracy, condition)
+            points = with_errors_in_accuracy(self._measured, self._waiting, self.accuracy, condition)
             self.curve.judge([BranchPoint.of(point, self.accuracy) for point in points])
             self._measured = points[-1]
             self._waiting = []
@@ -70,7 +70,7 @@ class Trail:
         except Unsolvable as why:
             curve.cut(len(self._waiting))
             message = f"the errors of the cycles beyond cannot be measured: {why}"
-            special = end_at(self._measured, EndReason.no_cycle_found, message)
+            special = end_point(self._measured, EndReason.no_cycle_found, message)
             end = replace(end, special=special, complete=False)
         special = end.special
         last = curve.points[-1]

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WorkSettings:
+class BranchWorkSettings:
     """Exponents of the model of the computing time, fitted to measured times."""
 
     within_a_branch: float = 0.75
@@ -20,21 +20,21 @@ class WorkSettings:
     """Exponent of the length D of a branch in its total time."""
 
 
-BRANCH_WORK = WorkSettings()
+BRANCH_WORK = BranchWorkSettings()
 
 
-Range = tuple[float, float]
+ParameterRange = tuple[float, float]
 """Lowest and highest coordinate of the continuation parameter."""
 
 
-def share_done(born: float, at: float, aim: float) -> float:
+def fraction_done(born: float, at: float, aim: float) -> float:
     """Fraction of the computing time of a branch that has passed at the parameter coordinate `at`, for a
     branch from `born` to `aim`."""
     way = (at - born) / (aim - born) if aim != born else 1.0
     return min(max(way, 0.0), 1.0) ** BRANCH_WORK.within_a_branch
 
 
-def shares_of_branches(born: Sequence[float], ends: Range) -> list[float]:
+def fractions_before_branches(born: Sequence[float], ends: ParameterRange) -> list[float]:
     """Fractions of the total computing time of all branches before each branch, and 1 at the end, (branches +
     1,).
 

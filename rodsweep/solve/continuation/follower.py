@@ -156,7 +156,7 @@ def advance(
             length /= 2
 
 
-def follow(
+def follow_curve(
     problem: CurveProblem[Solution],
     start: Solution,
     control: StepControl,
@@ -174,7 +174,7 @@ def follow(
         except FAILURES:
             return Curve(solutions, CurveStop.lost)
         ahead = problem.margins(there.solution)
-        outside = crossed(margins, ahead)
+        outside = first_crossed_margin(margins, ahead)
         if outside >= 0:
             last = problem.landed(solutions, there.solution, outside)
             return Curve(solutions if last is None else [*solutions, last], CurveStop.margin, outside)
@@ -187,7 +187,7 @@ def follow(
     return Curve(solutions, CurveStop.full)
 
 
-def crossed(before: Array, after: Array) -> int:
+def first_crossed_margin(before: Array, after: Array) -> int:
     """Index of the margin that is first to become negative along a step; -1 if no margin becomes negative.
 
     before, after: margins at both ends of the step, (margins,), interpolated linearly.
@@ -200,7 +200,7 @@ def crossed(before: Array, after: Array) -> int:
     return first if share[first] < inf else -1
 
 
-def zero_along(
+def zero_along_step(
     value: Callable[[float], float], ends: tuple[float, float], length: float, enough: float, relative: float
 ) -> float:
     """Length at which a function along a step is 0, by Brent's method; raises Unsolvable without a change of

@@ -54,7 +54,7 @@ PARAMETER_STEPS = StepControl(
 )
 """Control of the steps into which a parameter change is divided; a step length is a fraction of this change.
 Newton's method takes two matrices for a prediction error of `target_error`. `max_error` is infinite, because
-`near_prediction` already rejects cycles far from the prediction."""
+`orbit_near_prediction` already rejects cycles far from the prediction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +149,7 @@ def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: s
     return CyclePredictor(orbit, np.array(places), np.array(orders), np.array(data))
 
 
-def relative_distance(one: StressForm, other: StressForm, name: str) -> float:
+def relative_parameter_difference(one: StressForm, other: StressForm, name: str) -> float:
     """Difference between the parameter coordinates of two rods, in units of the larger modulus. name: the
     parameter."""
     a = one.rod.coordinate(name)
@@ -157,7 +157,7 @@ def relative_distance(one: StressForm, other: StressForm, name: str) -> float:
     return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0
 
 
-def near_prediction(
+def orbit_near_prediction(
     predicted: Orbit, tolerance: float, workspace: NewtonWorkspace, name: str
 ) -> ConvergedOrbit:
     """The orbit near a prediction, by Newton's method; raises Unsolvable if its relative distance from the
@@ -191,7 +191,7 @@ def orbit_in_steps(
         at = share + length
         between = form if at >= 1.0 else form.with_coordinate(name, first + at * (last - first))
         predicted = predictor.at(between, name)
-        found = near_prediction(predicted, tolerance, workspace, name)
+        found = orbit_near_prediction(predicted, tolerance, workspace, name)
         return StepResult(found, _distance(predicted, found), 1.0)
 
     for _ in range(PARAMETER_STEPS.most):

@@ -111,14 +111,14 @@ class Cycle:
     """Data of this cycle from which the next rod of a chain starts; None outside a chain."""
 
 
-def measured(
+def with_measures(
     cycle: Cycle, request: CycleRequest, path: CyclePath, measures: Measures, errors: CycleErrors
 ) -> Cycle:
     """The outcome `cycle` with the measures, errors and requested time series of a solved cycle with the tip
     path `path`."""
     mesh = path.orbit.form.mesh
     # Unresolved harmonics are smaller than the cycle's error, so 0 is correct within that error.
-    amplitudes = padded(measures.harmonic_amplitude, request.harmonics, 0.0)
+    amplitudes = padded_or_cut(measures.harmonic_amplitude, request.harmonics, 0.0)
     return replace(
         cycle,
         elements=mesh.elements,
@@ -131,7 +131,7 @@ def measured(
     )
 
 
-def padded(values: Array | Complex, count: int, filler: complex) -> Any:
+def padded_or_cut(values: Array | Complex, count: int, filler: complex) -> Any:
     """The first `count` of m values, (count,), filled up with `filler` if m is smaller than `count`."""
     first = np.full(count, filler, values.dtype)
     first[: len(values)] = values[:count]

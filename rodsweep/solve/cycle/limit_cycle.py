@@ -23,9 +23,9 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import Unsolvable, solved
 from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.refinement import refined_cycle
-from .cycle import Cycle, CycleRequest, MotionShapes, measured, padded
+from .cycle import Cycle, CycleRequest, MotionShapes, padded_or_cut, with_measures
 from .hopf_start import hopf_point_below, orbit_from_hopf
-from .neighbour import Neighbour, followed_cycle
+from .neighbour import Neighbour, cycle_from_neighbour
 from .second_state import second_state
 from .small_motion import reason_for_decay, small_cycle
 from .status import CycleStatus
@@ -99,7 +99,7 @@ def _solve(
     if neighbour is not None and along is not None:
         form = StressForm(rod, neighbour.branch.orbit.form.mesh)
         with suppress(Unsolvable):
-            found = followed_cycle(neighbour, form, along, request.accuracy, workspace)
+            found = cycle_from_neighbour(neighbour, form, along, request.accuracy, workspace)
     elif neighbour is None and not request.is_traced:
         found = small_cycle(_form_of_motion(rod), w, request, along, workspace)
     if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
@@ -223,14 +223,14 @@ def _from_motion(
 def _with_numbers(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> Cycle:
     """The outcome `cycle` with the measures, errors, time series and multipliers of the solved cycle
     `found`."""
-    cycle = measured(cycle, request, found.path, found.measures, found.errors)
+    cycle = with_measures(cycle, request, found.path, found.measures, found.errors)
     return _with_multipliers(cycle, found)
 
 
 def _with_multipliers(cycle: Cycle, found: RefinedCycle) -> Cycle:
     """The outcome `cycle` with the stored multipliers of the solved cycle `found`, and the error of the
     multipliers."""
-    mu = padded(found.multipliers, MULTIPLIER_LIST.number, NO_MULTIPLIER)
+    mu = padded_or_cut(found.multipliers, MULTIPLIER_LIST.number, NO_MULTIPLIER)
     mu[np.abs(mu) < MULTIPLIER_LIST.min_modulus] = NO_MULTIPLIER
     return replace(
         cycle,

@@ -1,10 +1,10 @@
 """The limit cycle of one rod by time integration alone: task `limit_cycle` with `method: integration`.
 
-ARKIMEX integrates the motion until the motion repeats. This method is independent of collocation and of D,
-but for the stored leading eigenvalue of the straight rod, which comes from D. No Floquet multiplier is
-computed; a motion that settles shows that the cycle is stable in the plane. Period and extrema are measured
-on two settled motions, the second on a finer mesh with a smaller tolerance; their difference is the error
-estimate. Near a Hopf point a motion may not settle within the allowed periods.
+ARKIMEX integrates the motion until the motion repeats. Collocation is not used; D gives only the stored
+leading eigenvalue of the straight rod. No Floquet multiplier is computed; a motion that settles shows that
+the cycle is stable in the plane. Period and extrema are measured on two settled motions, the second on a
+finer mesh with a smaller tolerance; their difference is the error estimate. Near a Hopf point a motion may
+not settle within the allowed periods.
 """
 
 from collections import deque
@@ -30,18 +30,18 @@ from ..orbit.symmetry import NO_SYMMETRY
 from ..point import solved
 from .accuracy.cycle_errors import CycleErrors
 from .accuracy.integration_errors import errors_of_pair
-from .cycle import Cycle, CycleRequest, measured
+from .cycle import Cycle, CycleRequest, with_measures
 from .marching_settings import MARCHING
 from .status import MarchedStatus
 from .straight_rod import straight_rod
-from .transient.from_motion import stressed
-from .transient.motion_mesh import motion_mesh, near_rod
+from .transient.from_motion import form_states
+from .transient.motion_mesh import integrable_rod, motion_mesh
 from .transient.returns import (
     RETURNS,
-    angle_weights,
     early_end,
     repetition,
     section_crossings,
+    tip_angle_row,
     until_returns,
     why_not_settled,
 )
@@ -49,7 +49,7 @@ from .transient.returns import (
 
 @dataclass(frozen=True, eq=False)
 class _SettledMotion:
-    """A motion settled on a cycle. z: last state, (unknowns,). turns: returns of the tip per period. step: in
+    """A motion settled on a cycle. z: state, (unknowns,). turns: returns of the tip per period. step: in
     tau2."""
 
     z: Array
@@ -58,8 +58,7 @@ class _SettledMotion:
 
 
 class _NoCycle(Exception):
-    """Raised if a motion does not end on a cycle. status, why: outcome of the motion, and the message for the
-    user."""
+    """The motion does not end on a cycle. status, why: outcome of the motion, and message."""
 
     def __init__(self, status: MarchedStatus, why: str) -> None:
         super().__init__(why)
@@ -68,8 +67,7 @@ class _NoCycle(Exception):
 
 
 def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
-    """The cycle that a rod reaches from its leading mode, by time integration alone; a failure becomes a
-    status, never an exception."""
+    """The cycle that a rod reaches from its leading mode by time integration; a failure becomes a status."""
 
     def failed(cause: str) -> Cycle:
         forget_integrators()  # after an error inside PETSc its objects are unusable
@@ -84,7 +82,7 @@ class _MarchedMotion:
     def __init__(self, rod: Rod, request: CycleRequest) -> None:
         self.request = request
         self.limit = rod
-        self.rod = near_rod(rod)
+        self.rod = integrable_rod(rod)
         self.mesh = motion_mesh(rod, request.accuracy)
         self.scheme = TimeScheme("arkimex", "5", tolerance=MARCHING.local_tolerance * request.accuracy)
         self.beam = self._beam()
@@ -118,8 +116,7 @@ class _MarchedMotion:
         return Beam(self.rod, self.mesh)
 
     def _refined(self, settled: _SettledMotion) -> _SettledMotion:
-        """The settled motion on a finer mesh with a smaller tolerance, started from the last state of
-        `settled`; raises _NoCycle."""
+        """A settled motion, continued until settled on a finer mesh with a smaller tolerance."""
         before = self.beam
         self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MARCHING.more_orders)
         self.scheme = replace(self.scheme, tolerance=MARCHING.tolerance_ratio * self.scheme.tolerance)
@@ -131,7 +128,7 @@ class _MarchedMotion:
         """The motion from the state z, (unknowns,), integrated until it settles on a cycle; raises
         _NoCycle."""
         past: deque[Array] = deque(maxlen=RETURNS.max_returns_per_period + 1)
-        row = angle_weights(self.beam)
+        row = tip_angle_row(self.beam)
         step = self.mode.period / MARCHING.first_steps
         last = nan
         rate = 0.0
@@ -170,8 +167,8 @@ class _MarchedMotion:
     def _run(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
     ) -> Trajectory:
-        """The motion from the state z, (unknowns,), integrated up to a duration or a limit; raises _NoCycle
-        if the integration fails or leaves the model. scheme: None for `self.scheme`."""
+        """The motion from the state z, (unknowns,), integrated up to a duration or a limit; raises _NoCycle.
+        scheme: None for `self.scheme`."""
         run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
         if end := early_end(self.beam, run, self.waited):
             status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed
@@ -182,7 +179,7 @@ class _MarchedMotion:
         """(times, (k,), states, (k, unknowns)) at which the tip's theta rises through 0 on a run. The motion
         is integrated to each crossing, because a cubic between two time steps is less accurate."""
         times = section_crossings(self.beam, run)[0]
-        row = angle_weights(self.beam)
+        row = tip_angle_row(self.beam)
         states = np.empty((len(times), self.beam.unknowns))
         for i, rough in enumerate(times):
             before = int(np.searchsorted(run.times, rough, side="right")) - 1
@@ -200,7 +197,7 @@ class _MarchedMotion:
     def _path(self, settled: _SettledMotion) -> CyclePath:
         """The cycle of a settled motion: one more integration over a period; raises _NoCycle."""
         returns = settled.turns + 2
-        limit = until_returns(angle_weights(self.beam), settled.z, returns)
+        limit = until_returns(tip_angle_row(self.beam), settled.z, returns)
         scheme = replace(self.scheme, tolerance=min(self.scheme.tolerance, MARCHING.measured_tolerance))
         run = self._run(
             settled.z, MARCHING.longest_wait * returns * self.mode.period, settled.step, limit, scheme
@@ -216,12 +213,13 @@ class _MarchedMotion:
         )
         form = StressForm(self.rod, self.beam.mesh)
         return CyclePath(
-            Orbit.of(form, NO_SYMMETRY, period, stressed(self.beam, form, states), MARCHING.measured_stages)
+            Orbit.of(
+                form, NO_SYMMETRY, period, form_states(self.beam, form, states), MARCHING.measured_stages
+            )
         )
 
     def _limit_errors(self, settled: _SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
-        """The errors plus the error because the integrated rod is near a limit, not in the limit; raises
-        _NoCycle."""
+        """The errors plus the error of integrating a rod near a limit, not in the limit; raises _NoCycle."""
         known = path.orbit.form.rod
         limit = self.limit
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
@@ -247,4 +245,4 @@ class _MarchedMotion:
             message="" if enough else f"the cycle's errors are up to {errors.largest:.1e}",
             periods=self.waited,
         )
-        return measured(cycle, self.request, path, measures_of(path), errors)
+        return with_measures(cycle, self.request, path, measures_of(path), errors)

@@ -30,10 +30,10 @@ from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.refinement import calibrated_cycle, matrix_distance, newton_tolerance, with_calibrated_errors
 from .along_parameter import (
     CyclePredictor,
-    near_prediction,
     orbit_in_steps,
+    orbit_near_prediction,
     predictor_from,
-    relative_distance,
+    relative_parameter_difference,
 )
 
 
@@ -146,12 +146,12 @@ def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -
         return NEIGHBOUR.new_mesh_cost
     if not found.calibration.reach:
         return NEIGHBOUR.calibrated_mesh_cost
-    step = relative_distance(before.branch.orbit.form, found.orbit.form, name)
+    step = relative_parameter_difference(before.branch.orbit.form, found.orbit.form, name)
     # A mesh whose errors must be measured anyway may as well be another one.
     return 0.0 if found.calibration.lasts(step) else NEIGHBOUR.new_mesh_cost
 
 
-def followed_cycle(
+def cycle_from_neighbour(
     neighbour: Neighbour, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> RefinedCycle:
     """The cycle of a rod that differs from the neighbour's rod in the parameter `name` only; raises
@@ -166,7 +166,9 @@ def followed_cycle(
             "the rods have different unknowns: Omega is an unknown only at small rotational drag"
         )
     found = _converged(neighbour, form, name, accuracy, workspace)
-    known = neighbour.calibration.at(found.orbit, relative_distance(neighbour.branch.orbit.form, form, name))
+    known = neighbour.calibration.at(
+        found.orbit, relative_parameter_difference(neighbour.branch.orbit.form, form, name)
+    )
     if known.holds:
         cycle = with_calibrated_errors(known, found, accuracy)
         if cycle.errors.largest <= accuracy:
@@ -182,7 +184,7 @@ def _converged(
     tolerance = newton_tolerance(accuracy)
     target = neighbour.next_mesh
     try:
-        found = near_prediction(neighbour.branch.on(target).at(form, name), tolerance, workspace, name)
+        found = orbit_near_prediction(neighbour.branch.on(target).at(form, name), tolerance, workspace, name)
     except Unsolvable:
         # The steps are made on a coarser mesh; only the last correction is made on `next_mesh`.
         start = orbit_in_steps(neighbour.branch.on(target.coarser), form, name, tolerance, workspace)

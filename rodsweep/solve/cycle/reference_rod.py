@@ -10,7 +10,7 @@ from .cycle import CycleRequest
 from .limit_cycle import solve_cycle
 from .status import CycleStatus
 
-KNOWN_PERIOD = 0.04204870
+REFERENCE_PERIOD = 0.04204870
 """Period, in tau2, of the cycle of the reference rod F, k1, k2, gamma3, gamma1 = 40, 1e4, 1e2, 1e-2, 1; an
 independent displacement-form code confirms all digits."""
 
@@ -26,7 +26,7 @@ def warm_up() -> None:
     cycle = solve_cycle(rod, request, None, "F")
     if cycle.neighbour is not None:
         solve_cycle(replace(rod, F=1.01 * rod.F), request, cycle.neighbour, "F")
-    deviation = abs(cycle.measures.period / KNOWN_PERIOD - 1)
+    deviation = abs(cycle.measures.period / REFERENCE_PERIOD - 1)
     reproduced = cycle.status == CycleStatus.cycle and deviation < request.accuracy
     given = options(CYCLE_PREFIX)
     if given and not reproduced:

@@ -35,7 +35,7 @@ class StraightRodSettings:
 STRAIGHT_ROD = StraightRodSettings()
 
 
-NONE_FOLLOWED: Complex = np.empty(0, complex)
+NO_EIGENVALUES: Complex = np.empty(0, complex)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ class StraightRod:
     w: complex
     error: float
     message: str = ""
-    followed: Complex = field(default_factory=NONE_FOLLOWED.copy, compare=False)
+    followed: Complex = field(default_factory=NO_EIGENVALUES.copy, compare=False)
 
     @property
     def stable(self) -> bool | None:

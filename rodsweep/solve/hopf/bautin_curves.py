@@ -18,7 +18,7 @@ from ...determinant.boundary import Boundary
 from ...determinant.parameter_plane import Plane, PlaneAxis
 from ...model.rod import Rod
 from ...watch import SolvePosition, report
-from ..continuation.follower import CurveStop, StepResult, follow
+from ..continuation.follower import CurveStop, StepResult, follow_curve
 from ..point import FAILURES, Unsolvable
 from .bautin_settings import BAUTIN, BAUTIN_STEPS
 from .generalised import GENERALISED_HOPF, GeneralisedHopfPoint, HopfCurve
@@ -216,7 +216,7 @@ def _followed(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint]
     """Points from the start to `space.side`, requested third values included, and why the curve ends."""
     if not 0 < start.v[2] + space.side * BAUTIN_STEPS.shortest < 1:
         return [start], BautinEnd.range_end
-    curve = follow(space, start, BAUTIN_STEPS, _report)
+    curve = follow_curve(space, start, BAUTIN_STEPS, _report)
     places = curve.solutions[:1]
     for here, there in pairwise(curve.solutions):
         try:

@@ -165,11 +165,13 @@ class DiagramCurves:
 
     def _special_points(self, number: int) -> "tuple[SpecialPoint, ...]":
         """Special points of the branches of a row, kept or solved again."""
-        from ...solve.branch.coexistence import row_branches, special_of
+        from ...solve.branch.coexistence import row_branches, special_points_of
 
         if number not in self.special:
             request = self.task.row_request()
-            return special_of(row_branches(self.task.rod(number), request, MAX_CYCLE_SPECIAL, self.workspace))
+            return special_points_of(
+                row_branches(self.task.rod(number), request, MAX_CYCLE_SPECIAL, self.workspace)
+            )
         return self.special[number]
 
     def _criticality(self, plane: "Plane", found: "Boundaries[BoundaryCurve]") -> "list[CurveCriticality]":

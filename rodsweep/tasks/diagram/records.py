@@ -25,7 +25,7 @@ from ...results.layouts.variables import Filled, Variable, listed, recorded
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
     from ...solve.branch.coexistence import CoexistenceRow
-    from ...solve.branch.special.boundaries import RowSpecial
+    from ...solve.branch.special.boundaries import RowSpecialPoint
     from ...solve.branch.special.cycle_curves import CycleCurve
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
     from ...solve.continuation.boundaries import Boundaries
@@ -132,15 +132,15 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     return values | {"seconds": result.seconds, "status": int(result.status)}
 
 
-def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
+def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecialPoint]":
     """Folds and torus points of all finite rows in the file. rows: value of every row, (rows,)."""
-    from ...solve.branch.special.boundaries import FOLLOWED_KINDS, RowSpecial
+    from ...solve.branch.special.boundaries import FOLLOWED_KINDS, RowSpecialPoint
     from ...solve.branch.special.point import SpecialKind
 
     names = (f"cycle_special_{name}" for name in ("kind", line, "period", "tip_y_max"))
     kinds, at, period, height = map(view.by_point, names)
     return [
-        RowSpecial(
+        RowSpecialPoint(
             number=int(i),
             row=float(rows[i]),
             kind=SpecialKind(int(kinds[i, j])),
@@ -167,8 +167,8 @@ def with_hopf_ends(
     unstored: int,
 ) -> "Boundaries[CycleCurve]":
     """Curves whose ends at generalised Hopf points are replaced by the points located on Hopf curves."""
-    from ...solve.branch.special.cycle_curves import ending_at
+    from ...solve.branch.special.cycle_curves import with_located_ends
 
     known = [point for curve in criticalities for point in curve.points]
-    curves = tuple(ending_at(curve, plane, known) for curve in found.curves)
+    curves = tuple(with_located_ends(curve, plane, known) for curve in found.curves)
     return replace(found, curves=curves, untraced=found.untraced + unstored)

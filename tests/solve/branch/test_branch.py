@@ -17,7 +17,7 @@ from rodsweep.solve.branch.bordered import matrix
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.branches import BranchRequest, BranchStatus, solve_branches
 from rodsweep.solve.branch.following import BranchLimits, follow_branch
-from rodsweep.solve.branch.special.augmented.functions import crossing_pair
+from rodsweep.solve.branch.special.augmented.functions import pair_nearest_unit_circle
 from rodsweep.solve.branch.special.curves import CurveLimits
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
@@ -176,7 +176,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
     for point in points:
         assert point.error <= 1e-7 * point.at
         # By the eigenvalues of a matrix of its own, where the curve has the eigenvector of one near by.
-        pair = crossing_pair(BorderedMatrix(point.orbit, point.scale, NewtonWorkspace()))
+        pair = pair_nearest_unit_circle(BorderedMatrix(point.orbit, point.scale, NewtonWorkspace()))
         assert abs(pair) == pytest.approx(1.0, abs=1e-7)
 
 
@@ -292,7 +292,7 @@ def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkey
     """The sixth Hopf point of a rod that is soft in shear; the mesh's own one lies beyond."""
     smallest = begun.BEGINNING.first_amplitudes[-1]
     monkeypatch.setattr(begun, "BEGINNING", replace(begun.BEGINNING, first_amplitudes=(smallest,)))
-    monkeypatch.setattr(begun, "first_point", lambda first, *others: first.orbit)
+    monkeypatch.setattr(begun, "first_measured_cycle", lambda first, *others: first.orbit)
     path = Path(Rod(F=159.0, k1=1597.4434592561727, k2=19.205853519589944, gamma3=2.45e-8, gamma1=0.72), "F")
     (crossing,) = pair_crossings(path, 159.0, 161.0, False).crossings
     orbit = first_cycle(hopf_point(path, crossing), 2.0785686460875202e-05, NewtonWorkspace())

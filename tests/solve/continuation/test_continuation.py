@@ -11,9 +11,9 @@ from rodsweep.solve.continuation.follower import (
     CurveStop,
     StepControl,
     StepResult,
-    crossed,
-    follow,
-    zero_along,
+    first_crossed_margin,
+    follow_curve,
+    zero_along_step,
 )
 from rodsweep.solve.point import Unsolvable
 
@@ -63,7 +63,9 @@ class Ellipse:
     def landed(self, behind, outer, margin):
         length = float((outer - behind[-1]) @ self.tangent(behind[-1]))
         ends = self.margins(behind[-1])[0], self.margins(outer)[0]
-        at = zero_along(lambda s: self.margins(self.step(behind, s).solution)[0], ends, length, 1e-13, 1e-14)
+        at = zero_along_step(
+            lambda s: self.margins(self.step(behind, s).solution)[0], ends, length, 1e-13, 1e-14
+        )
         return self.step(behind, at).solution
 
     def closes(self, behind, there):
@@ -74,7 +76,7 @@ class Ellipse:
 
 
 def followed(curve, control=STEPS, start=0.0):
-    return follow(curve, curve.at(start), control, lambda points: None)
+    return follow_curve(curve, curve.at(start), control, lambda points: None)
 
 
 @given(st.floats(0.3, 3.0), st.floats(0.3, 3.0), st.floats(-3.0, 3.0))
@@ -129,7 +131,7 @@ def test_a_turn_of_0_or_180_degrees_is_one_whatever_rounding_makes_of_its_cosine
 
 def test_every_step_is_reported_with_the_solutions_before_it():
     heard = []
-    found = follow(
+    found = follow_curve(
         Ellipse(1.0, 1.0, least=0.0), np.array([1.0, 0.0]), STEPS, lambda points: heard.append(list(points))
     )
     assert found.end is CurveStop.margin
@@ -151,7 +153,7 @@ def test_every_step_is_reported_with_the_solutions_before_it():
 )
 def test_the_margin_that_is_passed_first_ends_a_curve(before, after, which):
     """One that is negative at the start ends it only when it falls further."""
-    assert crossed(np.array(before), np.array(after)) == which
+    assert first_crossed_margin(np.array(before), np.array(after)) == which
 
 
 def test_a_zero_along_a_step_needs_two_signs_and_no_value_at_the_ends():
@@ -161,17 +163,17 @@ def test_a_zero_along_a_step_needs_two_signs_and_no_value_at_the_ends():
         asked.append(x)
         return x**3 - 0.2
 
-    assert zero_along(cube, (-0.2, 0.8), 1.0, 1e-14, 1e-14) == pytest.approx(0.2 ** (1 / 3), abs=1e-13)
+    assert zero_along_step(cube, (-0.2, 0.8), 1.0, 1e-14, 1e-14) == pytest.approx(0.2 ** (1 / 3), abs=1e-13)
     assert not {0.0, 1.0} & set(asked)
     with pytest.raises(Unsolvable, match="change of sign"):
-        zero_along(cube, (0.1, 0.8), 1.0, 1e-14, 1e-14)
+        zero_along_step(cube, (0.1, 0.8), 1.0, 1e-14, 1e-14)
 
 
 @given(st.floats(-6.0, 3.0), st.floats(0.01, 0.99), st.floats(-12.0, -2.0))
 def test_a_zero_along_a_step_of_any_length_is_as_accurate_as_asked_for(decades, share, digits):
     length, relative = 10.0**decades, 10.0**digits
     ends = -(share**3), 1 - share**3
-    found = zero_along(lambda x: (x / length) ** 3 - share**3, ends, length, 0.0, relative)
+    found = zero_along_step(lambda x: (x / length) ** 3 - share**3, ends, length, 0.0, relative)
     assert abs(found - share * length) <= 2 * relative * length
 
 

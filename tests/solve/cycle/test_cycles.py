@@ -472,7 +472,7 @@ def test_finer_meshes_are_tried_for_short_cycles_only(repeats, meshes, monkeypat
     points = np.concatenate([half.points[:1], np.tile(half.points[1:], (repeats, 1))])
     orbit = Orbit.of(half.form, half.symmetry, repeats * half.period, points, half.stages)
     with pytest.raises(Unsolvable):
-        refinement.refine(orbit, 1e-6, NewtonWorkspace())
+        refinement.refined_at_period(orbit, 1e-6, NewtonWorkspace())
     assert len(tried) == meshes
 
 

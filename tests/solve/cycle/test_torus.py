@@ -12,7 +12,7 @@ from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.transient import transient
-from rodsweep.solve.cycle.transient.returns import angle_weights
+from rodsweep.solve.cycle.transient.returns import tip_angle_row
 from rodsweep.solve.cycle.transient.torus import TORUS_TEST, modulation_of
 from rodsweep.solve.motion.leading_mode import leading_mode
 from rodsweep.solve.point import Unsolvable
@@ -68,7 +68,7 @@ def test_a_motion_that_spirals_into_a_stable_cycle_is_no_torus(monkeypatch):
 def test_another_integrator_on_another_mesh_is_on_the_same_torus():
     """SciPy's LSODA; the states where theta of the tip rises through 0, by its dense output."""
     beam = Beam(rod_of(207.0, *SOFT[:3], gamma1=SOFT[3]), mesh(1, 21))
-    z, row = 0.1 * leading_mode(beam).z.real, angle_weights(beam)
+    z, row = 0.1 * leading_mode(beam).z.real, tip_angle_row(beam)
     run = LSODA(
         lambda _, z: beam.rate(z), 0.0, z, np.inf, rtol=1e-7, atol=1e-7 * np.abs(z).max(),
         jac=lambda _, z: beam.jacobian(z),

@@ -57,7 +57,7 @@ class BorderCondition:
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
             if not change <= ORBIT_NEWTON.longest_step:
                 raise Unsolvable("no cycle of the branch is near the start of Newton's method")
-            orbit = moved(orbit, self.scale.name, step)
+            orbit = moved_orbit(orbit, self.scale.name, step)
             off = off + change
             rate = change / last if off > change else np.inf  # no rate at the first step with a matrix
             # The next step would have the length change * rate; a negligible step is not made.
@@ -82,7 +82,7 @@ class BorderCondition:
         return self.solved(mesh.carry(found.orbit), tolerance, found.workspace, distance)
 
 
-def moved(orbit: Orbit, name: str, change: Array) -> Orbit:
+def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:
     """An orbit plus a change, (N + 1,), of its values and of the coordinate of the parameter `name`; raises
     Unsolvable if no such rod or period exists."""
     try:

@@ -191,7 +191,7 @@ class BorderedMatrix:
         return np.concatenate([found[:n], out.ravel(), found[-2:]])
 
 
-def bordered(found: ConvergedOrbit) -> BorderedMatrix:
+def bordered_matrix_of(found: ConvergedOrbit) -> BorderedMatrix:
     """The matrix of an orbit that was solved with the parameter as an unknown; raises TypeError for any other
     orbit."""
     if not isinstance(found.matrix, BorderedMatrix):

@@ -15,7 +15,7 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import FAILURES, Unsolvable
 from .curves import CYCLE_CURVES, CurveLimits
 from .cycle_curves import CURVE_IDENTITY, Arrays, CurveEnd, CurvePoint, CycleCurve, HalfCurve, TracedHalf
-from .on_curve import OnCurve
+from .on_curve import SolvedPoint
 from .point import SpecialKind, SpecialPoint
 
 FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
@@ -23,7 +23,7 @@ FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RowSpecial:
+class RowSpecialPoint:
     """A special point of a row as the result file stores it. number: index of the row. row: value of the
     rows' parameter. at: value of the parameter along the row."""
 
@@ -46,7 +46,7 @@ class SpecialBoundaries:
 
     line: PlaneAxis
     rows: PlaneAxis
-    special: Sequence[RowSpecial]
+    special: Sequence[RowSpecialPoint]
 
     def wanted(self, results: Mapping[int, Arrays]) -> list[int]:
         """Units to solve next, given the results of solved units: first needed units, then units that may be
@@ -111,7 +111,7 @@ class _CurvesOfKind:
     kind: SpecialKind
     line: PlaneAxis
     rows: PlaneAxis
-    special: Sequence[RowSpecial]
+    special: Sequence[RowSpecialPoint]
     results: Mapping[int, Arrays]
 
     def next_seed(self, left: Sequence[int]) -> int:
@@ -174,7 +174,7 @@ class _CurvesOfKind:
         """Axis coordinates (rows' axis, row's axis) of both ends of a curve, in ascending order."""
         return sorted((p.place, self.line.scaled(p.at)) for p in (curve.points[0], curve.points[-1]))
 
-    def _vanishes(self, curve: CycleCurve, one: RowSpecial) -> bool:
+    def _vanishes(self, curve: CycleCurve, one: RowSpecialPoint) -> bool:
         """Whether a special point lies on the extrapolation of a curve from its last cycle to a Hopf
         point."""
         if one.tip_y_max >= CYCLE_CURVES.vanishing:
@@ -195,9 +195,9 @@ class _CurvesOfKind:
 
 def _traced(
     limits: CurveLimits,
-    one: RowSpecial,
+    one: RowSpecialPoint,
     located: Iterable[SpecialPoint],
-    special: Sequence[RowSpecial],
+    special: Sequence[RowSpecialPoint],
 ) -> TracedHalf:
     """One half of a curve, followed from the special point `one` of a row. located: special points of this
     row with cycles. special: all special points, whose distances from the half are measured."""
@@ -220,7 +220,7 @@ def _traced(
     return TracedHalf(HalfCurve(tuple(map(CurvePoint.of, points)), end), near)
 
 
-def _distance(limits: CurveLimits, points: Sequence[OnCurve], one: RowSpecial) -> float:
+def _distance(limits: CurveLimits, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
     """Distance of the special point `one` from a curve along its row, in row lengths; inf if not near."""
     if limits.kind != one.kind:
         return math.inf
@@ -239,7 +239,7 @@ def _distance(limits: CurveLimits, points: Sequence[OnCurve], one: RowSpecial) -
     return best
 
 
-def _near(limits: CurveLimits, a: OnCurve, b: OnCurve, one: RowSpecial) -> bool:
+def _near(limits: CurveLimits, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
     """Whether the special point `one` may lie on the curve between its successive points `a` and `b`."""
     x = limits.line.scaled(one.at)
     ends = sorted(limits.line.scaled(p.at) for p in (a, b))

@@ -11,11 +11,11 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit_mesh import mesh_of, stages_for
 from ...point import Unsolvable
 from ..arc import tangent_at
-from ..beginning import BEGINNING, DEFLECTION
+from ..beginning import ALONG_DEFLECTION, BEGINNING
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import Scale, deflection_of
 from .family import CycleFamily
-from .on_curve import ACROSS_CURVE, OnCurve
+from .on_curve import ACROSS_CURVE, SolvedPoint
 from .point import SpecialPoint
 
 
@@ -34,9 +34,9 @@ class CurveStartSettings:
 CURVE_START = CurveStartSettings()
 
 
-def first_on_curve(
+def first_point_of_curve(
     special: SpecialPoint, line: str, rows: PlaneAxis, row: float, workspace: NewtonWorkspace
-) -> OnCurve:
+) -> SolvedPoint:
     """The first point of a curve of special points, from the point `special` located on a row; raises
     Unsolvable.
 
@@ -57,9 +57,9 @@ def first_on_curve(
     least = abs(deflection_of(orbit)) * BEGINNING.min_deflection_amplitude / special.tip_y_max
     scale = Scale.of(orbit, line, least)
     matrix = BorderedMatrix(orbit, scale, workspace)
-    ahead = scale.moved(orbit, tangent_at(orbit, scale, DEFLECTION, matrix))
+    ahead = scale.moved(orbit, tangent_at(orbit, scale, ALONG_DEFLECTION, matrix))
     place = rows.scaled(row)
-    start = OnCurve(
+    start = SolvedPoint(
         orbit=orbit, scale=scale, ahead=ahead / np.linalg.norm(ahead), place=place, at=special.at, row=row
     )
     family = CycleFamily.about(special.kind, rows, start, workspace)

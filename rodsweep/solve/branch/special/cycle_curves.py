@@ -11,7 +11,7 @@ from ....arrays import Array
 from ....determinant.parameter_plane import Plane
 from ...hopf.generalised import GeneralisedHopfPoint
 from ...orbit.normalised import polynomial_weights
-from .on_curve import OnCurve
+from .on_curve import SolvedPoint
 from .point import SpecialKind
 
 
@@ -98,7 +98,7 @@ class CurvePoint:
     tip_y_max: float
 
     @classmethod
-    def of(cls, point: OnCurve) -> "CurvePoint":
+    def of(cls, point: SolvedPoint) -> "CurvePoint":
         """The stored quantities of a solved point of a curve."""
         period = point.orbit.period
         return cls(point.at, point.row, point.place, point.error, period, point.tip_y_max)
@@ -172,7 +172,7 @@ class CycleCurve:
         return cls(kind, points, (before.end, ahead.end), (vanishing[0], vanishing[1]))
 
 
-def ending_at(curve: CycleCurve, plane: Plane, known: Sequence[GeneralisedHopfPoint]) -> CycleCurve:
+def with_located_ends(curve: CycleCurve, plane: Plane, known: Sequence[GeneralisedHopfPoint]) -> CycleCurve:
     """The curve with extrapolated ends replaced by the generalised Hopf points `known`, which are more
     accurate; a curve of torus points is unchanged."""
 
@@ -189,7 +189,7 @@ def ending_at(curve: CycleCurve, plane: Plane, known: Sequence[GeneralisedHopfPo
     return replace(curve, vanishing=(first, last))
 
 
-def weights_at(places: Array, at: float) -> Array:
+def lagrange_weights(places: Array, at: float) -> Array:
     """Lagrange weights, (n,): the polynomial through n > 1 values at the abscissas `places`, (n,), has at the
     abscissa `at` the weighted sum of these values."""
     apart = places[:-1] - places[-1]
@@ -206,7 +206,7 @@ def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
     squares = np.array([point.tip_y_max**2 for point in known])
     table = np.array([[point.at, point.row, point.period] for point in known])
     # The difference of the polynomials with and without the first point is the error estimate.
-    best, other = (np.dot(weights_at(squares[i:], 0.0), table[i:]) for i in (0, 1))
+    best, other = (np.dot(lagrange_weights(squares[i:], 0.0), table[i:]) for i in (0, 1))
     difference = abs(best[0] - other[0]) + max(point.error for point in known)
     error = CURVE_IDENTITY.extrapolation_factor * difference
     return VanishingPoint(float(best[0]), float(best[1]), float(error), float(best[2]))

@@ -22,12 +22,12 @@ from ...orbit.orbit_mesh import mesh_of
 from ...orbit.tails import lasting_tails
 from ...point import Unsolvable
 from ..arc import tangent_at
-from ..bordered.condition import BorderCondition, moved
+from ..bordered.condition import BorderCondition, moved_orbit
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import Scale
 from .augmented.functions import AUGMENTED, FoldFunction, TorusFunction
 from .augmented.nearby_cycles import NearbyCycles
-from .on_curve import ACROSS_CURVE, CurveErrors, NormalDerivatives, OnCurve, with_parameters
+from .on_curve import ACROSS_CURVE, CurveErrors, NormalDerivatives, SolvedPoint, orbit_with_parameters
 from .point import SpecialKind
 
 
@@ -61,7 +61,7 @@ class CycleFamily:
 
     @classmethod
     def about(
-        cls, kind: SpecialKind, rows: PlaneAxis, point: OnCurve, workspace: NewtonWorkspace
+        cls, kind: SpecialKind, rows: PlaneAxis, point: SolvedPoint, workspace: NewtonWorkspace
     ) -> "CycleFamily":
         """The family of the cycles near a point of a curve."""
         small = kind == SpecialKind.fold and point.tip_y_max < ACROSS_CURVE.small_fold_cycle
@@ -70,7 +70,7 @@ class CycleFamily:
     def placed(self, orbit: Orbit, place: float) -> Orbit:
         """The orbit with unchanged values for the rod at the rows' axis coordinate `place`; raises
         Unsolvable."""
-        return with_parameters(orbit, {self.rows.name: self.rows.value(place)})
+        return orbit_with_parameters(orbit, {self.rows.name: self.rows.value(place)})
 
     def function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:
         """The test function that is zero at special points of this kind, at the orbit of a bordered
@@ -86,7 +86,7 @@ class CycleFamily:
         across: Array,
         rates: NormalDerivatives | None = None,
         same: bool = False,
-    ) -> OnCurve:
+    ) -> SolvedPoint:
         """The point of the curve near the orbit `start`, found by the secant method across the curve; raises
         Unsolvable.
 
@@ -110,12 +110,12 @@ class CycleFamily:
         across: Array,
         slope: float = 0.0,
         rates: NormalDerivatives | None = None,
-        before: OnCurve | None = None,
-    ) -> OnCurve:
+        before: SolvedPoint | None = None,
+    ) -> SolvedPoint:
         """The point of the curve near `start` as in `nearest`, with an error estimate, on a finer mesh if
         necessary; raises Unsolvable.
 
-        slope: `slope_of` the curve, because a difference along the curve is no error. before: previous point,
+        slope: `chord_slope` of the curve: a difference along the curve is no error. before: previous point,
         whose measured error is reused if still valid.
         """
         last = self.nearest(start, place, across, rates)
@@ -165,7 +165,7 @@ class _SecantAcross:
         contraction = rates.contraction if rates and not family.small else inf
         self.near = NearbyCycles(family, self.orbit, contraction)
 
-    def next(self) -> OnCurve | None:
+    def next(self) -> SolvedPoint | None:
         """Makes one secant step and returns the point of the curve, or None if more steps are needed; raises
         Unsolvable."""
         present = self._solved_here()
@@ -225,9 +225,9 @@ class _SecantAcross:
 
     def _moved(self, step: float, rates: NormalDerivatives) -> Orbit:
         """The last cycle moved linearly by a step across the curve."""
-        return moved(self.orbit, self.family.scale.name, step * rates.on(self.orbit))
+        return moved_orbit(self.orbit, self.family.scale.name, step * rates.on(self.orbit))
 
-    def _point(self, step: float, rates: NormalDerivatives) -> OnCurve:
+    def _point(self, step: float, rates: NormalDerivatives) -> SolvedPoint:
         """The point of the curve: the last cycle moved linearly by a short step across the curve."""
         family = self.family
         matrix = self.near.matrix
@@ -236,7 +236,7 @@ class _SecantAcross:
         orbit = family.placed(self._moved(step, rates), place)
         scale = Scale.of(orbit, family.scale.name, family.scale.least)
         ahead = scale.moved(orbit, tangent)
-        return OnCurve(
+        return SolvedPoint(
             orbit=orbit,
             scale=scale,
             ahead=ahead / np.linalg.norm(ahead),

@@ -35,7 +35,7 @@ class LeastStretchSettings:
 LEAST_STRETCH = LeastStretchSettings()
 
 
-def stretch_at(point: ArcPoint) -> float:
+def least_stretch_of_cycle(point: ArcPoint) -> float:
     """Smallest h1 of a cycle of a branch over rod and period; only the smallest nodal value if this exceeds
     `safe_at_nodes`."""
     rough = point.cycle.measures.least_stretch
@@ -44,7 +44,7 @@ def stretch_at(point: ArcPoint) -> float:
     return least_stretch(point.cycle.path, LEAST_STRETCH.safe_at_places)
 
 
-def stretch_of(orbit: Orbit) -> float:
+def least_stretch_of_orbit(orbit: Orbit) -> float:
     """Smallest h1 of an orbit over rod and period; only the smallest nodal value if this exceeds
     `safe_at_nodes`."""
     rough = orbit.form.least_stretch(orbit.points)

@@ -12,23 +12,23 @@ from math import ceil, log, nan
 import numpy as np
 
 from ....arrays import Array, Complex
-from ...continuation.follower import zero_along
+from ...continuation.follower import zero_along_step
 from ...orbit.measures import CyclePath
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of, stages_for
 from ...point import Unsolvable
 from ..arc import ArcPoint
-from ..bordered.condition import moved
-from ..bordered.matrix import BorderedMatrix, bordered
+from ..bordered.condition import moved_orbit
+from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
 from ..bordered.scale import Scale
 from .augmented.functions import TorusFunction, correct_fully
 from .least_stretch import least_stretch
-from .point import LOCATING, SpecialKind, SpecialPoint
+from .point import SPECIAL_POINT, SpecialKind, SpecialPoint
 from .segment import BranchSegment
 
 
-def through_minus_one(orbit: Orbit) -> SpecialKind:
+def kind_at_minus_one(orbit: Orbit) -> SpecialKind:
     """Kind of the special point at which a multiplier of this orbit, over the solved time interval, passes
     -1."""
     return SpecialKind.symmetry_breaking if orbit.symmetric else SpecialKind.period_doubling
@@ -42,17 +42,17 @@ def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrb
     if kind == SpecialKind.left_the_model:
         return least_stretch(CyclePath(found.orbit))
     if kind == SpecialKind.torus:
-        function = TorusFunction(bordered(found))
+        function = TorusFunction(bordered_matrix_of(found))
         correct_fully(function, found.orbit)
         return function.value(found.orbit)
     matrix = BorderedMatrix(found.orbit, segment.start.scale, found.workspace)
-    return test_of_multipliers(kind, matrix.partial_multipliers)
+    return multiplier_test_function(kind, matrix.partial_multipliers)
 
 
-def test_of_multipliers(kind: SpecialKind, h: Complex) -> float:
+def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
     """The test function of torus points, symmetry breakings or period doublings, from the nontrivial
     multipliers h over the solved time interval, (rank,); raises Unsolvable."""
-    real = np.abs(h.imag) <= LOCATING.real_multiplier * np.abs(h)
+    real = np.abs(h.imag) <= SPECIAL_POINT.real_multiplier * np.abs(h)
     if kind != SpecialKind.torus:
         # The sign of det(h + 1) changes only when a multiplier crosses -1, whichever multiplier is nearest.
         return float((-1) ** (h[real].real < -1).sum() * np.abs(h + 1).min())
@@ -74,22 +74,22 @@ def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> f
         return float(point.tangent[-1]) / scale.coordinate / rate
     if kind == SpecialKind.left_the_model:
         return least_stretch(point.cycle.path)
-    return test_of_multipliers(kind, point.partial_multipliers)
+    return multiplier_test_function(kind, point.partial_multipliers)
 
 
-def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
+def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
     """The special point of a kind between two cycles, to a relative accuracy. If the point is not located,
     its message says why, and its error is the parameter difference of the two cycles."""
-    aim = min(accuracy, LOCATING.accuracy)
+    aim = min(accuracy, SPECIAL_POINT.accuracy)
     try:
         segment = BranchSegment(start, end)
         segment.start_on(mesh_of(end.orbit))
         length, slope = _enclosed(kind, segment)
-        mesh = end.calibration.planned_for_parameter(LOCATING.first_mesh_share * aim)
+        mesh = end.calibration.planned_for_parameter(SPECIAL_POINT.first_mesh_share * aim)
         # At least as many stages as make this accuracy cheapest.
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
         point: SpecialPoint | None = None
-        for number in range(LOCATING.max_mesh_pairs + 1):
+        for number in range(SPECIAL_POINT.max_mesh_pairs + 1):
             segment.start_on(mesh)
             length, orbit, slope = _zero(kind, segment, length, slope)
             last = point
@@ -113,9 +113,11 @@ def _finer(mesh: OrbitMesh, excess: float) -> OrbitMesh:
     """The next finer mesh. excess: error on this mesh in units of the accuracy; 1 for the smallest
     refinement."""
     # Errors fall with a power of the number of intervals that is proportional to the stages.
-    growth = excess ** (1 / (LOCATING.power_by_stages * mesh.stages))
-    growth = min(max(growth, LOCATING.more_intervals), LOCATING.max_interval_ratio)
-    more = min(max(ceil(log(excess) / LOCATING.fall), LOCATING.more_orders), LOCATING.max_more_orders)
+    growth = excess ** (1 / (SPECIAL_POINT.power_by_stages * mesh.stages))
+    growth = min(max(growth, SPECIAL_POINT.more_intervals), SPECIAL_POINT.max_interval_ratio)
+    more = min(
+        max(ceil(log(excess) / SPECIAL_POINT.fall), SPECIAL_POINT.more_orders), SPECIAL_POINT.max_more_orders
+    )
     return replace(mesh, order=mesh.order + more, intervals=ceil(growth * mesh.intervals))
 
 
@@ -126,18 +128,20 @@ def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: 
     start, end: the cycles on both sides of the point, by which the errors of period and largest tip y include
     the arc length error of the last secant step.
     """
-    place = LOCATING.secant_end_at_fold if point.kind is SpecialKind.fold else LOCATING.secant_end
+    place = SPECIAL_POINT.secant_end_at_fold if point.kind is SpecialKind.fold else SPECIAL_POINT.secant_end
     one = start.cycle.measures
     other = end.cycle.measures
-    period = LOCATING.error_factor * abs(point.period - last.period) + place * abs(one.period - other.period)
-    size = LOCATING.error_factor * abs(point.tip_y_max - last.tip_y_max) + place * abs(
+    period = SPECIAL_POINT.error_factor * abs(point.period - last.period) + place * abs(
+        one.period - other.period
+    )
+    size = SPECIAL_POINT.error_factor * abs(point.tip_y_max - last.tip_y_max) + place * abs(
         one.tip_y_max - other.tip_y_max
     )
     return replace(
         point,
-        error=LOCATING.error_factor * abs(point.at - last.at) + LOCATING.rounding * abs(point.at),
-        period_error=period / point.period + LOCATING.rounding,
-        size_error=size / point.tip_y_max + LOCATING.rounding,
+        error=SPECIAL_POINT.error_factor * abs(point.at - last.at) + SPECIAL_POINT.rounding * abs(point.at),
+        period_error=period / point.period + SPECIAL_POINT.rounding,
+        size_error=size / point.tip_y_max + SPECIAL_POINT.rounding,
     )
 
 
@@ -168,7 +172,7 @@ def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) ->
         period=measures.period,
         tip_y_max=measures.tip_y_max,
         # The cycles may coincide in the parameter, as on both sides of a fold.
-        error=max(abs(at - other), LOCATING.accuracy * abs(at)),
+        error=max(abs(at - other), SPECIAL_POINT.accuracy * abs(at)),
         period_error=abs(before.period / measures.period - 1),
         size_error=abs(before.tip_y_max / measures.tip_y_max - 1),
         message=message,
@@ -187,8 +191,8 @@ def _enclosed(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
         return values[length]
 
     ends = values[0.0], values[segment.length]
-    least = LOCATING.enclosure_share * min(map(abs, ends))
-    at = zero_along(kept, ends, segment.length, least, LOCATING.enclosure_share)
+    least = SPECIAL_POINT.enclosure_share * min(map(abs, ends))
+    at = zero_along_step(kept, ends, segment.length, least, SPECIAL_POINT.enclosure_share)
     # The nearest other arc length with a known value and this zero give the slope.
     other = min((x for x in values if x != at), key=lambda x: abs(x - at))
     slope = (values[at] - values[other]) / (at - other)
@@ -203,12 +207,12 @@ def _zero(
 
     slope: approximate slope, for the first step.
     """
-    linear = LOCATING.linear_step_at_fold if kind == SpecialKind.fold else LOCATING.linear_step
+    linear = SPECIAL_POINT.linear_step_at_fold if kind == SpecialKind.fold else SPECIAL_POINT.linear_step
     enough = segment.length * linear
     at = guess
     step = np.inf
     before = None
-    for _ in range(LOCATING.max_secants):
+    for _ in range(SPECIAL_POINT.max_secants):
         f = test_function(kind, segment, segment.at(at))
         if before is not None and f != before[1]:
             slope = (f - before[1]) / (at - before[0])
@@ -217,12 +221,12 @@ def _zero(
         if not abs(step) < segment.length:
             raise Unsolvable("the secant method leaves the step between the two cycles")
         # A short step that does not halve any more is rounding error.
-        if abs(step) <= enough or last / 2 < abs(step) <= LOCATING.stalled_secant * segment.length:
+        if abs(step) <= enough or last / 2 < abs(step) <= SPECIAL_POINT.stalled_secant * segment.length:
             _, orbit, tangent = segment.known
             change = step * tangent
             if kind == SpecialKind.fold:
                 change[-1] /= 2  # the parameter's derivative falls to 0 along the step
-            return at + step, moved(orbit, segment.start.scale.name, change), slope
+            return at + step, moved_orbit(orbit, segment.start.scale.name, change), slope
         before = at, f
         at += step
     raise Unsolvable("the secant method does not converge")

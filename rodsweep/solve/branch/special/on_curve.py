@@ -106,13 +106,13 @@ class CurveErrors:
     mesh: OrbitMesh
     age: int = 0
 
-    def at(self, point: "OnCurve") -> float:
+    def at(self, point: "SolvedPoint") -> float:
         """Absolute error of the parameter along a row, at a neighbouring point on the same mesh."""
         # Errors are of second order in the tails.
         growth = float((lasting_tails(point.orbit) / self.tails).max()) ** 2
         return max(growth, 1.0) * self.measured * abs(point.at)
 
-    def hold_at(self, point: "OnCurve") -> bool:
+    def hold_at(self, point: "SolvedPoint") -> bool:
         """Whether the measured error still applies at a next point of the curve, and is within the accuracy
         there."""
         recent = self.age < ACROSS_CURVE.max_unmeasured - 1 and mesh_of(point.orbit) == self.mesh
@@ -125,7 +125,7 @@ class CurveErrors:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class OnCurve:
+class SolvedPoint:
     """A solved point of a curve of special points: a cycle with both parameters of the plane."""
 
     orbit: Orbit
@@ -151,7 +151,7 @@ class OnCurve:
         """Modulus of the tip's y at t = 0, when it is largest, in L."""
         return abs(float(self.orbit.form.tip(self.orbit.start)[1]))
 
-    def step_from(self, other: "OnCurve") -> Array:
+    def step_from(self, other: "SolvedPoint") -> Array:
         """Step from the point `other` to this point, (4,): three components of `Scale.place`, then the axis
         coordinate `place`."""
         moved = self.scale.place(self.orbit) - self.scale.place(other.orbit)
@@ -165,10 +165,10 @@ class OnCurve:
         return np.array([-way[1], way[0]]) / np.linalg.norm(way)
 
 
-def errors_between(points: Sequence[OnCurve]) -> list[OnCurve]:
+def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
     """The points of a curve in order, each with its error: the larger of the errors that the measurements
     before and after the point predict."""
-    found: list[OnCurve] = []
+    found: list[SolvedPoint] = []
     behind: CurveErrors | None = None
     # Backwards, so that every point knows the measurement behind it as well as the one before it.
     for point in reversed(points):
@@ -183,7 +183,7 @@ def errors_between(points: Sequence[OnCurve]) -> list[OnCurve]:
     return found[::-1]
 
 
-def with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
+def orbit_with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
     """The orbit with unchanged values for a rod with changed parameters; raises Unsolvable if no such rod
     exists.
 
@@ -198,7 +198,7 @@ def with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
     return replace(orbit, form=form)
 
 
-def lengths_of(points: Sequence[OnCurve]) -> Array:
+def arc_lengths(points: Sequence[SolvedPoint]) -> Array:
     """Arc lengths, (points,), along a curve from its last point to each point, counted negative."""
     steps = [float(np.linalg.norm(b.step_from(a))) for a, b in zip(points[:-1], points[1:], strict=True)]
     # Counted from the last point, so that a prediction is at a positive length.
@@ -206,7 +206,7 @@ def lengths_of(points: Sequence[OnCurve]) -> Array:
     return lengths
 
 
-def slope_of(one: OnCurve, other: OnCurve) -> float:
+def chord_slope(one: SolvedPoint, other: SolvedPoint) -> float:
     """Slope of the chord between two points of a curve: change of the parameter along a row per change of the
     rows' axis coordinate; 0 if the latter is equal."""
     apart = other.place - one.place

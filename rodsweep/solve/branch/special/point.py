@@ -8,7 +8,7 @@ from ...orbit.orbit import Orbit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LocatingSettings:
+class SpecialPointSettings:
     """Settings for locating a special point on a branch: tolerances, meshes, and numbers of steps."""
 
     real_multiplier: float = 1e-7
@@ -75,7 +75,7 @@ class LocatingSettings:
     located."""
 
 
-LOCATING = LocatingSettings()
+SPECIAL_POINT = SpecialPointSettings()
 
 
 class SpecialKind(IntEnum):

@@ -12,20 +12,20 @@ from collections.abc import Callable
 import numpy as np
 
 from ...point import Unsolvable
-from ..arc import ArcPoint, arc_between
-from .locating import located, through_minus_one
-from .point import LOCATING, SpecialKind, SpecialPoint
+from ..arc import ArcPoint, arc_length_between
+from .locating import kind_at_minus_one, special_point_between
+from .point import SPECIAL_POINT, SpecialKind, SpecialPoint
 
 Step = Callable[[ArcPoint, float], ArcPoint]
 """Function that returns the cycle at an arc length ahead of a cycle; raises Unsolvable."""
 
 
-def unstable_multipliers(point: ArcPoint) -> int:
+def unstable_multiplier_count(point: ArcPoint) -> int:
     """Number of multipliers outside the unit circle, from the multipliers over the solved time interval."""
     return int((np.abs(point.partial_multipliers) > 1).sum())
 
 
-def changes_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], bool]:
+def special_kinds_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], bool]:
     """(kinds of the special points between two cycles, whether these kinds explain the change of the number
     of multipliers outside the unit circle)."""
     found = []
@@ -33,8 +33,8 @@ def changes_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], 
         found.append(SpecialKind.fold)
     # Two multipliers may pass -1 together or become a pair near -1; an odd difference needs a crossing.
     if (_beyond_minus_one(start) - _beyond_minus_one(end)) % 2:
-        found.append(through_minus_one(start.orbit))
-    change = abs(unstable_multipliers(end) - unstable_multipliers(start))
+        found.append(kind_at_minus_one(start.orbit))
+    change = abs(unstable_multiplier_count(end) - unstable_multiplier_count(start))
     # Beside a fold a multiplier is 1 within its error, and may be counted on either side.
     slack = 1 if _near_one(start) or _near_one(end) else 0
     if not found and change - slack > 1:
@@ -45,16 +45,16 @@ def changes_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], 
 def _beyond_minus_one(point: ArcPoint) -> int:
     """Number of real multipliers below -1, over the solved time interval of a cycle."""
     h = point.partial_multipliers
-    return int(((h.real < -1) & (np.abs(h.imag) <= LOCATING.real_multiplier * np.abs(h))).sum())
+    return int(((h.real < -1) & (np.abs(h.imag) <= SPECIAL_POINT.real_multiplier * np.abs(h))).sum())
 
 
 def _near_one(point: ArcPoint) -> bool:
-    return bool((np.abs(point.partial_multipliers - 1) < LOCATING.near_one).any())
+    return bool((np.abs(point.partial_multipliers - 1) < SPECIAL_POINT.near_one).any())
 
 
 def _has_pair(point: ArcPoint) -> bool:
     h = point.partial_multipliers
-    return bool((np.abs(h.imag) > LOCATING.real_multiplier * np.abs(h)).any())
+    return bool((np.abs(h.imag) > SPECIAL_POINT.real_multiplier * np.abs(h)).any())
 
 
 def special_points(
@@ -71,16 +71,16 @@ def special_points(
     halvings so far. The step is halved if the multipliers show several special points, or if a special point
     is not located, as near crushing, where a prediction over the whole step may leave the model.
     """
-    kinds, explained = changes_between(start, end)
-    points = [located(kind, start, end, accuracy) for kind in kinds] if explained else []
-    if depth < LOCATING.max_halvings and (not explained or any(point.message for point in points)):
+    kinds, explained = special_kinds_between(start, end)
+    points = [special_point_between(kind, start, end, accuracy) for kind in kinds] if explained else []
+    if depth < SPECIAL_POINT.max_halvings and (not explained or any(point.message for point in points)):
         try:
             # Half the step separates special points whose changes of the count cancel or add up.
-            middle = step(start, arc_between(start, end) / 2)
+            middle = step(start, arc_length_between(start, end) / 2)
         except Unsolvable:
             pass
         else:
             first, first_explained = special_points(start, middle, step, accuracy, depth + 1)
             second, second_explained = special_points(middle, end, step, accuracy, depth + 1)
             return first + second, first_explained and second_explained
-    return points or [located(kind, start, end, accuracy) for kind in kinds], explained
+    return points or [special_point_between(kind, start, end, accuracy) for kind in kinds], explained

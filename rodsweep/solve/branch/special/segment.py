@@ -4,11 +4,11 @@ from ....arrays import Array
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
-from ..arc import ArcPoint, arc_between
-from ..bordered.condition import moved
-from ..bordered.matrix import bordered
+from ..arc import ArcPoint, arc_length_between
+from ..bordered.condition import moved_orbit
+from ..bordered.matrix import bordered_matrix_of
 from .augmented.functions import FoldFunction, correct_fully
-from .point import LOCATING
+from .point import SPECIAL_POINT
 
 
 class BranchSegment:
@@ -18,7 +18,7 @@ class BranchSegment:
     def __init__(self, start: ArcPoint, end: ArcPoint) -> None:
         self.start = start
         self.end = end
-        self.length = arc_between(start, end)
+        self.length = arc_length_between(start, end)
         self._back = float(end.ahead @ (end.scale.place(end.orbit) - end.scale.place(start.orbit)))
         self._known: tuple[float, Orbit, Array] | None = None
 
@@ -42,11 +42,13 @@ class BranchSegment:
         else:
             last, orbit, tangent = self._known
             # From the last cycle along its tangent: a secant method changes the length only a little.
-            start = moved(orbit, self.start.scale.name, (length - last) * tangent)
+            start = moved_orbit(orbit, self.start.scale.name, (length - last) * tangent)
         condition = self.start.condition(length)
         workspace = self.start.workspace
-        found = condition.solved(start, LOCATING.cycle_tolerance, workspace, LOCATING.matrix_distance)
-        function = FoldFunction(bordered(found), self.start.ahead, False)
+        found = condition.solved(
+            start, SPECIAL_POINT.cycle_tolerance, workspace, SPECIAL_POINT.matrix_distance
+        )
+        function = FoldFunction(bordered_matrix_of(found), self.start.ahead, False)
         correct_fully(function, found.orbit)
         self._known = length, found.orbit, function.vectors
         return found

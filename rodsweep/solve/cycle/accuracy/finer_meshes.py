@@ -46,7 +46,7 @@ def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
     return (replace(mesh, order=mesh.order + COMPARISON.more_orders), replace(mesh, intervals=longer)), share
 
 
-def calibrated(found: ConvergedOrbit, accuracy: float, before: Calibration | None) -> Calibration:
+def measured_calibration(found: ConvergedOrbit, accuracy: float, before: Calibration | None) -> Calibration:
     """Calibration of the mesh of the orbit `found`, with errors measured on two finer meshes; raises
     Unsolvable.
 

@@ -20,7 +20,7 @@ from ...point import Unsolvable
 from .calibration import Calibration
 from .coarser_meshes import CoarserMeshes
 from .cycle_verdict import RefinedCycle
-from .finer_meshes import calibrated
+from .finer_meshes import measured_calibration
 from .minimal_period import MINIMAL_PERIOD, common_divisor, over_minimal_period
 from .refinement_settings import REFINEMENT
 
@@ -51,7 +51,7 @@ def _multiplier_per_exponent(multipliers: Complex) -> float:
     return modulus * abs(log(modulus)) if modulus else 0.0
 
 
-def refine(
+def refined_at_period(
     orbit: Orbit, accuracy: float, workspace: NewtonWorkspace, parameter: str | None = None
 ) -> RefinedCycle:
     """The cycle near an approximate orbit, to a relative accuracy or on the finest allowed mesh; raises
@@ -67,7 +67,7 @@ def refine(
     start = orbit
     while True:
         try:
-            rough = of_same_size(newton(start, REFINEMENT.nearby_tolerance, workspace), orbit.size)
+            rough = require_similar_size(newton(start, REFINEMENT.nearby_tolerance, workspace), orbit.size)
             near = rough.orbit
             stages = stages_for(accuracy)
             if parameter is None:
@@ -117,7 +117,7 @@ def _predicted_cycle(
             coarser = CoarserMeshes(mesh, orbit, accuracy, workspace)
         orbit, known = coarser.predicted(mesh)
     orbit, known = best
-    found = of_same_size(newton(orbit, newton_tolerance(accuracy), workspace), near.size)
+    found = require_similar_size(newton(orbit, newton_tolerance(accuracy), workspace), near.size)
     if found.distance > max(REFINEMENT.predicted_within * accuracy, REFINEMENT.min_predicted_distance):
         raise Unsolvable("coarser meshes do not predict the cycle")
     return with_calibrated_errors(
@@ -137,7 +137,7 @@ def calibrated_cycle(
     best = None
     last = inf
     for _ in range(REFINEMENT.max_rounds):
-        before = calibrated(found, accuracy, before)
+        before = measured_calibration(found, accuracy, before)
         cycle = with_calibrated_errors(before, found, accuracy)
         if best is None or cycle.errors.largest < best.errors.largest:
             best = cycle
@@ -159,10 +159,10 @@ def _on(mesh: OrbitMesh, found: ConvergedOrbit, accuracy: float, parameter: str 
     # `linearised` makes one more, quadratically convergent step, so half of the digits suffice here.
     last = (newton_tolerance(accuracy) / ORBIT_NEWTON.quadratic_error) ** 0.5
     solution = newton(mesh.carry(found.orbit), last, found.workspace)
-    return linearised(of_same_size(solution, found.orbit.size), parameter)
+    return linearised(require_similar_size(solution, found.orbit.size), parameter)
 
 
-def of_same_size(found: ConvergedOrbit, size: float) -> ConvergedOrbit:
+def require_similar_size(found: ConvergedOrbit, size: float) -> ConvergedOrbit:
     """The solved orbit `found`; raises Unsolvable if its size is far from `size`, the size of the start."""
     if not REFINEMENT.min_size * size < found.orbit.size < REFINEMENT.max_size * size:
         raise Unsolvable("Newton's method converged to an orbit of a very different size than its start")
@@ -177,12 +177,12 @@ def refined_cycle(
     workspace: memory of Newton's matrices. parameter: parameter of the cycle's tangent, or None. If the
     stability is undecided, the cycle is solved again for a hundredth of the accuracy.
     """
-    found = refine(over_minimal_period(orbit), accuracy, workspace, parameter)
+    found = refined_at_period(over_minimal_period(orbit), accuracy, workspace, parameter)
     if common_divisor(found.path, MINIMAL_PERIOD.present) > 1:
-        found = refine(over_minimal_period(found.orbit), accuracy, workspace, parameter)
+        found = refined_at_period(over_minimal_period(found.orbit), accuracy, workspace, parameter)
     # The multiplier is 1 within its error: a hundredth of the error may decide.
     if found.stable is None:
-        found = refine(
+        found = refined_at_period(
             found.orbit,
             max(accuracy / REFINEMENT.undecided_divisor, REFINEMENT.finest_accuracy),
             workspace,

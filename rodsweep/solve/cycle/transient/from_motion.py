@@ -45,16 +45,16 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
     times = begin + period * np.arange(FROM_MOTION.phases) / FROM_MOTION.phases
     whole = spline(times)
     top = float(times[int(np.argmax(beam.tip(whole)[1]))])
-    symmetry = REFLECTION if asymmetry(beam, whole) < FROM_MOTION.max_asymmetry else NO_SYMMETRY
+    symmetry = REFLECTION if relative_asymmetry(beam, whole) < FROM_MOTION.max_asymmetry else NO_SYMMETRY
     intervals = FROM_MOTION.intervals * turns // symmetry.parts
     duration = period / symmetry.parts
     at = top + duration * node_times(intervals, FROM_MOTION.stages)
     at = np.where(at > run.times[-1], at - period, at)
-    states = stressed(beam, form, spline(at))
+    states = form_states(beam, form, spline(at))
     return Orbit.of(form, symmetry, period, states, FROM_MOTION.stages)
 
 
-def asymmetry(beam: Beam, states: Array) -> float:
+def relative_asymmetry(beam: Beam, states: Array) -> float:
     """Relative distance between the bending moments over a period and their reflection half a period later.
     states: at m equidistant times over a period, (m, n)."""
     moments = beam.layout.field(states, "m3")
@@ -62,7 +62,7 @@ def asymmetry(beam: Beam, states: Array) -> float:
     return float(np.linalg.norm(moments - mirrored) / np.linalg.norm(moments))
 
 
-def stressed(beam: Beam, form: StressForm, z: Array) -> Array:
+def form_states(beam: Beam, form: StressForm, z: Array) -> Array:
     """States of the collocation problem `form`, (m, unknowns), from states z of the integrated beam, (m,
     unknowns of the beam), on the same mesh."""
     S = beam.stresses(z)

@@ -60,7 +60,7 @@ def coarse_mesh(rod: Rod) -> Mesh:
     return mesh_on(elements.edges, elements.order)
 
 
-def near_rod(rod: Rod) -> Rod:
+def integrable_rod(rod: Rod) -> Rod:
     """The rod, with finite stiffnesses and positive rotational drag: the time integrator cannot integrate a
     rod in a limit."""
     return replace(

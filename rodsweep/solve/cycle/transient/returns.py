@@ -39,14 +39,14 @@ class ReturnSettings:
 RETURNS = ReturnSettings()
 
 
-def angle_weights(beam: Beam) -> Array:
+def tip_angle_row(beam: Beam) -> Array:
     """Row vector c, (unknowns,), whose product with a state z of the beam is theta of the tip."""
     return beam.layout.row({"m3": (beam.roots[2] * beam.mesh.quadrature)[:-1]})
 
 
 def until_returns(row: Array, z: Array, wanted: int) -> RunLimit:
     """Limit that ends a run from the state z, (unknowns,), after `wanted` returns of the tip. row:
-    `angle_weights` of the beam, (unknowns,)."""
+    `tip_angle_row` of the beam, (unknowns,)."""
     count = 0
     last = float(row @ z)
 
@@ -89,7 +89,7 @@ def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
 
     Between two time steps a run is interpolated by the cubic Hermite polynomial.
     """
-    row = angle_weights(beam)
+    row = tip_angle_row(beam)
     angle = run.states @ row
     times: list[float] = []
     states: list[Array] = []

@@ -66,7 +66,7 @@ class TransientSchemes(NamedTuple):
     steps: int
 
 
-def schemes_of(growth: float, is_stored: bool) -> TransientSchemes:
+def schemes_for_growth(growth: float, is_stored: bool) -> TransientSchemes:
     """Time schemes of a motion. growth: linear growth per period of the leading mode. is_stored: whether the
     path of the motion is stored."""
     if abs(growth) < SCHEMES.weak_growth or is_stored:

@@ -81,7 +81,7 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
     moments = np.array([moment for _, moment in past])
     for cycle in _unstable_cycles(transient):
         near = abs(np.ptp(times) / (len(times) - 1) / cycle.orbit.period - 1) <= TORUS_TEST.period_tolerance
-        angle = pair_outside(cycle)
+        angle = unstable_pair_angle(cycle)
         modulation = modulation_of(moments, angle) if near and angle else None
         if modulation and modulation.error <= TORUS_TEST.max_prediction_error:
             message = (
@@ -106,7 +106,7 @@ def _unstable_cycles(transient: Transient) -> Iterator[RefinedCycle]:
         return
 
 
-def pair_outside(cycle: RefinedCycle) -> float | None:
+def unstable_pair_angle(cycle: RefinedCycle) -> float | None:
     """Angle in (0, pi) of the complex pair of multipliers outside the unit circle; None unless this pair is
     the only instability of the cycle."""
     outside = cycle.multipliers[np.abs(cycle.multipliers) > 1 - cycle.margin]
@@ -128,7 +128,7 @@ def modulation_of(returns: Array, angle: float) -> Modulation | None:
     later = returns[half:]
     best = fitted_angle(fitted, angle)
     size = float(np.linalg.norm(later - later.mean(axis=0)))
-    if size == 0 or largest_gap(best * numbers[:half]) > 2 * np.pi / TORUS_TEST.inverse_gap:
+    if size == 0 or largest_phase_gap(best * numbers[:half]) > 2 * np.pi / TORUS_TEST.inverse_gap:
         return None
     basis = fourier_basis(best * numbers, TORUS_TEST.harmonics)
     # Fitted on the first half, tested on the second: a fit alone would explain any motion.
@@ -175,7 +175,7 @@ def fourier_basis(phases: Array, harmonics: int) -> Array:
     return np.hstack([np.ones((len(phases), 1)), np.cos(multiples), np.sin(multiples)])
 
 
-def largest_gap(phases: Array) -> float:
+def largest_phase_gap(phases: Array) -> float:
     """Largest distance, in rad, between neighbouring phases on the unit circle. phases: (k,), in rad."""
     around = np.sort(phases % (2 * np.pi))
     return float(np.diff(around, append=around[0] + 2 * np.pi).max())

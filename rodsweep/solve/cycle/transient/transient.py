@@ -29,9 +29,9 @@ from ..status import CycleStatus
 from ..straight_rod import StraightRod, straight_rod
 from .amplitude_equation import AmplitudeEquation
 from .from_motion import orbit_from_motion
-from .motion_mesh import near_rod
-from .returns import RETURNS, angle_weights, early_end, repetition, section_crossings, until_returns
-from .schemes import schemes_of
+from .motion_mesh import integrable_rod
+from .returns import RETURNS, early_end, repetition, section_crossings, tip_angle_row, until_returns
+from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
 from .trace import TipTrace
 from .transient_outcome import TransientOutcome
@@ -56,7 +56,7 @@ class Transient:
         unstable: RefinedCycle | None,
         workspace: NewtonWorkspace,
     ) -> None:
-        self.beam = Beam(near_rod(form.rod), form.mesh)
+        self.beam = Beam(integrable_rod(form.rod), form.mesh)
         self.form = form
         self.straight = straight
         self.along = along
@@ -66,10 +66,12 @@ class Transient:
         self.unstable = unstable
         self.mode = leading_mode(self.beam)
         self.trace = self._trace(request)
-        self.row = angle_weights(self.beam)
+        self.row = tip_angle_row(self.beam)
         rate = straight.growth_rate(self.mode.w.real)
         period = self.mode.period
-        self.first_scheme, self.scheme, noise, steps = schemes_of(rate * period, request.transient > 0)
+        self.first_scheme, self.scheme, noise, steps = schemes_for_growth(
+            rate * period, request.transient > 0
+        )
         self.max_steps = steps * max(request.most_periods, TRANSIENT.min_returns)
         self.small = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
         self.step = period / TRANSIENT.first_steps

@@ -17,7 +17,7 @@ from ....orbit.orbit import Orbit
 from ....point import Unsolvable
 from ...bordered.matrix import BorderedMatrix
 from ...bordered.scale import deflection_of
-from ..point import LOCATING
+from ..point import SPECIAL_POINT
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,7 +103,7 @@ class TorusFunction:
 
     def __init__(self, matrix: BorderedMatrix) -> None:
         self.matrix = matrix
-        pair = crossing_pair(matrix)
+        pair = pair_nearest_unit_circle(matrix)
         if pair is None:
             raise Unsolvable("the multipliers that cross the unit circle have become real")
         self.multiplier = pair
@@ -153,7 +153,7 @@ def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
         before = value
         value = function.value(orbit)
         change = abs(value - before)
-        if change <= LOCATING.function_tolerance or (change > last / 2 and change <= AUGMENTED.rounding):
+        if change <= SPECIAL_POINT.function_tolerance or (change > last / 2 and change <= AUGMENTED.rounding):
             return
         if change > last:
             break
@@ -166,9 +166,9 @@ def _parts(vector: Array) -> Array:
     return np.array([vector.real, vector.imag])
 
 
-def crossing_pair(matrix: BorderedMatrix) -> complex | None:
+def pair_nearest_unit_circle(matrix: BorderedMatrix) -> complex | None:
     """Complex multiplier nearest to the unit circle, over the solved time interval of the matrix's orbit;
     None if all multipliers are real."""
     h = matrix.partial_multipliers
-    pairs = h[np.abs(h.imag) > LOCATING.real_multiplier * np.abs(h)]
+    pairs = h[np.abs(h.imag) > SPECIAL_POINT.real_multiplier * np.abs(h)]
     return complex(pairs[np.argmin(np.abs(np.abs(pairs) - 1))]) if len(pairs) else None

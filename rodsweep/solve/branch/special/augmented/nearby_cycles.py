@@ -13,7 +13,7 @@ from ....orbit.matrix.workspace import NewtonWorkspace
 from ....orbit.newton import ORBIT_NEWTON, relative_change
 from ....orbit.orbit import Orbit
 from ....point import Unsolvable
-from ...bordered.condition import BorderCondition, moved
+from ...bordered.condition import BorderCondition, moved_orbit
 from ...bordered.matrix import BorderedMatrix
 from ...bordered.scale import Scale
 from .functions import AUGMENTED, FoldFunction, TorusFunction
@@ -109,4 +109,4 @@ class NearbyCycles:
         if not change <= ORBIT_NEWTON.longest_step:
             raise Unsolvable("no cycle of the branch is near the start of the corrections")
         self.distance += change
-        return moved(orbit, self.scale.name, step), change
+        return moved_orbit(orbit, self.scale.name, step), change
