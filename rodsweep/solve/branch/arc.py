@@ -25,14 +25,14 @@ from .bordered.scale import Scale, deflection_of
 from .errors import BranchCalibration, BranchDerivatives
 
 ARC_STEPS = StepControl(
-    first=0.02,
-    longest=0.25,
-    shortest=5e-6,
-    aim=5e-4,
-    far=0.1,
-    order=4,
-    sharpest=0.45,
-    growth=2.0,
+    first_length=0.02,
+    max_length=0.25,
+    min_length=5e-6,
+    target_error=5e-4,
+    max_error=0.1,
+    prediction_order=4,
+    max_angle=0.45,
+    max_ratio=2.0,
 )
 """Control of the arc-length steps along a branch. Arc length is dimensionless (`Scale`): a step of 0.1
 changes the deflection, the period and the parameter by at most about a tenth."""
@@ -167,7 +167,7 @@ def next_point(start: ArcPoint, accuracy: float) -> ArcPoint:
     """The next cycle of a branch; raises Unsolvable if the shortest step fails."""
     end, length = advance(partial(_stepped, start, accuracy), start.length, ARC_STEPS)
     # The cubic through two cycles with tangents errs in the fourth power of the step, hence the order.
-    return replace(end.solution, length=ARC_STEPS.next_length(length, end, ARC_STEPS.order))
+    return replace(end.solution, length=ARC_STEPS.next_length(length, end, ARC_STEPS.prediction_order))
 
 
 def cycle_at_length(start: ArcPoint, length: float, accuracy: float) -> ArcPoint:
@@ -186,8 +186,10 @@ def _stepped(start: ArcPoint, accuracy: float, length: float) -> StepResult[ArcP
     tolerance = newton_tolerance(accuracy)
     found = condition.solved(predicted, tolerance, start.workspace, matrix_distance(accuracy))
     off = relative_change(predicted, found.orbit.values - predicted.values)
-    if start.before is None and off <= ARC_STEPS.far:
-        off = ARC_STEPS.aim  # the error of the tangent predictor does not predict the error of the cubic
+    if start.before is None and off <= ARC_STEPS.max_error:
+        off = (
+            ARC_STEPS.target_error
+        )  # the error of the tangent predictor does not predict the error of the cubic
     tangent = tangent_at(found.orbit, start.scale, start.ahead, bordered_matrix_of(found))
     cosine = float(start.scale.moved(found.orbit, tangent) @ start.ahead)  # both have unit length
     return StepResult(unmeasured_cycle(start, found, tangent, length, length, accuracy), off, cosine)

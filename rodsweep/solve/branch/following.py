@@ -216,7 +216,7 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
     length, if the cycles are still too large. Raises Unsolvable if no shorter step is allowed."""
     shorter = arc_length_between(start, end) / 2
     if start.cycle.measures.tip_y_max > BRANCH_END.small_cycle:
-        if shorter < ARC_STEPS.shortest:
+        if shorter < ARC_STEPS.min_length:
             raise Unsolvable("the bending moments change sign within the shortest step")
         return replace(start, length=shorter)
     # Near a Hopf point parameter and period are quadratic in the deflection.

@@ -65,7 +65,7 @@ def first_measured_cycle(
     calibration = measured_errors(found, place, accuracy, None)
     cycle = with_calibrated_errors(calibration.known, found, accuracy)
     return on_sufficient_mesh(
-        ArcPoint(cycle=cycle, place=place, length=ARC_STEPS.first, calibration=calibration), accuracy
+        ArcPoint(cycle=cycle, place=place, length=ARC_STEPS.first_length, calibration=calibration), accuracy
     )
 
 

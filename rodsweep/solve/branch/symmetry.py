@@ -219,7 +219,7 @@ def symmetry_breaking_between(
     which = _nearest(start, known, accuracy) if _nearly_symmetric(start) else -1
     if which >= 0 or _relative_asymmetry(start) <= BRANCH_END.min_asymmetry:
         return which
-    if arc_length_between(start, end) / 2 < ARC_STEPS.shortest:
+    if arc_length_between(start, end) / 2 < ARC_STEPS.min_length:
         raise Unsolvable("the cycle turns into its mirror image within the shortest step along the branch")
     return None
 

@@ -54,16 +54,16 @@ class BoundarySearch(Generic[Curve]):
     open_seeds: other seed points that lie on no curve so far.
     """
 
-    agree: float
+    tolerance: float
     distances: dict[int, float]
     curves: list[Curve] = field(default_factory=list)
-    needed: list[int] = field(default_factory=list)
-    left: list[int] = field(default_factory=list)
+    missing_units: list[int] = field(default_factory=list)
+    open_seeds: list[int] = field(default_factory=list)
 
     @property
     def boundaries(self) -> Boundaries[Curve]:
         """All curves; valid once `missing_units` is empty."""
-        found = [distance for distance in self.distances.values() if distance <= self.agree]
+        found = [distance for distance in self.distances.values() if distance <= self.tolerance]
         return Boundaries(tuple(self.curves), max(found, default=0.0), len(self.distances) - len(found))
 
 
@@ -76,10 +76,10 @@ def boundary_search(
     tried: set[int] = set()
     while left := [i for i, off in search.distances.items() if off > agree and i not in tried]:
         seed = problem.next_seed(left)
-        search.needed = problem.missing_units(seed)
-        if search.needed:
+        search.missing_units = problem.missing_units(seed)
+        if search.missing_units:
             # Idle processes may trace from these seeds meanwhile; some may prove to lie on the missing curve.
-            search.left = [i for i in left if i != seed]
+            search.open_seeds = [i for i in left if i != seed]
             break
         tried.add(seed)
         curve = problem.curve(seed)

@@ -30,7 +30,7 @@ class StepResult(NamedTuple, Generic[Solution]):
     """
 
     solution: Solution
-    off: float
+    prediction_error: float
     cosine: float
 
 
@@ -46,7 +46,7 @@ class CurveProblem(Protocol[Solution]):
         """Signed distances, (margins,), of a solution from the limits of the curve; a limit is passed where
         one is negative."""
 
-    def landed(self, behind: Sequence[Solution], outer: Solution, margin: int) -> Solution | None:
+    def located_zero(self, behind: Sequence[Solution], outer: Solution, margin: int) -> Solution | None:
         """The solution between `behind[-1]` and `outer` at which a margin is 0; None if not found."""
 
     def closes(self, behind: Sequence[Solution], there: Solution) -> bool:
@@ -58,45 +58,45 @@ class CurveProblem(Protocol[Solution]):
 class StepControl:
     """Step length control along a curve. Raises ValueError unless `max_ratio` exceeds 1."""
 
-    first: float
+    first_length: float
     """First step length."""
-    longest: float
+    max_length: float
     """Longest step length."""
-    shortest: float
+    min_length: float
     """Shortest step length: the curve ends if a step fails and half its length would be below this limit."""
-    aim: float = inf
+    target_error: float = inf
     """Prediction error at which the length of the next step aims."""
-    far: float = inf
+    max_error: float = inf
     """Largest prediction error of an accepted step; beyond it the solution may belong to another curve."""
-    order: int = 1
+    prediction_order: int = 1
     """Order of the prediction: the prediction error grows as length**order. With fewer solutions so far, the
     number of solutions is the order."""
-    turn: float = inf
+    target_angle: float = inf
     """Angle in radians between successive steps at which the length of the next step aims."""
-    sharpest: float
+    max_angle: float
     """Largest angle in radians between successive steps; a step with a larger angle fails."""
-    growth: float
+    max_ratio: float
     """Largest ratio of a step length to the previous step length."""
-    shrinkage: float = 0.5
+    min_ratio: float = 0.5
     """Smallest ratio of a step length to the length of the previous, accepted step."""
-    most: int = 5000
+    max_solutions: int = 5000
     """Maximum number of solutions on a curve; the curve ends there."""
     min_measured: float = 1e-9
     """Smallest prediction error, and smallest angle in radians, used in the choice of a step length: it
     avoids a division by 0."""
 
     def __post_init__(self) -> None:
-        if not self.growth > 1:
+        if not self.max_ratio > 1:
             raise ValueError(
-                f"growth = {self.growth} is not allowed: the ratio of step lengths must exceed 1"
+                f"max_ratio = {self.max_ratio} is not allowed: the ratio of step lengths must exceed 1"
             )
 
     def accepted(self, there: StepResult[Solution]) -> StepResult[Solution]:
         """The argument `there`; raises Unsolvable if its prediction error or its angle is too large for the
         same curve."""
-        if not there.off <= self.far:
+        if not there.prediction_error <= self.max_error:
             raise Unsolvable("the solution is far from its prediction")
-        if not _angle(there.cosine) <= self.sharpest:
+        if not _angle(there.cosine) <= self.max_angle:
             raise Unsolvable("the curve turns by too large an angle")
         return there
 
@@ -104,10 +104,12 @@ class StepControl:
         """Length of the next step, after an accepted step of a given length; `solutions`: number of solutions
         so far."""
         # The error of a prediction through m solutions grows with the m-th power of the step.
-        by_distance = (self.aim / max(there.off, self.min_measured)) ** (1 / min(self.order, solutions))
-        by_turn = self.turn / max(_angle(there.cosine), self.min_measured)
-        factor = min(max(min(by_distance, by_turn), self.shrinkage), self.growth)
-        return min(self.longest, length * factor)
+        by_distance = (self.target_error / max(there.prediction_error, self.min_measured)) ** (
+            1 / min(self.prediction_order, solutions)
+        )
+        by_turn = self.target_angle / max(_angle(there.cosine), self.min_measured)
+        factor = min(max(min(by_distance, by_turn), self.min_ratio), self.max_ratio)
+        return min(self.max_length, length * factor)
 
 
 def _angle(cosine: float) -> float:
@@ -146,12 +148,12 @@ def advance(
     step: returns the solution one step of a given length ahead, or raises an error of FAILURES. `advance`
     raises the last error if no step succeeds.
     """
-    length = min(length, control.longest)
+    length = min(length, control.max_length)
     while True:
         try:
             return control.accepted(step(length)), length
         except FAILURES:
-            if length / 2 < control.shortest:
+            if length / 2 < control.min_length:
                 raise
             length /= 2
 
@@ -165,9 +167,9 @@ def follow_curve(
     """The curve from the solution `start` in the direction that the problem chooses. report: function that is
     called with all solutions before every step."""
     solutions = [start]
-    length = control.first
+    length = control.first_length
     margins = problem.margins(start)
-    while len(solutions) < control.most:
+    while len(solutions) < control.max_solutions:
         report(solutions)
         try:
             there, length = advance(partial(problem.step, solutions), length, control)
@@ -176,7 +178,7 @@ def follow_curve(
         ahead = problem.margins(there.solution)
         outside = first_crossed_margin(margins, ahead)
         if outside >= 0:
-            last = problem.landed(solutions, there.solution, outside)
+            last = problem.located_zero(solutions, there.solution, outside)
             return Curve(solutions if last is None else [*solutions, last], CurveStop.margin, outside)
         if problem.closes(solutions, there.solution):
             # The start itself, not a solution next to it, closes the curve exactly.

@@ -50,7 +50,14 @@ PREDICTION = PredictionSettings()
 
 
 PARAMETER_STEPS = StepControl(
-    first=0.5, longest=1.0, shortest=2.0**-6, aim=0.15, order=3, sharpest=inf, growth=3.0, most=100
+    first_length=0.5,
+    max_length=1.0,
+    min_length=2.0**-6,
+    target_error=0.15,
+    prediction_order=3,
+    max_angle=inf,
+    max_ratio=3.0,
+    max_solutions=100,
 )
 """Control of the steps into which a parameter change is divided; a step length is a fraction of this change.
 Newton's method takes two matrices for a prediction error of `target_error`. `max_error` is infinite, because
@@ -184,7 +191,7 @@ def orbit_in_steps(
     first = start.orbit.form.rod.coordinate(name)
     last = form.rod.coordinate(name)
     share = 0.0
-    length = PARAMETER_STEPS.first
+    length = PARAMETER_STEPS.first_length
     predictor = start
 
     def step(length: float) -> StepResult[ConvergedOrbit]:
@@ -194,7 +201,7 @@ def orbit_in_steps(
         found = orbit_near_prediction(predicted, tolerance, workspace, name)
         return StepResult(found, _distance(predicted, found), 1.0)
 
-    for _ in range(PARAMETER_STEPS.most):
+    for _ in range(PARAMETER_STEPS.max_solutions):
         try:
             ahead, length = advance(step, min(length, 1.0 - share), PARAMETER_STEPS)
         except Unsolvable as why:
@@ -207,5 +214,7 @@ def orbit_in_steps(
         predictor = predictor_from(
             at_orbit(ahead.solution, PREDICTION.tangent_distance, name), predictor, name
         )
-        length = PARAMETER_STEPS.next_length(length, ahead, PARAMETER_STEPS.order)
-    raise Unsolvable(f"the branch of cycles was not followed to its end in {PARAMETER_STEPS.most} steps")
+        length = PARAMETER_STEPS.next_length(length, ahead, PARAMETER_STEPS.prediction_order)
+    raise Unsolvable(
+        f"the branch of cycles was not followed to its end in {PARAMETER_STEPS.max_solutions} steps"
+    )

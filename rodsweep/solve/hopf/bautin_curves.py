@@ -148,7 +148,9 @@ class BautinSpace:
         """Distances from the ends of the three ranges, negative on an end, shape (6,)."""
         return np.ravel([place.v[:3], 1 - place.v[:3]], order="F") - BAUTIN.on_edge
 
-    def landed(self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int) -> _CurvePoint | None:
+    def located_zero(
+        self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int
+    ) -> _CurvePoint | None:
         """The outer point itself: `_within` has already shortened the step to end on the edge."""
         return outer
 
@@ -173,7 +175,7 @@ class BautinSpace:
                 break
             slope = (here.share - last) / (s - before)
             step = -here.share / slope
-            if not abs(s + step) < BAUTIN_STEPS.longest:
+            if not abs(s + step) < BAUTIN_STEPS.max_length:
                 break
             along = here.coefficients.landau_error / abs(slope)
             if abs(step) <= max(BAUTIN.tolerance, along):
@@ -214,7 +216,7 @@ def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> 
 
 def _followed(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
     """Points from the start to `space.side`, requested third values included, and why the curve ends."""
-    if not 0 < start.v[2] + space.side * BAUTIN_STEPS.shortest < 1:
+    if not 0 < start.v[2] + space.side * BAUTIN_STEPS.min_length < 1:
         return [start], BautinEnd.range_end
     curve = follow_curve(space, start, BAUTIN_STEPS, _report)
     places = curve.solutions[:1]

@@ -17,7 +17,15 @@ from rodsweep.solve.continuation.follower import (
 )
 from rodsweep.solve.point import Unsolvable
 
-STEPS = StepControl(first=0.01, longest=0.2, shortest=1e-6, turn=0.1, sharpest=0.3, growth=2.0, most=500)
+STEPS = StepControl(
+    first_length=0.01,
+    max_length=0.2,
+    min_length=1e-6,
+    target_angle=0.1,
+    max_angle=0.3,
+    max_ratio=2.0,
+    max_solutions=500,
+)
 
 
 @dataclass(frozen=True)
@@ -60,7 +68,7 @@ class Ellipse:
     def margins(self, point):
         return np.array([point[0] - self.least])
 
-    def landed(self, behind, outer, margin):
+    def located_zero(self, behind, outer, margin):
         length = float((outer - behind[-1]) @ self.tangent(behind[-1]))
         ends = self.margins(behind[-1])[0], self.margins(outer)[0]
         at = zero_along_step(
@@ -105,8 +113,12 @@ def test_a_curve_that_is_lost_ends_at_its_last_solution_beside_the_gap():
 
 
 def test_a_curve_has_no_more_solutions_than_are_kept():
-    found = followed(Ellipse(1.0, 1.0), StepControl(first=0.01, longest=0.01, shortest=1e-6, sharpest=0.3,
-                                                    growth=2.0, most=7))  # fmt: skip
+    found = followed(
+        Ellipse(1.0, 1.0),
+        StepControl(
+            first_length=0.01, max_length=0.01, min_length=1e-6, max_angle=0.3, max_ratio=2.0, max_solutions=7
+        ),
+    )
     assert (found.end, len(found.solutions)) == (CurveStop.full, 7)
 
 
@@ -114,8 +126,16 @@ def test_steps_are_as_long_as_turns_and_predictions_allow():
     """On a circle the turn is the length of arc; the prediction of a tangent is off by its square, halved."""
     by_turn = [np.hypot(*np.diff(followed(Ellipse(1.0, 1.0)).solutions, axis=0)[i]) for i in range(10, 20)]
     assert by_turn == pytest.approx([0.1] * 10, rel=1e-2)
-    control = StepControl(first=0.01, longest=1.0, shortest=1e-6, aim=5e-3, order=2, sharpest=1.0, growth=2.0,
-                          most=500)  # fmt: skip
+    control = StepControl(
+        first_length=0.01,
+        max_length=1.0,
+        min_length=1e-6,
+        target_error=5e-3,
+        prediction_order=2,
+        max_angle=1.0,
+        max_ratio=2.0,
+        max_solutions=500,
+    )
     by_distance = np.diff(followed(Ellipse(1.0, 1.0), control).solutions, axis=0)[10:20]
     assert np.hypot(*by_distance.T) == pytest.approx([0.1] * 10, rel=1e-2)
 
@@ -124,7 +144,7 @@ def test_a_turn_of_0_or_180_degrees_is_one_whatever_rounding_makes_of_its_cosine
     above = np.nextafter(1.0, 2.0)
     straight, back = (StepResult(None, 0.0, cosine) for cosine in (above, -above))
     assert STEPS.accepted(straight) is straight
-    assert STEPS.next_length(0.01, straight, 5) == 0.01 * STEPS.growth
+    assert STEPS.next_length(0.01, straight, 5) == 0.01 * STEPS.max_ratio
     with pytest.raises(Unsolvable, match="too large an angle"):
         STEPS.accepted(back)
 
@@ -179,5 +199,5 @@ def test_a_zero_along_a_step_of_any_length_is_as_accurate_as_asked_for(decades, 
 
 def test_steps_that_never_grow_are_refused():
     """They would end a curve by the number of its solutions, however far its end is."""
-    with pytest.raises(ValueError, match="growth"):
-        StepControl(first=0.1, longest=1.0, shortest=1e-6, sharpest=0.3, growth=1.0)
+    with pytest.raises(ValueError, match="max_ratio"):
+        StepControl(first_length=0.1, max_length=1.0, min_length=1e-6, max_angle=0.3, max_ratio=1.0)

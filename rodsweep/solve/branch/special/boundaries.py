@@ -54,7 +54,7 @@ class SpecialBoundaries:
         needed: list[int] = []
         likely: list[int] = []
         for curves, search in self._searches(results):
-            needed += search.needed
+            needed += search.missing_units
             likely += curves.likely(search)
         return needed + likely if needed else []
 
@@ -132,8 +132,8 @@ class _CurvesOfKind:
     def likely(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
         """Units that may be needed later: from the other special points on the row where the search
         stopped."""
-        rows = {self.special[unit // 2].row for unit in search.needed}
-        beside = sorted((i for i in search.left if self.special[i].row in rows), key=self._place)
+        rows = {self.special[unit // 2].row for unit in search.missing_units}
+        beside = sorted((i for i in search.open_seeds if self.special[i].row in rows), key=self._place)
         return [unit for i in beside for unit in self.missing_units(i)]
 
     def curve(self, seed: int) -> _TracedCurve | None:

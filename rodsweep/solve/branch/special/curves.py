@@ -31,15 +31,15 @@ from .on_curve import (
 from .point import SpecialKind, SpecialPoint
 
 CURVE_STEPS = StepControl(
-    first=0.01,
-    longest=0.1,
-    shortest=1e-4,
-    aim=3e-3,
-    far=0.1,
-    order=CURVE_IDENTITY.max_interpolated,
-    sharpest=0.55,
-    growth=2.0,
-    most=400,
+    first_length=0.01,
+    max_length=0.1,
+    min_length=1e-4,
+    target_error=3e-3,
+    max_error=0.1,
+    prediction_order=CURVE_IDENTITY.max_interpolated,
+    max_angle=0.55,
+    max_ratio=2.0,
+    max_solutions=400,
 )
 """Step length control along a curve of special points. Steps have four components: three of `Scale.place`,
 and the axis coordinate of the rows' parameter, from 0 to 1."""
@@ -134,7 +134,7 @@ class CurveLimits:
         # Prediction and point must live on one mesh to be compared.
         off = relative_change(predicted, point.orbit.values - predicted.values)
         if len(behind) == 1:  # the prediction was the cycle of another row
-            return StepResult(point, min(off, CURVE_STEPS.far), 1.0)
+            return StepResult(point, min(off, CURVE_STEPS.max_error), 1.0)
         one = last.step_from(behind[-2])
         other = point.step_from(last)
         return StepResult(point, off, float(one @ other / np.linalg.norm(one) / np.linalg.norm(other)))
@@ -185,7 +185,9 @@ class CurveLimits:
         stretch = least_stretch_of_orbit(point.orbit)
         return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - CYCLE_CURVES.vanishing])
 
-    def landed(self, behind: Sequence[SolvedPoint], outer: SolvedPoint, margin: int) -> SolvedPoint | None:
+    def located_zero(
+        self, behind: Sequence[SolvedPoint], outer: SolvedPoint, margin: int
+    ) -> SolvedPoint | None:
         """The point between `behind[-1]` and `outer` at which a margin is 0; None if not found."""
         inner = behind[-1]
         if END_BY_MARGIN[margin] is CurveEnd.hopf:
