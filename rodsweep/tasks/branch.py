@@ -99,16 +99,20 @@ def meetings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
     """Branches that meet at symmetry breakings: {(branch, index of special point): second branch}."""
     numbers = {}
     for number, curve in enumerate(curves, 1):
-        for breaking, place in ((curve.breaking, 0), (curve.end_breaking, len(curve.special) - 1)):
+        for breaking, place in ((curve.start_breaking, 0), (curve.end_breaking, len(curve.special) - 1)):
             if breaking is not None:
                 numbers[number, place] = breaking.branch
-                numbers[breaking.branch, breaking.place] = number
+                numbers[breaking.branch, breaking.index] = number
     return numbers
 
 
 def _cycle(point: "BranchPoint", along: str) -> dict[str, Any]:
     """A cycle of a branch as variables of the file."""
-    own = {f"branch_{along}": "at", f"branch_{along}_error": "at_error", "unstable_multipliers": "unstable"}
+    own = {
+        f"branch_{along}": "at",
+        f"branch_{along}_error": "at_error",
+        "unstable_multipliers": "unstable_count",
+    }
     variables = [v for v in followed_variables(along) if v.name != "branch"]
     return recorded(variables, point, point.measures, point.errors, names=own)
 

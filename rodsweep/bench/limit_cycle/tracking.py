@@ -86,7 +86,7 @@ def orbit_of(cycle: Cycle) -> Orbit:
     """The orbit on the mesh chosen for it; raises ArithmeticError if there is no cycle."""
     if cycle.neighbour is None:
         raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")
-    return cycle.neighbour.branch.orbit
+    return cycle.neighbour.predictor.orbit
 
 
 def on_cycle(orbit: Orbit) -> tuple[Beam, Array]:

@@ -52,7 +52,7 @@ class ArcPoint:
     step."""
 
     cycle: RefinedCycle
-    place: BranchDerivatives
+    derivatives: BranchDerivatives
     length: float
     """Arc length of the step to the next cycle."""
     calibration: BranchCalibration
@@ -68,18 +68,18 @@ class ArcPoint:
 
     @property
     def scale(self) -> Scale:
-        return self.place.scale
+        return self.derivatives.scale
 
     @property
     def tangent(self) -> Array:
         """Tangent of the branch with unit arc length, (N + 1,): derivatives of orbit values and parameter
         coordinate."""
-        return self.place.tangent
+        return self.derivatives.tangent
 
     @property
     def ahead(self) -> Array:
         """The tangent in the components of `Scale.place`, (3,), a unit vector."""
-        return self.place.ahead
+        return self.derivatives.ahead
 
     @property
     def orbit(self) -> Orbit:
@@ -88,7 +88,7 @@ class ArcPoint:
     @property
     def workspace(self) -> NewtonWorkspace:
         """Memory of Newton's matrices, which contains the matrix of this cycle."""
-        return self.cycle.fine.workspace
+        return self.cycle.converged.workspace
 
     @property
     def at(self) -> float:
@@ -98,7 +98,7 @@ class ArcPoint:
     @property
     def rises(self) -> float:
         """Derivative of the scaled parameter coordinate by arc length; at a fold the sign changes."""
-        return self.place.rate
+        return self.derivatives.rate
 
     @property
     def deflection(self) -> float:
@@ -109,7 +109,7 @@ class ArcPoint:
     def partial_multipliers(self) -> Complex:
         """Nontrivial multipliers, (rank - 1,): of the half-period map composed with the reflection for a
         symmetric cycle, of the whole period for an asymmetric cycle."""
-        values = bordered_matrix_of(self.cycle.fine).partial_multipliers
+        values = bordered_matrix_of(self.cycle.converged).partial_multipliers
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
     def condition(self, length: float) -> BorderCondition:
@@ -208,13 +208,13 @@ def unmeasured_cycle(
 
     tangent: tangent of the branch at the new cycle, (N + 1,). ahead: length of the next step.
     """
-    cycle = with_calibrated_errors(start.calibration.known, found, accuracy)
-    place = branch_derivatives(found, start.scale, tangent)
-    curvature = (place.rate - start.rises) / length
+    cycle = with_calibrated_errors(start.calibration.at_parameter, found, accuracy)
+    derivatives = branch_derivatives(found, start.scale, tangent)
+    curvature = (derivatives.rate - start.rises) / length
     changed = multiplier_change(cycle.multipliers, start.cycle.multipliers) / length
     return ArcPoint(
         cycle=cycle,
-        place=replace(place, curvature=curvature, multiplier_rate=changed),
+        derivatives=replace(derivatives, curvature=curvature, multiplier_rate=changed),
         length=ahead,
         calibration=start.calibration,
         unmeasured=start.unmeasured + 1,

@@ -28,7 +28,7 @@ class BranchPoint:
     """Errors relative to the exact cycle at the same value of the parameter."""
     multiplier: float
     """Modulus of the largest nontrivial Floquet multiplier."""
-    unstable: int
+    unstable_count: int
     """Number of multipliers outside the unit circle; -1 if a multiplier lies on the circle within its error.
     """
 
@@ -45,14 +45,14 @@ class BranchPoint:
             measures=cycle.measures,
             errors=cycle.errors,
             multiplier=cycle.largest_multiplier,
-            unstable=-1 if undecided else int((beyond > 0).sum()),
+            unstable_count=-1 if undecided else int((beyond > 0).sum()),
         )
 
     @property
     def least_outside(self) -> int:
         """Smallest possible number of multipliers outside the unit circle; 0: stable, -1: stability
         undecided."""
-        return least_outside(self.unstable, self.multiplier, self.errors.multiplier_error)
+        return least_outside(self.unstable_count, self.multiplier, self.errors.multiplier_error)
 
 
 def _margin(point: ArcPoint) -> float:
@@ -70,36 +70,36 @@ def _margin(point: ArcPoint) -> float:
 class BranchEnd:
     """The last special point of a branch, and whether the branch truly ends there.
 
-    complete, end_hopf, end_breaking and full: as in `BranchCurve`.
+    complete, end_hopf, end_breaking and list_full: as in `BranchCurve`.
     """
 
     special: SpecialPoint
     complete: bool
     end_hopf: int = -1
     end_breaking: SymmetryBreaking | None = None
-    full: bool = False
+    list_full: bool = False
 
 
 @dataclass(kw_only=True, slots=True)
 class BranchCurve:
     """A branch: cycles and special points, both lists in order along the branch."""
 
-    hopf: int
+    start_hopf: int
     """Index of the Hopf point where the branch starts; -1 for an asymmetric branch."""
     points: list[BranchPoint] = field(default_factory=list)
     special: list[SpecialPoint] = field(default_factory=list)
     end_hopf: int = -1
     """Index of the Hopf point where the branch ends; -1 if the branch ends elsewhere."""
-    breaking: SymmetryBreaking | None = None
+    start_breaking: SymmetryBreaking | None = None
     """Symmetry breaking where an asymmetric branch starts; None for a branch from a Hopf point."""
     end_breaking: SymmetryBreaking | None = None
     """Symmetry breaking where an asymmetric branch ends; None if the branch ends elsewhere."""
     complete: bool = False
     """Whether the branch was followed to a true end: Hopf point, symmetry breaking, end of the range, or end
     of the model."""
-    full: bool = False
+    list_full: bool = False
     """Whether following stopped at the maximum number of cycles."""
-    explained: bool = True
+    multipliers_explained: bool = True
     """Whether special points explain every multiplier that crosses the unit circle along the branch."""
 
     def add(self, special: SpecialPoint) -> None:
@@ -111,7 +111,7 @@ class BranchCurve:
         the multipliers of the next cycle."""
         for special in between:
             self.add(special)
-        self.explained &= explained
+        self.multipliers_explained &= explained
 
     def judge(self, points: Sequence[BranchPoint]) -> None:
         """Replaces the last len(points) cycles by `points`: the same cycles with measured or interpolated
@@ -127,6 +127,6 @@ class BranchCurve:
         """Appends the end of the branch as its last special point."""
         self.add(end.special)
         self.complete = end.complete
-        self.full = end.full
+        self.list_full = end.list_full
         self.end_hopf = end.end_hopf
         self.end_breaking = end.end_breaking

@@ -235,13 +235,14 @@ def _judged(
     special = [point for curve in curves for point in curve.special]
     tolerance = max(request.accuracy, SPECIAL_POINT.accuracy)
     inaccurate = any(point.error > tolerance * abs(point.at) for point in special)
-    if any(not curve.explained for curve in curves):
+    if any(not curve.multipliers_explained for curve in curves):
         messages.append("multipliers cross the unit circle where no special point was found")
     verdicts = {
         BranchStatus.stopped: bool(failures)
-        or any(not curve.complete and not curve.full for curve in curves),
-        BranchStatus.list_full: any(curve.full for curve in curves) or count > request.special,
-        BranchStatus.special_undecided: inaccurate or any(not curve.explained for curve in curves),
+        or any(not curve.complete and not curve.list_full for curve in curves),
+        BranchStatus.list_full: any(curve.list_full for curve in curves) or count > request.special,
+        BranchStatus.special_undecided: inaccurate
+        or any(not curve.multipliers_explained for curve in curves),
         BranchStatus.search_open: found.ended_early or (request.certify and not found.proved),
     }
     status = next((status for status, holds in verdicts.items() if holds), BranchStatus.ok)

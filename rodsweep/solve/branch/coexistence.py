@@ -172,8 +172,8 @@ class StabilityInterval:
     special points. stable: 1 if the cycles are stable, 0 if unstable, -1 if undecided.
     """
 
-    within: tuple[float, float]
-    about: tuple[float, float]
+    certain_range: tuple[float, float]
+    possible_range: tuple[float, float]
     stable: int
 
 
@@ -186,21 +186,21 @@ def stable_cycles_at(values: Array, branches: BranchesOfRod, certify: bool) -> N
     complete = branches.status in (BranchStatus.ok, BranchStatus.special_undecided)
     known = complete and (branches.proved or not certify)
     found = np.full(len(values), 0 if known else -1, dtype=np.int8)
-    stretches = [stretch for curve in branches.curves for stretch in stability_intervals(curve)]
+    intervals = [interval for curve in branches.curves for interval in stability_intervals(curve)]
     # No stable cycle is claimed where the stability is undecided, or within the error of an interval's end.
-    for stretch in stretches:
-        if stretch.stable:
-            found[(values >= stretch.about[0]) & (values <= stretch.about[1])] = -1
-    for stretch in stretches:
-        if stretch.stable > 0:
-            found[(values > stretch.within[0]) & (values < stretch.within[1])] = 1
+    for interval in intervals:
+        if interval.stable:
+            found[(values >= interval.possible_range[0]) & (values <= interval.possible_range[1])] = -1
+    for interval in intervals:
+        if interval.stable > 0:
+            found[(values > interval.certain_range[0]) & (values < interval.certain_range[1])] = 1
     return found
 
 
 def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
     """Intervals of the parameter between successive special points of a branch, with the stability in each
     interval."""
-    stretches = []
+    intervals = []
     for one, other in zip(curve.special[:-1], curve.special[1:], strict=True):
         signs = {point.least_outside for point in curve.points[one.after + 1 : other.after + 1]} - {-1}
         # Stability can change at special points only; cycles that disagree between two of them leave it open.
@@ -212,8 +212,8 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
         low, high = sorted((one, other), key=lambda point: point.at)
         within = low.at + _closed(low) * low.error, high.at - _closed(high) * high.error
         about = low.at - low.error, high.at + high.error
-        stretches.append(StabilityInterval(within, about, stable))
-    return stretches
+        intervals.append(StabilityInterval(within, about, stable))
+    return intervals
 
 
 def _closed(point: SpecialPoint) -> int:

@@ -101,22 +101,22 @@ class BranchCalibration:
     p.
     """
 
-    known: Calibration
-    parameter: Array
-    slope: float
+    at_parameter: Calibration
+    parameter_errors: Array
+    sensitivity: float
 
     @property
     def mesh(self) -> OrbitMesh:
-        return self.known.mesh
+        return self.at_parameter.mesh
 
     def errors(self, accuracy: float) -> CycleErrors:
         """Errors of the cycle at equal parameter, not smaller than a share of the accuracy."""
-        return self.known.errors(accuracy)
+        return self.at_parameter.errors(accuracy)
 
     def parameter_error(self, accuracy: float) -> float:
         """Relative error of the parameter at equal deflection, with a safety factor."""
         return max(
-            CALIBRATION.safety * float(self.parameter.sum()),
+            CALIBRATION.safety * float(self.parameter_errors.sum()),
             CYCLE_ERRORS.min_claim * accuracy,
             CYCLE_ERRORS.rounding,
         )
@@ -139,22 +139,22 @@ class BranchCalibration:
         """Errors that determine the mesh, reduced as in `largest`; they include the parameter error."""
         # Where y is steep in p, errors at equal p grow with the slope although the mesh is as good as
         # elsewhere.
-        steep = max(1.0, self.slope / BRANCH_ERRORS.steep_slope)
-        parts = [self.known.space / steep, self.known.time / steep]
-        for part, own in zip(parts, self.parameter, strict=True):
+        steep = max(1.0, self.sensitivity / BRANCH_ERRORS.steep_slope)
+        parts = [self.at_parameter.space / steep, self.at_parameter.time / steep]
+        for part, own in zip(parts, self.parameter_errors, strict=True):
             part[PERIOD_CHANGE] = max(part[PERIOD_CHANGE], own)
-        return replace(self.known, space=parts[0], time=parts[1])
+        return replace(self.at_parameter, space=parts[0], time=parts[1])
 
     @cached_property
     def _of_parameter(self) -> Calibration:
         """A calibration in which every error equals the parameter error at equal deflection."""
         numbers = [PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH]
-        parts = [self.known.space.copy(), self.known.time.copy()]
-        for part, own in zip(parts, self.parameter, strict=True):
+        parts = [self.at_parameter.space.copy(), self.at_parameter.time.copy()]
+        for part, own in zip(parts, self.parameter_errors, strict=True):
             part[numbers] = own
-        return replace(self.known, space=parts[0], time=parts[1])
+        return replace(self.at_parameter, space=parts[0], time=parts[1])
 
-    def towards(self, other: "BranchCalibration", share: float, slope: float) -> "BranchCalibration":
+    def towards(self, other: "BranchCalibration", share: float, sensitivity: float) -> "BranchCalibration":
         """Interpolated errors of a cycle that lies on the branch between two measured cycles with the same
         mesh.
 
@@ -165,13 +165,13 @@ class BranchCalibration:
         mean = [
             _interpolated(one, another, share)
             for one, another in (
-                (self.known.space, other.known.space),
-                (self.known.time, other.known.time),
-                (self.parameter, other.parameter),
+                (self.at_parameter.space, other.at_parameter.space),
+                (self.at_parameter.time, other.at_parameter.time),
+                (self.parameter_errors, other.parameter_errors),
             )
         ]
-        known = replace(self.known, space=mean[0], time=mean[1], growth=np.ones(2))
-        return BranchCalibration(known, mean[2], slope)
+        known = replace(self.at_parameter, space=mean[0], time=mean[1], growth=np.ones(2))
+        return BranchCalibration(known, mean[2], sensitivity)
 
 
 def _interpolated(one: Array, other: Array, share: float) -> Array:
@@ -185,32 +185,28 @@ def _interpolated(one: Array, other: Array, share: float) -> Array:
 
 
 def measured_errors(
-    found: ConvergedOrbit, place: BranchDerivatives, accuracy: float, before: Calibration | None
+    found: ConvergedOrbit, derivatives: BranchDerivatives, accuracy: float, before: Calibration | None
 ) -> BranchCalibration:
     """Errors of the mesh of the cycle `found`, measured by comparison with two finer meshes; raises
-    Unsolvable.
-
-    place: derivatives of the branch at the cycle. accuracy: relative accuracy of the cycle. before:
-    calibration at a previous cycle, with convergence rates.
-    """
+    Unsolvable. before: calibration at a previous cycle, from which the convergence rates follow."""
     mesh = mesh_of(found.orbit)
     orbit = found.orbit
     finer, share = finer_meshes(mesh)
-    condition = BorderCondition.at(place.scale, place.ahead, orbit)
+    condition = BorderCondition.at(derivatives.scale, derivatives.ahead, orbit)
     rough = CyclePath(orbit)
     multipliers = multipliers_of(found)[0]
     parts = np.empty((2, MULTIPLIER + 2))
     for part, target in zip(parts, finer, strict=True):
         fine = condition.on(target, found, BRANCH_ERRORS.newton_share * accuracy, COMPARISON.matrix_distance)
-        part[:] = _difference(rough, multipliers, fine, place)
+        part[:] = _difference(rough, multipliers, fine, derivatives)
     # The mesh finer in time removes only this share of the error in time.
     parts[1] /= share
     known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, before)
-    return BranchCalibration(known, parts[:, -1], sensitivity_of(rough, place))
+    return BranchCalibration(known, parts[:, -1], sensitivity_of(rough, derivatives))
 
 
 def _difference(
-    rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, place: BranchDerivatives
+    rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, derivatives: BranchDerivatives
 ) -> Array:
     """Differences, (6,), of a cycle on a rough mesh from the same cycle on a fine mesh.
 
@@ -219,30 +215,33 @@ def _difference(
     cycle, (rank - 1,).
     """
     orbit = rough.orbit
-    scale = place.scale
+    scale = derivatives.scale
     deflection, _, off = scale.place(orbit) - scale.place(fine.orbit)
-    length = place.slide(off)
+    length = derivatives.slide(off)
     target = mesh_of(fine.orbit)
-    along = np.append(carried_change(orbit, place.tangent[:-1], target), place.tangent[-1])
+    along = np.append(carried_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1])
     # The two cycles differ in the parameter; the fine cycle is moved along the branch to the same value.
     slid = moved_orbit(fine.orbit, scale.name, length * along)
-    change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(length * place.multiplier_rate)
-    by_deflection = abs(place.ahead[0])
-    by_parameter = abs(place.rate)
+    change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(
+        length * derivatives.multiplier_rate
+    )
+    by_deflection = abs(derivatives.ahead[0])
+    by_parameter = abs(derivatives.rate)
     # Distance of the two branches across their common tangent, in (deflection, parameter).
-    apart = abs(off * place.ahead[0] - deflection * place.rate)
+    apart = abs(off * derivatives.ahead[0] - deflection * derivatives.rate)
     own = apart / max(by_deflection, BRANCH_ERRORS.min_deflection_share * by_parameter)
     return np.array([*path_differences(rough, CyclePath(slid)), change, own])
 
 
-def sensitivity_of(path: CyclePath, place: BranchDerivatives) -> float:
-    """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch, by a difference
-    quotient.
-
-    path: the cycle. place: derivatives of the branch at the cycle.
-    """
+def sensitivity_of(path: CyclePath, derivatives: BranchDerivatives) -> float:
+    """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch at the cycle
+    `path`."""
     orbit: Orbit = path.orbit
-    ahead = CyclePath(moved_orbit(orbit, place.scale.name, BRANCH_ERRORS.slope_step * place.tangent))
+    ahead = CyclePath(
+        moved_orbit(orbit, derivatives.scale.name, BRANCH_ERRORS.slope_step * derivatives.tangent)
+    )
     y = path.extrema["tip_y_max"]
     other = ahead.extrema["tip_y_max"]
-    return abs((other - y) / (BRANCH_ERRORS.slope_step * y)) / max(abs(place.rate), EXPONENTS.least_divisor)
+    return abs((other - y) / (BRANCH_ERRORS.slope_step * y)) / max(
+        abs(derivatives.rate), EXPONENTS.least_divisor
+    )

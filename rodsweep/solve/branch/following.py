@@ -53,7 +53,7 @@ class BranchLimits:
 def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
     """The branch from the Hopf point `limits.hopfs[number]`; a failure becomes its last special point."""
     hopf = limits.hopfs[number]
-    curve = BranchCurve(hopf=number)
+    curve = BranchCurve(start_hopf=number)
     curve.add(hopf_as_special_point(hopf))
     return _followed(curve, limits, lambda: first_cycle(hopf, limits.accuracy, limits.workspace))
 
@@ -62,7 +62,7 @@ def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> Bra
     """The branch of asymmetric cycles along the parameter `name` from the symmetry breaking
     `limits.breakings[which]`; a failure becomes its last special point."""
     breaking = limits.breakings[which]
-    curve = BranchCurve(hopf=-1, breaking=breaking)
+    curve = BranchCurve(start_hopf=-1, start_breaking=breaking)
     curve.add(replace(breaking.point, message="", orbit=None))
 
     def first() -> ArcPoint:
@@ -75,7 +75,7 @@ def _followed(curve: BranchCurve, limits: BranchLimits, first: Callable[[], ArcP
     """The branch `curve` with its first special point, followed to its end. first: returns the first
     cycle."""
     if limits.max_cycles < 1:
-        curve.end(BranchEnd(_end_beside(curve, EndReason.list_full), complete=False, full=True))
+        curve.end(BranchEnd(_end_beside(curve, EndReason.list_full), complete=False, list_full=True))
         return curve
     try:
         start = first()
@@ -138,7 +138,7 @@ def _next(trail: BranchRecord, start: ArcPoint, limits: BranchLimits) -> ArcPoin
     """The next cycle after `start`, appended to the branch after the special points between; or the end."""
     curve = trail.curve
     if len(curve.points) >= limits.max_cycles:
-        return BranchEnd(end_point(start, EndReason.list_full), complete=False, full=True)
+        return BranchEnd(end_point(start, EndReason.list_full), complete=False, list_full=True)
     try:
         end = next_point(start, limits.accuracy)
         if _passed_mirror_image(start, end, limits):

@@ -56,34 +56,41 @@ def first_measured_cycle(
     side: direction of the branch in the components of `Scale.place`, (3,). born: arc length from the special
     point where the branch starts; parameter and multipliers are quadratic in this length.
     """
-    place = branch_derivatives(found, scale, tangent_at(found.orbit, scale, side, bordered_matrix_of(found)))
+    derivatives = branch_derivatives(
+        found, scale, tangent_at(found.orbit, scale, side, bordered_matrix_of(found))
+    )
     multipliers = multipliers_of(found)[0]
     lost = abs(multipliers[0] - 1) if len(multipliers) else 0.0
     # At the Hopf point the parameter's rate is 0 and a second multiplier is 1. From there the rate is linear
     # and the multiplier quadratic in the deflection.
-    place = replace(place, curvature=place.rate / born, multiplier_rate=2 * lost / born)
-    calibration = measured_errors(found, place, accuracy, None)
-    cycle = with_calibrated_errors(calibration.known, found, accuracy)
+    derivatives = replace(derivatives, curvature=derivatives.rate / born, multiplier_rate=2 * lost / born)
+    calibration = measured_errors(found, derivatives, accuracy, None)
+    cycle = with_calibrated_errors(calibration.at_parameter, found, accuracy)
     return on_sufficient_mesh(
-        ArcPoint(cycle=cycle, place=place, length=ARC_STEPS.first_length, calibration=calibration), accuracy
+        ArcPoint(
+            cycle=cycle, derivatives=derivatives, length=ARC_STEPS.first_length, calibration=calibration
+        ),
+        accuracy,
     )
 
 
 def measurement_due(point: ArcPoint) -> bool:
     """Whether the errors of a cycle must be measured, because the last measured cycle is too far away."""
-    growth = float(point.calibration.known.on_branch(point.orbit).growth.max())
+    growth = float(point.calibration.at_parameter.on_branch(point.orbit).growth.max())
     return point.unmeasured >= BRANCH_MESH.max_unmeasured or growth > BRANCH_MESH.remeasure_growth
 
 
 def with_measured_errors(point: ArcPoint, accuracy: float) -> ArcPoint:
     """The same cycle with its errors measured on two finer meshes; raises Unsolvable."""
-    before = point.calibration.known
-    return with_calibration(point, measured_errors(point.cycle.fine, point.place, accuracy, before), accuracy)
+    before = point.calibration.at_parameter
+    return with_calibration(
+        point, measured_errors(point.cycle.converged, point.derivatives, accuracy, before), accuracy
+    )
 
 
 def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: float) -> ArcPoint:
     """The same cycle with the errors of a calibration that holds at this cycle."""
-    cycle = with_calibrated_errors(calibration.known, point.cycle.fine, accuracy)
+    cycle = with_calibrated_errors(calibration.at_parameter, point.cycle.converged, accuracy)
     return replace(point, cycle=cycle, calibration=calibration, unmeasured=0, arc_since_measured=0.0)
 
 
@@ -119,18 +126,18 @@ def on_sufficient_mesh(
 def solved_on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accuracy: float) -> ArcPoint:
     """The same cycle solved on another mesh, without measured errors; raises Unsolvable. condition: equation
     that identifies the cycle."""
-    found = condition.on(mesh, point.cycle.fine, newton_tolerance(accuracy), matrix_distance(accuracy))
+    found = condition.on(mesh, point.cycle.converged, newton_tolerance(accuracy), matrix_distance(accuracy))
     tangent = tangent_at(found.orbit, point.scale, point.ahead, bordered_matrix_of(found))
-    known = point.place
-    place = replace(
+    known = point.derivatives
+    derivatives = replace(
         branch_derivatives(found, point.scale, tangent),
         curvature=known.curvature,
         multiplier_rate=known.multiplier_rate,
     )
     return replace(
         point,
-        cycle=with_calibrated_errors(point.calibration.known, found, accuracy),
-        place=place,
+        cycle=with_calibrated_errors(point.calibration.at_parameter, found, accuracy),
+        derivatives=derivatives,
         unmeasured=1,
     )
 
@@ -182,8 +189,10 @@ def _with_errors_between(
     """
     ends = (last, end)
     slow = abs(point.rises) < BRANCH_MESH.min_rate_share * min(abs(one.rises) for one in ends)
-    grown = min(one.calibration.known.on_branch(point.orbit).growth.max() for one in ends)
+    grown = min(one.calibration.at_parameter.on_branch(point.orbit).growth.max() for one in ends)
     if slow or float(grown) > BRANCH_MESH.max_tail_growth:
         return with_measured_errors(point, accuracy)
-    known = last.calibration.towards(end.calibration, share, sensitivity_of(point.cycle.path, point.place))
+    known = last.calibration.towards(
+        end.calibration, share, sensitivity_of(point.cycle.path, point.derivatives)
+    )
     return with_calibration(point, known, accuracy)

@@ -90,11 +90,11 @@ ASYMMETRIC_START = AsymmetricStartSettings()
 
 @dataclass(frozen=True, slots=True)
 class SymmetryBreaking:
-    """A symmetry breaking on a branch. branch: number of the branch, from 1. place: index in the list of
+    """A symmetry breaking on a branch. branch: number of the branch, from 1. index: index in the list of
     special points of this branch, from 0."""
 
     branch: int
-    place: int
+    index: int
     point: SpecialPoint
 
 

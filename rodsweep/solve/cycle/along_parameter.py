@@ -69,13 +69,13 @@ class CyclePredictor:
     """Polynomial in one parameter that predicts other orbits on the branch of a solved orbit, by Hermite
     interpolation.
 
-    The data are normalised values and parameter derivatives of orbits, (m, N + 1). places: abscissa of each
+    The data are normalised values and parameter derivatives of orbits, (m, N + 1). offsets: abscissa of each
     datum, the difference of its parameter coordinate from the solved orbit's, (m,). orders: 0 for values, 1
     for a derivative, (m,). The first datum is the derivative at the solved orbit.
     """
 
     orbit: Orbit
-    places: Array
+    offsets: Array
     orders: Array
     data: Array
 
@@ -92,7 +92,7 @@ class CyclePredictor:
     def weights(self, step: float) -> Array:
         """Weights, (m,), of the data in the predicted change over a step of the parameter coordinate; see
         `polynomial_weights`."""
-        weights: Array = polynomial_weights(self.places, self.orders, step)
+        weights: Array = polynomial_weights(self.offsets, self.orders, step)
         return weights
 
     def at(self, form: StressForm, name: str) -> Orbit:
@@ -145,7 +145,7 @@ def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: s
     if last is not before:
         return CyclePredictor(orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last.tangent]))
     older = np.flatnonzero(before.orders == 0)[: PREDICTION.max_earlier_orbits - 1]
-    places = [0.0, -step, *(before.places[older] - step)]
+    places = [0.0, -step, *(before.offsets[older] - step)]
     # All abscissas shift by the step, because the newest orbit is at 0.
     data = [tangent, before.values, *before.data[older]]
     orders = [1.0] + [0.0] * (1 + len(older))

@@ -97,7 +97,7 @@ def _solve(
         return _from_hopf(_form_of_motion(rod), request, straight, stability, workspace)
     found = None
     if neighbour is not None and along is not None:
-        form = StressForm(rod, neighbour.branch.orbit.form.mesh)
+        form = StressForm(rod, neighbour.predictor.orbit.form.mesh)
         with suppress(Unsolvable):
             found = cycle_from_neighbour(neighbour, form, along, request.accuracy, workspace)
     elif neighbour is None and not request.is_traced:
@@ -116,10 +116,10 @@ def _solve(
     if decays:
         return replace(cycle, message=decays)
     cycle = replace(cycle, status=end.status, message=end.message)
-    if end.found is None:
-        return cycle if end.around is None else _with_multipliers(cycle, end.around)
-    cycle = _with_numbers(cycle, end.found, request)
-    return _with_chain_state(cycle, end.found, None, along, request.accuracy, stability)
+    if end.cycle is None:
+        return cycle if end.unstable_cycle is None else _with_multipliers(cycle, end.unstable_cycle)
+    cycle = _with_numbers(cycle, end.cycle, request)
+    return _with_chain_state(cycle, end.cycle, None, along, request.accuracy, stability)
 
 
 def _form_of_motion(rod: Rod) -> StressForm:
@@ -215,7 +215,7 @@ def _from_motion(
     elif neighbour is None:
         start = request.amplitude * transient.mode.z.real
     else:
-        orbit = neighbour.branch.orbit
+        orbit = neighbour.predictor.orbit
         start = beam.scaled(orbit.form.stresses_on(beam.mesh, orbit.start))
     return classify_quasiperiodic(transient.follow(start), transient)
 

@@ -63,12 +63,12 @@ Arrays = dict[str, Array]
 class Neighbour:
     """Data of a solved cycle from which the next rod of a chain starts.
 
-    branch: predictor of the next cycle. next_mesh: mesh for the next cycle. calibration: measured errors of a
-    mesh, perhaps outdated. eigenvalues: eigenvalues of the straight rod in 1/tau2 with Im >= 0, (n,), the
-    leading eigenvalue first; NaN if not known.
+    predictor: polynomial for the next cycle. next_mesh: mesh for the next cycle. calibration: measured errors
+    of a mesh, perhaps outdated. eigenvalues: eigenvalues of the straight rod in 1/tau2 with Im >= 0, (n,),
+    the leading eigenvalue first; NaN if not known.
     """
 
-    branch: CyclePredictor
+    predictor: CyclePredictor
     next_mesh: OrbitMesh
     calibration: Calibration
     eigenvalues: Complex = field(default_factory=UNKNOWN_EIGENVALUES.copy)
@@ -84,13 +84,13 @@ class Neighbour:
     ) -> "Neighbour":
         """Data of the cycle `found`, which was solved with its tangent. before: data of the previous rod of
         the chain. name: varied parameter."""
-        branch = predictor_from(found.fine, before.branch if before else None, name)
+        branch = predictor_from(found.converged, before.predictor if before else None, name)
         return cls(branch, *_next_mesh(found, before, name, accuracy), eigenvalues)
 
     def arrays(self) -> Arrays:
         """All data as named arrays, for a checkpoint: orbit (N,), data (m, N + 1), places and orders (m,),
         eigenvalues (n,), meshes, rod and calibration."""
-        branch = self.branch
+        branch = self.predictor
         orbit = branch.orbit
         return {
             "rod": np.array(list(orbit.form.rod.values.values())),
@@ -99,7 +99,7 @@ class Neighbour:
             "symmetric": np.array(orbit.symmetric),
             "mesh": mesh_of(orbit).numbers,
             "orbit": orbit.values,
-            "places": branch.places,
+            "places": branch.offsets,
             "orders": branch.orders,
             "data": branch.data,
             "next_mesh": self.next_mesh.numbers,
@@ -146,7 +146,7 @@ def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -
         return NEIGHBOUR.new_mesh_cost
     if not found.calibration.reach:
         return NEIGHBOUR.calibrated_mesh_cost
-    step = relative_parameter_difference(before.branch.orbit.form, found.orbit.form, name)
+    step = relative_parameter_difference(before.predictor.orbit.form, found.orbit.form, name)
     # A mesh whose errors must be measured anyway may as well be another one.
     return 0.0 if found.calibration.lasts(step) else NEIGHBOUR.new_mesh_cost
 
@@ -159,15 +159,15 @@ def cycle_from_neighbour(
 
     form: the rod, on any mesh. workspace: memory of Newton's matrices.
     """
-    if form.rod.build != neighbour.branch.orbit.form.rod.build:
+    if form.rod.build != neighbour.predictor.orbit.form.rod.build:
         raise Unsolvable("the rods differ in their properties along the length")
-    if form.omega_unknown != neighbour.branch.orbit.form.omega_unknown:
+    if form.omega_unknown != neighbour.predictor.orbit.form.omega_unknown:
         raise Unsolvable(
             "the rods have different unknowns: Omega is an unknown only at small rotational drag"
         )
     found = _converged(neighbour, form, name, accuracy, workspace)
     known = neighbour.calibration.at(
-        found.orbit, relative_parameter_difference(neighbour.branch.orbit.form, form, name)
+        found.orbit, relative_parameter_difference(neighbour.predictor.orbit.form, form, name)
     )
     if known.holds:
         cycle = with_calibrated_errors(known, found, accuracy)
@@ -184,9 +184,11 @@ def _converged(
     tolerance = newton_tolerance(accuracy)
     target = neighbour.next_mesh
     try:
-        found = orbit_near_prediction(neighbour.branch.on(target).at(form, name), tolerance, workspace, name)
+        found = orbit_near_prediction(
+            neighbour.predictor.on(target).at(form, name), tolerance, workspace, name
+        )
     except Unsolvable:
         # The steps are made on a coarser mesh; only the last correction is made on `next_mesh`.
-        start = orbit_in_steps(neighbour.branch.on(target.coarser), form, name, tolerance, workspace)
+        start = orbit_in_steps(neighbour.predictor.on(target.coarser), form, name, tolerance, workspace)
         found = newton(target.carry(start.orbit), tolerance, workspace, name)
     return at_orbit(found, matrix_distance(accuracy), name)

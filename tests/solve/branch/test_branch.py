@@ -74,7 +74,7 @@ def test_branch_from_the_first_hopf_point_of_fig_2c_arrives_at_its_restabilizati
     assert last.period == pytest.approx(2 * np.pi / 3367.28095760, rel=1e-11)
     assert 199.16 < fold.at < 199.1602
     assert fold.error < 1e-9 * fold.at
-    unstable = [point.unstable for point in curve.points]
+    unstable = [point.unstable_count for point in curve.points]
     turn = fold.after + 1
     assert unstable == [0] * turn + [1] * (len(unstable) - turn)
     assert all(point.at_error <= 1e-7 for point in curve.points)
@@ -138,7 +138,7 @@ def test_branch_without_a_fold():
     assert found.status == BranchStatus.ok
     assert kinds(curve) == ["hopf", "end"]
     assert np.all(np.diff([point.at for point in curve.points]) > 0)
-    assert {point.unstable for point in curve.points} == {0}
+    assert {point.unstable_count for point in curve.points} == {0}
 
 
 def test_branch_that_leaves_the_model_ends_where_h1_is_0():
@@ -159,7 +159,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
     torus = only(curve, SpecialKind.torus)
     assert torus.error < 1e-9 * torus.at
     after = torus.after + 1
-    assert [point.unstable for point in curve.points[after - 1 : after + 1]] == [0, 2]
+    assert [point.unstable_count for point in curve.points[after - 1 : after + 1]] == [0, 2]
     request = CycleRequest(1e-6, 0.01, 8, 0, 0, 0, 400, "hopf")
     for side, status in ((-1, CycleStatus.cycle), (1, CycleStatus.unstable)):
         F = torus.at * (1 + side * 2e-4)
@@ -237,7 +237,7 @@ def test_branch_that_cannot_be_followed_says_where_and_why(monkeypatch):
     said = "no cycle is found beyond: there is no cycle near on the branch at F = "
     assert f"branch 1: {said}{first.points[-1].at:.9g}; branch 2: {said}" in found.message
     assert first.points[-1].at > 75
-    assert second.hopf == 1  # the other end is tried by itself
+    assert second.start_hopf == 1  # the other end is tried by itself
 
 
 def test_list_that_is_full_says_so():

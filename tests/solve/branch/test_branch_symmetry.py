@@ -88,11 +88,11 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     assert end.at == pytest.approx(STOP, rel=1e-14)
     assert end.reason == EndReason.range_end
     turn = symmetric.special[1].after + 1
-    assert {point.unstable for point in symmetric.points[:turn]} - {-1} == {0}
-    assert {point.unstable for point in symmetric.points[turn:]} - {-1} == {1}
+    assert {point.unstable_count for point in symmetric.points[:turn]} - {-1} == {0}
+    assert {point.unstable_count for point in symmetric.points[turn:]} - {-1} == {1}
     turn = fold.after + 1
-    assert {point.unstable for point in asymmetric.points[:turn]} - {-1} == {1}
-    assert {point.unstable for point in asymmetric.points[turn:]} - {-1} == {0}
+    assert {point.unstable_count for point in asymmetric.points[:turn]} - {-1} == {1}
+    assert {point.unstable_count for point in asymmetric.points[turn:]} - {-1} == {0}
 
 
 def test_asymmetry_grows_with_the_square_root_of_the_distance(symmetric, asymmetric):
@@ -130,15 +130,15 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
 
 def turned_back(here):
     """A cycle of a branch that is followed to its other side."""
-    place = replace(here.place, tangent=-here.tangent, ahead=-here.ahead)
-    return replace(here, place=place, before=None)
+    derivatives = replace(here.derivatives, tangent=-here.tangent, ahead=-here.ahead)
+    return replace(here, derivatives=derivatives, before=None)
 
 
 def test_followed_back_the_branch_ends_where_it_was_born(known):
     here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     for _ in range(2):
         here = next_point(here, ROUGH)
-    curve = follow_from_cycle(BranchCurve(hopf=-1), turned_back(on_sufficient_mesh(here, ROUGH)), known)
+    curve = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(on_sufficient_mesh(here, ROUGH)), known)
     assert curve.complete
     assert curve.end_breaking is known.breakings[0]
     assert kinds(curve) == ["symmetry_breaking"]
@@ -155,7 +155,7 @@ def test_a_symmetric_orbit_over_its_whole_period_is_the_same_motion(known):
 
 def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):
     here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
-    curve = follow_from_cycle(BranchCurve(hopf=-1), turned_back(here), replace(known, breakings=[]))
+    curve = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(here), replace(known, breakings=[]))
     assert not curve.complete
     assert curve.special[-1].reason == EndReason.no_cycle_found
     assert "a branch that was not followed" in curve.special[-1].message

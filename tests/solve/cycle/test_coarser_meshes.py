@@ -88,10 +88,10 @@ def test_what_coarser_meshes_do_not_predict_is_measured_by_finer_ones(near, why,
 def test_a_cycle_alone_and_one_that_starts_a_chain_are_the_same(near):
     alone, first = refined_at_period(near, ACCURACY, MEMORY), refined_at_period(near, ACCURACY, MEMORY, "F")
     assert alone.orbit.period == pytest.approx(first.orbit.period, rel=2 * ACCURACY)
-    assert alone.fine.matrix.tangent is None and first.fine.matrix.tangent is not None
+    assert alone.converged.matrix.tangent is None and first.converged.matrix.tangent is not None
     apart = alone.errors.multiplier_error + first.errors.multiplier_error
     assert abs(alone.largest_multiplier - first.largest_multiplier) <= apart
-    assert alone.errors.largest <= ACCURACY and alone.fine.distance <= ACCURACY
+    assert alone.errors.largest <= ACCURACY and alone.converged.distance <= ACCURACY
 
 
 def test_the_period_of_neighbouring_orders_that_agree_by_luck_is_not_believed():

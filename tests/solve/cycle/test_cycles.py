@@ -321,7 +321,7 @@ def test_period_is_the_minimal_one(rod, period, accuracy, amplitude):
 
 
 def orbit_at_fifty():
-    return reference().neighbour.branch.orbit
+    return reference().neighbour.predictor.orbit
 
 
 def repeated(half, times):

@@ -19,12 +19,12 @@ from .minimal_period import undecided_divisor
 class RefinedCycle:
     """A solved cycle with its measures, multipliers and errors.
 
-    fine: orbit and matrix. calibration: source of the errors. path: motion of the tip. multipliers:
+    converged: orbit and matrix. calibration: source of the errors. path: motion of the tip. multipliers:
     nontrivial multipliers, (rank - 1,), by descending modulus. trivial_error: distance of the computed
     trivial multiplier from 1.
     """
 
-    fine: ConvergedOrbit
+    converged: ConvergedOrbit
     calibration: Calibration
     path: CyclePath
     measures: Measures
@@ -34,7 +34,7 @@ class RefinedCycle:
 
     @property
     def orbit(self) -> Orbit:
-        return self.fine.orbit
+        return self.converged.orbit
 
     @property
     def largest_multiplier(self) -> float:

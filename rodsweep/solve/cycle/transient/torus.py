@@ -68,7 +68,7 @@ class Modulation:
 def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> TransientOutcome:
     """The outcome `torus` for a motion on a torus; the outcome `end` for any other motion, and for a motion
     that has settled."""
-    if end.status != CycleStatus.not_settled or end.found is not None:
+    if end.status != CycleStatus.not_settled or end.cycle is not None:
         return end
     # Only the last returns are stored, so the first third may be missing already, in part or wholly.
     skipped = max(
@@ -88,7 +88,7 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
                 f"modulated with {modulation.angle / (2 * np.pi):.3f} of the return frequency; "
                 f"the cycle inside the torus is unstable, multiplier {cycle.largest_multiplier:.3g}"
             )
-            return TransientOutcome(CycleStatus.torus, message, end.periods, around=cycle)
+            return TransientOutcome(CycleStatus.torus, message, end.periods, unstable_cycle=cycle)
     return end
 
 
