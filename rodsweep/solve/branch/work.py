@@ -35,8 +35,8 @@ def fraction_done(born: float, at: float, aim: float) -> float:
 
 
 def fractions_before_branches(born: Sequence[float], ends: ParameterRange) -> list[float]:
-    """Fractions of the total computing time of all branches before each branch, and 1 at the end, (branches +
-    1,).
+    """Fractions of the total computing time of all branches before each branch, and 1 at the end,
+    (branches + 1,).
 
     born: parameter coordinates of the Hopf points where the branches start. ends: range of the parameter
     coordinate.

@@ -98,8 +98,8 @@ class Cycle:
     tip: Array | None = None
     """x, y (in L) and theta of the tip at equidistant times over a period, (3, samples)."""
     energy: Array | None = None
-    """Elastic energy U in k3/L, injected and dissipated power, at equidistant times over a period, (3,
-    samples)."""
+    """Elastic energy U in k3/L, injected and dissipated power, at equidistant times over a period,
+    (3, samples)."""
     shape: Array | None = None
     """x, y (in L) and theta of the rod at equidistant times over a period, (3, shapes, nodes)."""
     transient: Array | None = None

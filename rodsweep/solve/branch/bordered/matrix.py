@@ -147,8 +147,8 @@ class BorderedMatrix:
         """Right-hand sides, (m n,), of the conditions that each leg (interval of multiple shooting) ends
         where the next leg starts.
 
-        jump: right-hand side of the last leg, (n,). columns: eliminated right-hand sides of the stages, (K,
-        s, 1, n). ends: change of the last leg's end caused by `columns` for a fixed start, (1, n).
+        jump: right-hand side of the last leg, (n,). columns: eliminated right-hand sides of the stages,
+        (K, s, 1, n). ends: change of the last leg's end caused by `columns` for a fixed start, (1, n).
         """
         p = self.orbit.semidiscrete
         sides = -self._legs.ends(self._memory.factors, columns, ends, p)[:, 0]
@@ -156,8 +156,8 @@ class BorderedMatrix:
         return sides.ravel()
 
     def _jump(self, orbit: Orbit, columns: Array, ends: Array) -> Array:
-        """Right-hand sides of the closing conditions of an orbit's legs and of the phase condition, (m n +
-        1,); columns, ends: as in `closing`."""
+        """Right-hand sides of the closing conditions of an orbit's legs and of the phase condition,
+        (m n + 1,); columns, ends: as in `closing`."""
         p = orbit.semidiscrete
         right = self.closing(jump_of(orbit.points, p), columns, ends)
         return np.append(right, -phase(orbit.start, p.rod, p.matrices))
@@ -166,8 +166,8 @@ class BorderedMatrix:
         """Solution of the bordered linear system, (N + 1,). border: last row, in the components of
         `Scale.place`, (3,).
 
-        right: right-hand sides of the closing conditions, of the phase condition and of the border, (m n +
-        2,). sides: right-hand sides of the stages, (K, s, n), which are multiplied by `share`.
+        right: right-hand sides of the closing conditions, of the phase condition and of the border,
+        (m n + 2,). sides: right-hand sides of the stages, (K, s, n), which are multiplied by `share`.
         """
         n = len(self.orbit.start)
         matrix = self._matrix.copy()

@@ -229,14 +229,14 @@ class CurveLimits:
         return len(behind) > CYCLE_CURVES.min_loop_points and 0 <= passed <= 1 and near
 
     def between(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
-        """The point near a fraction of the chord from `one` to `other`, without error; raises Unsolvable."""
+        """The point of the curve near a fraction of the chord from `one` to `other`; raises Unsolvable."""
         start, place = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.across(other.step_from(one))
         return self._family(other).nearest(start, place, across, other.rates)
 
     def on_row(self, one: SolvedPoint, other: SolvedPoint, place: float) -> SolvedPoint:
-        """The point at the rows' axis coordinate `place`, without error; raises Unsolvable. one, other:
-        points of the curve on both sides."""
+        """The point of the curve at the rows' axis coordinate `place`, between the points `one` and `other`;
+        raises Unsolvable."""
         share = (place - one.place) / (other.place - one.place) if other.place != one.place else 0.0
         start, _ = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         return self._family(other).nearest(start, place, ALONG_BRANCH, other.rates)

@@ -106,7 +106,8 @@ class Calibration:
         return in_space * self.space, in_time * self.time
 
     def errors(self, accuracy: float) -> CycleErrors:
-        """Error estimates of the orbit, not smaller than a share of the relative accuracy.
+        """Error estimates of the orbit to which the measured errors are scaled, not below a fraction of the
+        accuracy.
 
         For multiplier and other extrema, the errors in space and in time are both scaled by the larger
         growth, because an error was once seen to grow 2.7 times as much as its tail. For period and largest

@@ -42,7 +42,8 @@ class CycleErrors:
 
     @property
     def largest(self) -> float:
-        """The error that is compared with the requested accuracy, of period, largest y and other extrema."""
+        """The error that is compared with the requested accuracy: the largest of the errors of period and
+        largest y, and of the error of the other extrema divided by `extrema_slack`."""
         return float(largest_error(self.period_error, self.amplitude_error, self.extrema_error))
 
 

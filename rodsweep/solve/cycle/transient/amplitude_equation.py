@@ -73,8 +73,8 @@ class AmplitudeEquation:
         return growth + self.excess * duration, self.linear_rate * duration
 
     def slow(self, times: Array, states: Array) -> bool:
-        """Whether a motion is the slowly growing or decaying leading mode. times: (k,); states: (k,
-        unknowns)."""
+        """Whether a motion is the slowly growing or decaying leading mode. times: (k,); states:
+        (k, unknowns)."""
         return max(
             map(abs, self.growth(times, states))
         ) <= AMPLITUDE_EQUATION.slow_growth and self._has_period_of_mode(times)

@@ -29,7 +29,7 @@ class ReturnSettings:
     same_return: float = 0.03
     """Largest relative distance between the states at two returns that count as equal."""
     max_returns_per_period: int = 8
-    """Maximum number of returns per period."""
+    """Largest number of returns of the tip per period of a recognised cycle."""
     steps_per_run: int = 20_000
     """Maximum number of time steps in one run."""
     bisections: int = 50

@@ -38,7 +38,7 @@ class AugmentedSettings:
     contraction_safety: float = 3.0
     """Safety factor on a measured contraction rate that is assumed for the next cycle."""
     slow: float = 0.3
-    """Ratio of successive corrections above which a new matrix is assembled."""
+    """Ratio of the sizes of successive corrections, above which a new matrix is assembled."""
     rounding: float = 1e-8
     """Relative size of a correction below which corrections that hardly decrease are rounding errors: the
     iteration stops."""
@@ -127,8 +127,7 @@ class TorusFunction:
         return abs(self.multiplier) - 1
 
     def start_from(self, parts: Array) -> None:
-        """Sets the eigenvector from which the next correction starts; parts: real and imaginary part, (2, N +
-        1)."""
+        """Sets the eigenvector, given by real and imaginary part, (2, N + 1), that is corrected next."""
         self.vectors = parts
 
     def correct(self, orbit: Orbit) -> None:
