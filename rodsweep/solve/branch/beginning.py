@@ -36,7 +36,7 @@ class BeginningSettings:
 
     first_amplitudes: tuple[float, ...] = (0.02, 0.008, 0.003)
     """Amplitudes (largest tip y, in L) of the first cycle, tried in this order."""
-    amplitude_share: float = 0.05
+    max_amplitude_share: float = 0.05
     """Upper limit of the amplitude of the first cycle, in units of `HopfBirth.amplitude_coefficient`. Beyond
     this limit the third-order normal form is too inaccurate."""
     min_deflection_amplitude: float = 0.1
@@ -160,7 +160,7 @@ def first_cycle(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) ->
     # A coarse mesh may have no cycle here, because the mesh's own Hopf point lies beyond.
     for aim, finer in ((usual, False), (REFINEMENT.first_accuracy, True)):
         for share in BEGINNING.first_amplitudes:
-            amplitude = min(share, BEGINNING.amplitude_share * a)
+            amplitude = min(share, BEGINNING.max_amplitude_share * a)
             try:
                 return _cycle_of(hopf, amplitude, aim, finer, accuracy, workspace)
             except Unsolvable as error:

@@ -63,7 +63,7 @@ def _margin(point: ArcPoint) -> float:
     """
     cycle = point.cycle
     relative = cycle.errors.multiplier_error / max(cycle.largest_multiplier, 1.0)
-    return relative + REFINEMENT.multiplier_factor * cycle.trivial_error
+    return relative + REFINEMENT.multiplier_error_factor * cycle.trivial_error
 
 
 @dataclass(frozen=True, slots=True)

@@ -34,7 +34,7 @@ from .bordered.scale import Scale
 class BranchErrorSettings:
     """Settings for the error estimates of the cycles of a branch."""
 
-    steep_slope: float = 120.0
+    max_sensitivity: float = 120.0
     """Limit of the sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p. Above this limit, as
     near a Hopf point or a fold, errors at equal p may exceed the accuracy in proportion to the sensitivity,
     because p has an error too. The limit is a fifth above the documented limit of 100, because a user takes
@@ -45,11 +45,11 @@ class BranchErrorSettings:
     the branch."""
     interpolation_factor: float = 2.0
     """Safety factor on interpolated errors."""
-    negligible_error: float = 1e-16
+    min_error: float = 1e-16
     """Smallest error; smaller differences between meshes are rounding errors."""
-    newton_share: float = 0.01
+    newton_tolerance_share: float = 0.01
     """Tolerance of Newton's method on the two finer meshes, in units of the accuracy."""
-    slope_step: float = 1e-4
+    sensitivity_step: float = 1e-4
     """Arc length of the difference quotient for the sensitivity of the largest tip y."""
 
 
@@ -116,14 +116,14 @@ class BranchCalibration:
     def parameter_error(self, accuracy: float) -> float:
         """Relative error of the parameter at equal deflection, with a safety factor."""
         return max(
-            CALIBRATION.safety * float(self.parameter_errors.sum()),
-            CYCLE_ERRORS.min_claim * accuracy,
-            CYCLE_ERRORS.rounding,
+            CALIBRATION.safety_factor * float(self.parameter_errors.sum()),
+            CYCLE_ERRORS.min_error_share * accuracy,
+            CYCLE_ERRORS.rounding_error,
         )
 
     def largest(self, accuracy: float) -> float:
         """The error that is compared with the relative accuracy, reduced where the sensitivity exceeds
-        `steep_slope`."""
+        `max_sensitivity`."""
         return self._demanded.errors(accuracy).largest
 
     def planned(self, accuracy: float) -> OrbitMesh:
@@ -139,7 +139,7 @@ class BranchCalibration:
         """Errors that determine the mesh, reduced as in `largest`; they include the parameter error."""
         # Where y is steep in p, errors at equal p grow with the slope although the mesh is as good as
         # elsewhere.
-        steep = max(1.0, self.sensitivity / BRANCH_ERRORS.steep_slope)
+        steep = max(1.0, self.sensitivity / BRANCH_ERRORS.max_sensitivity)
         parts = [self.at_parameter.space / steep, self.at_parameter.time / steep]
         for part, own in zip(parts, self.parameter_errors, strict=True):
             part[PERIOD_CHANGE] = max(part[PERIOD_CHANGE], own)
@@ -178,7 +178,7 @@ def _interpolated(one: Array, other: Array, share: float) -> Array:
     """Geometric interpolation at a fraction `share` between two arrays of errors of any common shape, times
     `interpolation_factor`, and at most the larger of both errors."""
     # Errors of a mesh change by factors along a branch, so their logarithms are interpolated.
-    logarithms = np.log(np.maximum([one, other], BRANCH_ERRORS.negligible_error))
+    logarithms = np.log(np.maximum([one, other], BRANCH_ERRORS.min_error))
     means = np.exp(logarithms[0] + share * (logarithms[1] - logarithms[0]))
     bounded: Array = np.minimum(BRANCH_ERRORS.interpolation_factor * means, np.maximum(one, other))
     return bounded
@@ -197,7 +197,9 @@ def measured_errors(
     multipliers = multipliers_of(found)[0]
     parts = np.empty((2, MULTIPLIER + 2))
     for part, target in zip(parts, finer, strict=True):
-        fine = condition.on(target, found, BRANCH_ERRORS.newton_share * accuracy, COMPARISON.matrix_distance)
+        fine = condition.on(
+            target, found, BRANCH_ERRORS.newton_tolerance_share * accuracy, COMPARISON.matrix_distance
+        )
         part[:] = _difference(rough, multipliers, fine, derivatives)
     # The mesh finer in time removes only this share of the error in time.
     parts[1] /= share
@@ -238,10 +240,10 @@ def sensitivity_of(path: CyclePath, derivatives: BranchDerivatives) -> float:
     `path`."""
     orbit: Orbit = path.orbit
     ahead = CyclePath(
-        moved_orbit(orbit, derivatives.scale.name, BRANCH_ERRORS.slope_step * derivatives.tangent)
+        moved_orbit(orbit, derivatives.scale.name, BRANCH_ERRORS.sensitivity_step * derivatives.tangent)
     )
     y = path.extrema["tip_y_max"]
     other = ahead.extrema["tip_y_max"]
-    return abs((other - y) / (BRANCH_ERRORS.slope_step * y)) / max(
+    return abs((other - y) / (BRANCH_ERRORS.sensitivity_step * y)) / max(
         abs(derivatives.rate), EXPONENTS.least_divisor
     )

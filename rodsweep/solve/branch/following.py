@@ -186,23 +186,20 @@ def _passed_mirror_image(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -
 
 
 def _hides_corner(start: ArcPoint, end: ArcPoint) -> bool:
-    """Whether the largest tip y may have a corner between the cycle `start` and the last cycle `end`, too far
-    from `end` for a figure to show.
+    """Whether the largest tip y may have a corner before the last cycle `end`, too far from `end` for a
+    figure.
 
     At a corner a different maximum of y(t) becomes the largest. A figure locates a corner from two cycles
-    before and two cycles after it.
+    before and two cycles after the corner.
     """
     apart = abs(end.cycle.path.time_of_largest_y - start.cycle.path.time_of_largest_y)
-    other = min(apart, 1 - apart) > BRANCH_END.same_maximum
-    return other and arc_length_between(start, end) > BRANCH_END.largest_hidden_corner
+    other = min(apart, 1 - apart) > BRANCH_END.max_peak_shift
+    return other and arc_length_between(start, end) > BRANCH_END.max_step_with_corner
 
 
 def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
     """Whether the bending moments at t = 0 have opposite signs at two cycles, because a Hopf point lies
-    between.
-
-    The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0.
-    """
+    between. The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
     mesh = mesh_of(end.orbit)
     layout = end.orbit.form.layout
     one = layout.field(mesh.carry(start.orbit).start, "m3")
@@ -215,7 +212,7 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
     """The end of the branch at a Hopf point between two cycles; or the cycle `start` with half the step
     length, if the cycles are still too large. Raises Unsolvable if no shorter step is allowed."""
     shorter = arc_length_between(start, end) / 2
-    if start.cycle.measures.tip_y_max > BRANCH_END.small_cycle:
+    if start.cycle.measures.tip_y_max > BRANCH_END.max_last_amplitude:
         if shorter < ARC_STEPS.min_length:
             raise Unsolvable("the bending moments change sign within the shortest step")
         return replace(start, length=shorter)
@@ -225,10 +222,12 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
     share = start.deflection / (2 * start.ahead[0] * start.scale.deflection)
     at = start.at - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
-    rounding = max(BRANCH_END.min_place_tolerance, limits.accuracy)
+    rounding = max(BRANCH_END.parameter_tolerance, limits.accuracy)
     for number, hopf in enumerate(limits.hopfs):
-        tolerance = BRANCH_END.place_share * abs(start.at - hopf.coordinate) + rounding * abs(hopf.coordinate)
-        period_tolerance = BRANCH_END.place_share * abs(start.orbit.period - hopf.period)
+        tolerance = BRANCH_END.extrapolation_tolerance * abs(start.at - hopf.coordinate) + rounding * abs(
+            hopf.coordinate
+        )
+        period_tolerance = BRANCH_END.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
         period_tolerance += BRANCH_END.period_tolerance * hopf.period
         if abs(at - hopf.coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
             return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
@@ -237,8 +236,8 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
 
 
 def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """The end of an asymmetric branch at a symmetry breaking between two cycles; or the cycle `start` with
-    half the step length, if the cycles are still too asymmetric."""
+    """The end of an asymmetric branch at a symmetry breaking between two cycles; or `start` with half the
+    step length, if the cycles are still too asymmetric."""
     which = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
     if which is None:
         return replace(start, length=arc_length_between(start, end) / 2)

@@ -35,7 +35,7 @@ def cycle_at_range_end(
         return -range_end.residual(segment.predicted(length))
 
     ends = beyond(0.0), beyond(segment.length)
-    length = zero_along_step(beyond, ends, segment.length, 0.0, BRANCH_END.range_end_bracket)
+    length = zero_along_step(beyond, ends, segment.length, 0.0, BRANCH_END.range_end_tolerance)
     tolerance = newton_tolerance(accuracy)
     predicted = segment.predicted(length)
     found = range_end.solved(predicted, tolerance, start.workspace, matrix_distance(accuracy))

@@ -24,10 +24,10 @@ class BranchMeshSettings:
 
     max_meshes: int = 8
     """Maximum number of meshes tried for one cycle."""
-    cheaper_cost: float = 0.5
+    max_cheaper_cost: float = 0.5
     """Largest cost, in units of the cost of the present mesh, of a cheaper mesh that replaces the present
     mesh."""
-    planned_share: float = 0.5
+    planned_error: float = 0.5
     """Error for which a mesh is planned, in units of the accuracy. It is below 1 so that the mesh suffices
     for the next cycles too."""
     min_rate_share: float = 0.7
@@ -110,9 +110,9 @@ def on_sufficient_mesh(
             point = with_measured_errors(point, accuracy)
         known = point.calibration
         enough = known.largest(accuracy) <= accuracy
-        planned = known.planned(BRANCH_MESH.planned_share * accuracy)
+        planned = known.planned(BRANCH_MESH.planned_error * accuracy)
         # A sufficient mesh is replaced only by a much cheaper mesh, and never after an insufficient mesh.
-        if enough and (finest or planned.cost > BRANCH_MESH.cheaper_cost * known.mesh.cost):
+        if enough and (finest or planned.cost > BRANCH_MESH.max_cheaper_cost * known.mesh.cost):
             return point
         if not enough:
             finest = True

@@ -37,38 +37,38 @@ class BranchEndSettings:
     """Settings for the ends of a branch: at a Hopf point, at a symmetry breaking, at an end of the parameter
     range."""
 
-    small_cycle: float = 0.06
+    max_last_amplitude: float = 0.06
     """Largest amplitude (largest tip y, in L) of a cycle from which the Hopf point at the end of the branch
     is extrapolated; larger cycles get shorter steps."""
-    small_asymmetry: float = 0.2
+    max_last_asymmetry: float = 0.2
     """Largest asymmetry, in units of the largest bending moment, of a cycle from which the symmetric cycle at
     the end of the branch is extrapolated; more asymmetric cycles get shorter steps."""
     min_asymmetry: float = 0.02
     """Asymmetry, in units of the largest bending moment, below which shorter steps do not improve the
     extrapolation to the symmetric cycle."""
-    lost_asymmetry: float = 0.1
+    lost_asymmetry_ratio: float = 0.1
     """Ratio of the asymmetries after and before a step, below which the step has reached or passed a
     symmetric cycle."""
     asymmetry_ratios: tuple[float, float] = 0.5, 2.0
     """Allowed range of the asymmetry of the first asymmetric cycle, in units of the predicted asymmetry."""
-    place_share: float = 0.3
+    extrapolation_tolerance: float = 0.3
     """Tolerance for the extrapolated parameter and period of a Hopf point or a symmetry breaking, in units of
     the distance of the last cycle from this point."""
-    min_place_tolerance: float = 1e-6
+    parameter_tolerance: float = 1e-6
     """Relative tolerance for the extrapolated parameter, added to the tolerance by distance; the accuracy
     applies if larger."""
     period_tolerance: float = 1e-3
     """Relative tolerance for the extrapolated period, added to the tolerance by distance; at a symmetry
     breaking the accuracy applies if larger."""
-    range_end_bracket: float = 1e-6
+    range_end_tolerance: float = 1e-6
     """Tolerance of the predicted arc length to the end of the parameter range, in units of the step; Newton's
     method then solves for the cycle exactly at the end of the range."""
     range_end_error: float = 1e-15
     """Relative error of the parameter at an end of the range."""
-    same_maximum: float = 0.05
+    max_peak_shift: float = 0.05
     """Time between the largest tip y of two successive cycles, in periods, beyond which two different maxima
     of y(t) are the largest."""
-    largest_hidden_corner: float = 0.02
+    max_step_with_corner: float = 0.02
     """Longest last step along a branch, in arc length, that may contain a corner of the largest tip y; a
     longer step is halved."""
 
@@ -80,7 +80,7 @@ BRANCH_END = BranchEndSettings()
 class AsymmetricStartSettings:
     """Settings for the first asymmetric cycle near a symmetry breaking."""
 
-    first_changes: tuple[float, ...] = (0.03, 0.01, 0.1)
+    first_relative_changes: tuple[float, ...] = (0.03, 0.01, 0.1)
     """Relative changes from the symmetric cycle to the prediction of the first asymmetric cycle, tried in
     this order."""
 
@@ -148,7 +148,7 @@ def first_asymmetric_cycle(
     # At the symmetry breaking the linearised equations at a fixed parameter have an asymmetric solution.
     way = matrix.approximate_null_vector()
     way = way / relative_change(whole, way[:-1])
-    for share in ASYMMETRIC_START.first_changes:
+    for share in ASYMMETRIC_START.first_relative_changes:
         try:
             ways = [moved_orbit(whole, name, sign * share * way) for sign in (1, -1)]
             # Both signs give mirror images. The cycle with the larger y is followed, so that the result does
@@ -193,7 +193,7 @@ def reaches_symmetric_cycle(
     reference = asymmetry(start.orbit)
     other = end.orbit.on(start.orbit.form.mesh, end.orbit.intervals, end.orbit.stages)
     # The asymmetry changes sign where the branch passes a symmetric cycle, or falls steeply just before.
-    if float(asymmetry(other) @ reference) < BRANCH_END.lost_asymmetry * float(reference @ reference):
+    if float(asymmetry(other) @ reference) < BRANCH_END.lost_asymmetry_ratio * float(reference @ reference):
         return True
     return start.rises * end.rises < 0 and _nearly_symmetric(start) and _nearest(start, known, accuracy) >= 0
 
@@ -205,7 +205,7 @@ def _relative_asymmetry(start: ArcPoint) -> float:
 
 
 def _nearly_symmetric(start: ArcPoint) -> bool:
-    return _relative_asymmetry(start) <= BRANCH_END.small_asymmetry
+    return _relative_asymmetry(start) <= BRANCH_END.max_last_asymmetry
 
 
 def symmetry_breaking_between(
@@ -241,9 +241,9 @@ def _nearest(start: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float
         if symmetric is None:
             continue
         place = symmetric.form.rod.coordinate(start.scale.name)
-        tolerance = BRANCH_END.place_share * abs(start.at - place)
-        tolerance += max(BRANCH_END.min_place_tolerance, accuracy) * abs(place)
-        period_tolerance = BRANCH_END.place_share * abs(start.orbit.period - symmetric.period)
+        tolerance = BRANCH_END.extrapolation_tolerance * abs(start.at - place)
+        tolerance += max(BRANCH_END.parameter_tolerance, accuracy) * abs(place)
+        period_tolerance = BRANCH_END.extrapolation_tolerance * abs(start.orbit.period - symmetric.period)
         period_tolerance += max(BRANCH_END.period_tolerance, accuracy) * symmetric.period
         if abs(at - place) <= tolerance and abs(period - symmetric.period) <= period_tolerance:
             return which

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 class BranchWorkSettings:
     """Exponents of the model of the computing time, fitted to measured times."""
 
-    within_a_branch: float = 0.75
+    distance_exponent: float = 0.75
     """Exponent of the distance d/D from the Hopf point in the fraction of the time of one branch."""
-    among_branches: float = 0.5
+    length_exponent: float = 0.5
     """Exponent of the length D of a branch in its total time."""
 
 
@@ -31,7 +31,7 @@ def fraction_done(born: float, at: float, aim: float) -> float:
     """Fraction of the computing time of a branch that has passed at the parameter coordinate `at`, for a
     branch from `born` to `aim`."""
     way = (at - born) / (aim - born) if aim != born else 1.0
-    return min(max(way, 0.0), 1.0) ** BRANCH_WORK.within_a_branch
+    return min(max(way, 0.0), 1.0) ** BRANCH_WORK.distance_exponent
 
 
 def fractions_before_branches(born: Sequence[float], ends: ParameterRange) -> list[float]:
@@ -41,6 +41,6 @@ def fractions_before_branches(born: Sequence[float], ends: ParameterRange) -> li
     born: parameter coordinates of the Hopf points where the branches start. ends: range of the parameter
     coordinate.
     """
-    works = [max(abs(end - at) for end in ends) ** BRANCH_WORK.among_branches for at in born]
+    works = [max(abs(end - at) for end in ends) ** BRANCH_WORK.length_exponent for at in born]
     done = [sum(works[:number]) for number in range(len(works) + 1)]
     return [work / done[-1] if done[-1] else 1.0 for work in done]

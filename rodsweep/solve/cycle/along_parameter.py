@@ -33,15 +33,15 @@ from ..point import Unsolvable
 class PredictionSettings:
     """Settings for the polynomial prediction of cycles along one parameter."""
 
-    max_distance: float = 0.3
+    max_prediction_distance: float = 0.3
     """Largest relative distance of a cycle from its prediction; a cycle farther away may lie on another
     branch."""
-    tangent_distance: float = 1e-2
+    max_tangent_distance: float = 1e-2
     """Largest relative distance of an orbit from the orbit whose matrix gives its tangent; the tangent is
     then accurate enough for the next step."""
     max_earlier_orbits: int = 4
     """Maximum number of earlier orbits whose values enter the predicting polynomial."""
-    orbits_without_slope: int = 3
+    orbits_without_second_tangent: int = 3
     """Number of earlier orbits from which the prediction is more accurate without the tangent of an earlier
     orbit."""
 
@@ -129,9 +129,9 @@ def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: s
     previous orbit. name: the varied parameter. Raises ValueError if the orbit has no tangent.
 
     A tangent has the relative error of its orbit's prediction; the values of an orbit are far more accurate.
-    With PREDICTION.orbits_without_slope or more values, a second tangent therefore makes the prediction
-    worse. States on different meshes differ by far more than period and largest y, tangents differ less.
-    After a change of mesh only tangents enter.
+    With PREDICTION.orbits_without_second_tangent or more values, a second tangent makes the prediction worse.
+    States on different meshes differ by far more than period and largest y, tangents differ less. After a
+    change of mesh only tangents enter.
     """
     orbit = found.orbit
     if found.matrix.tangent is None:
@@ -149,7 +149,7 @@ def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: s
     # All abscissas shift by the step, because the newest orbit is at 0.
     data = [tangent, before.values, *before.data[older]]
     orders = [1.0] + [0.0] * (1 + len(older))
-    if 1 + len(older) < PREDICTION.orbits_without_slope:
+    if 1 + len(older) < PREDICTION.orbits_without_second_tangent:
         places.append(-step)
         data.append(before.tangent)
         orders.append(1.0)
@@ -168,9 +168,9 @@ def orbit_near_prediction(
     predicted: Orbit, tolerance: float, workspace: NewtonWorkspace, name: str
 ) -> ConvergedOrbit:
     """The orbit near a prediction, by Newton's method; raises Unsolvable if its relative distance from the
-    prediction exceeds PREDICTION.max_distance."""
+    prediction exceeds PREDICTION.max_prediction_distance."""
     found = newton(predicted, tolerance, workspace, name)
-    if _distance(predicted, found) > PREDICTION.max_distance:
+    if _distance(predicted, found) > PREDICTION.max_prediction_distance:
         raise Unsolvable("the cycle is far from its prediction")
     return found
 
@@ -212,7 +212,7 @@ def orbit_in_steps(
         if share >= 1.0:
             return ahead.solution
         predictor = predictor_from(
-            at_orbit(ahead.solution, PREDICTION.tangent_distance, name), predictor, name
+            at_orbit(ahead.solution, PREDICTION.max_tangent_distance, name), predictor, name
         )
         length = PARAMETER_STEPS.next_length(length, ahead, PARAMETER_STEPS.prediction_order)
     raise Unsolvable(

@@ -92,7 +92,7 @@ class Cycle:
     multiplier: float = nan
     """Modulus of the largest nontrivial Floquet multiplier."""
     multipliers: Complex | None = None
-    """The largest nontrivial Floquet multipliers by descending modulus, (MULTIPLIER_LIST.number,)."""
+    """The largest nontrivial Floquet multipliers by descending modulus, (MULTIPLIER_LIST.length,)."""
     trivial_multiplier_error: float = nan
     """Modulus of the difference between the computed trivial multiplier and 1."""
     tip: Array | None = None

@@ -41,10 +41,10 @@ class HopfStartSettings:
     min_force: float = 1e-2
     """Force, in k3/L^2, at which the search for a Hopf point ends: no rod oscillates below, because F nu (nu
     + F c2) must exceed the order of pi^2."""
-    tolerance: float = 1e-6
+    hopf_tolerance: float = 1e-6
     """Tolerance of a Hopf point: largest growth rate of the leading mode in units of its frequency, and
     smallest relative bracket of the force."""
-    max_steps: int = 15
+    max_newton_steps: int = 15
     """Maximum number of Newton steps to a Hopf point."""
     converged_growth: float = 4.0
     """Growth rate, in units of its error estimate, below which Newton's method for the Hopf point has
@@ -54,14 +54,14 @@ class HopfStartSettings:
     normal_form_accuracy: float = 1e-3
     """Relative accuracy of the normal form's coefficients; the truncation error of the normal form is
     larger."""
-    distances: tuple[float, ...] = (0.3, 0.12, 0.03, 0.006)
+    start_distances: tuple[float, ...] = (0.3, 0.12, 0.03, 0.006)
     """Relative distances of the force from the Hopf point at which the normal form's orbit starts Newton's
     method, tried in this order. For most rods the amplitude of the normal form has an error of 25 percent at
     the first distance, of 10 percent at the second."""
-    squared_ratios: tuple[float, float] = 0.3, 3.0
+    squared_amplitude_ratios: tuple[float, float] = 0.3, 3.0
     """Allowed range of the squared largest y of the solved orbit, in units of the squared largest y of the
     normal form."""
-    direct_distance: float = 1e-2
+    max_direct_distance: float = 1e-2
     """Relative distance of the force from the Hopf point up to which the normal form's orbit starts Newton's
     method at the given force itself: its amplitude has an error of 1 percent there for most rods."""
     intervals: int = 8
@@ -120,13 +120,13 @@ def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex])
     """
     problem = path_problem(Path(rod, "F"))
     (a, below), (b, above) = low, high
-    while b - a > HOPF_START.tolerance * b:
+    while b - a > HOPF_START.hopf_tolerance * b:
         share = below.real / (below.real - above.real)
         found = _on_the_axis(problem, a + share * (b - a), below + share * (above - below), (a, b))
         if found is not None:
             # The eigenvalue on the axis must be the leading one; otherwise another mode is unstable already.
             w = leading_eigenvalue(replace(rod, F=found.F))
-            tolerance = HOPF_START.tolerance * abs(w)
+            tolerance = HOPF_START.hopf_tolerance * abs(w)
             if abs(w.real) <= tolerance and abs(w.imag - found.frequency) <= tolerance:
                 return found
         middle = (a + b) / 2
@@ -145,7 +145,7 @@ def _on_the_axis(
 ) -> HopfPointBelow | None:
     """The Hopf point with a force between `ends`, by Newton's method from the force `F` and the eigenvalue
     `guess`; None if not found."""
-    for _ in range(HOPF_START.max_steps):
+    for _ in range(HOPF_START.max_newton_steps):
         w, slope, error = problem.eigenvalue(guess, F)
         if not (slope.real and isfinite(slope.real)):
             return None
@@ -173,10 +173,10 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     normal = _normal_form(replace(form, rod=at), 1j * hopf.frequency)
     if not normal.amplitude > 0:
         raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} starts towards smaller forces")
-    if hopf.F * (1 + HOPF_START.direct_distance) >= rod.F:
+    if hopf.F * (1 + HOPF_START.max_direct_distance) >= rod.F:
         return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
     coarse = replace(form, mesh=coarse_mesh(rod))
-    for distance in HOPF_START.distances:
+    for distance in HOPF_START.start_distances:
         try:
             return _orbit_from(normal, min(rod.F, hopf.F * (1 + distance)), coarse, workspace)
         except Unsolvable as error:
@@ -196,12 +196,12 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
         raise Unsolvable("the leading eigenvalues are not a growing complex pair")
     slope = path_problem(Path(form.rod, "F")).eigenvalue(w, form.rod.F)[1]
     rate = form.rod.F * slope.real
-    if not w.real <= HOPF_START.direct_distance * rate:
+    if not w.real <= HOPF_START.max_direct_distance * rate:
         raise Unsolvable("no Hopf point is near")
     normal = _normal_form(form, w)
     if not normal.supercritical:
         raise Unsolvable("the nearby Hopf point is subcritical")
-    if not amplitude**2 <= HOPF_START.direct_distance * rate / -normal.c.real:
+    if not amplitude**2 <= HOPF_START.max_direct_distance * rate / -normal.c.real:
         raise Unsolvable("the amplitude of the start is too large for the normal form")
     if problem_of(form.rod).count(-CANDIDATES.behind * abs(w)).number != 2:
         raise Unsolvable("a second mode may be unstable")
@@ -223,7 +223,7 @@ def _orbit_from(normal: NormalForm, F: float, form: StressForm, workspace: Newto
         newton(start, HOPF_START.branch_tolerance, workspace, "F"), HOPF_START.branch_tolerance, "F"
     )
     squared = normal.cycle(F)[0]
-    least, most = HOPF_START.squared_ratios
+    least, most = HOPF_START.squared_amplitude_ratios
     if not least < found.orbit.form.tip(found.orbit.start)[1] ** 2 / squared < most:
         raise Unsolvable(f"no cycle near the prediction from the Hopf point at F = {normal.F:g}")
     if form.rod.F == F:

@@ -44,7 +44,7 @@ __all__ = ["Cycle", "CycleRequest", "CycleStatus", "Neighbour", "solve_cycle"]
 class MultiplierListSettings:
     """Settings for the list of stored Floquet multipliers of a cycle."""
 
-    number: int = 6
+    length: int = 6
     """Number of stored multipliers: the length of their list in a file."""
     min_modulus: float = 1e-6
     """Smallest modulus of a stored multiplier; a perturbation with a smaller multiplier has decayed after one
@@ -230,7 +230,7 @@ def _with_numbers(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> C
 def _with_multipliers(cycle: Cycle, found: RefinedCycle) -> Cycle:
     """The outcome `cycle` with the stored multipliers of the solved cycle `found`, and the error of the
     multipliers."""
-    mu = padded_or_cut(found.multipliers, MULTIPLIER_LIST.number, NO_MULTIPLIER)
+    mu = padded_or_cut(found.multipliers, MULTIPLIER_LIST.length, NO_MULTIPLIER)
     mu[np.abs(mu) < MULTIPLIER_LIST.min_modulus] = NO_MULTIPLIER
     return replace(
         cycle,

@@ -98,7 +98,7 @@ class _MarchedMotion:
             settled = self._settled(z)
             path = self._path(settled)
             in_limit = self.rod != self.limit
-            enough = self.request.accuracy * (MARCHING.pair_share_in_limit if in_limit else 1.0)
+            enough = self.request.accuracy * (MARCHING.pair_error_share_in_limit if in_limit else 1.0)
             for _ in range(MARCHING.max_comparisons):
                 settled = self._refined(settled)
                 before = path
@@ -118,7 +118,7 @@ class _MarchedMotion:
     def _refined(self, settled: _SettledMotion) -> _SettledMotion:
         """A settled motion, continued until settled on a finer mesh with a smaller tolerance."""
         before = self.beam
-        self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MARCHING.more_orders)
+        self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MARCHING.order_increase)
         self.scheme = replace(self.scheme, tolerance=MARCHING.tolerance_ratio * self.scheme.tolerance)
         self.beam = self._beam()
         z = self.beam.scaled(before.stresses_on(self.beam.mesh, settled.z))
@@ -129,7 +129,7 @@ class _MarchedMotion:
         _NoCycle."""
         past: deque[Array] = deque(maxlen=RETURNS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
-        step = self.mode.period / MARCHING.first_steps
+        step = self.mode.period / MARCHING.first_steps_per_period
         last = nan
         rate = 0.0
         most = self.request.most_periods
@@ -137,7 +137,7 @@ class _MarchedMotion:
             report(lambda: SolvePosition(f"{self.waited} of at most {most} returns of the tip"))
             run = self._run(
                 z,
-                MARCHING.longest_wait * MARCHING.returns_per_test * self.mode.period,
+                MARCHING.max_run_duration * MARCHING.returns_per_test * self.mode.period,
                 step,
                 until_returns(row, z, MARCHING.returns_per_test),
             )
@@ -198,9 +198,9 @@ class _MarchedMotion:
         """The cycle of a settled motion: one more integration over a period; raises _NoCycle."""
         returns = settled.turns + 2
         limit = until_returns(tip_angle_row(self.beam), settled.z, returns)
-        scheme = replace(self.scheme, tolerance=min(self.scheme.tolerance, MARCHING.measured_tolerance))
+        scheme = replace(self.scheme, tolerance=min(self.scheme.tolerance, MARCHING.max_measured_tolerance))
         run = self._run(
-            settled.z, MARCHING.longest_wait * returns * self.mode.period, settled.step, limit, scheme
+            settled.z, MARCHING.max_run_duration * returns * self.mode.period, settled.step, limit, scheme
         )
         times = self._crossings(run)[0]
         if len(times) <= settled.turns:

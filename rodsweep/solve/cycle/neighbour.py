@@ -41,12 +41,12 @@ from .along_parameter import (
 class NeighbourSettings:
     """Settings for the choice of the next mesh in a chain of cycles."""
 
-    kept_mesh_error: float = 0.9
+    max_error_of_same_mesh: float = 0.9
     """Largest error of a cycle, in units of the accuracy, after which the next cycle is solved on the same
     mesh."""
-    new_mesh_cost: float = 0.8
+    max_new_mesh_cost: float = 0.8
     """Largest cost of a mesh that replaces a sufficient mesh, in units of the cost of the sufficient mesh."""
-    calibrated_mesh_cost: float = 0.5
+    max_new_mesh_cost_when_calibrated: float = 0.5
     """The same limit if the calibration of the sufficient mesh is still valid: a new calibration costs as
     much as three cycles."""
 
@@ -127,7 +127,7 @@ def _next_mesh(
     again)."""
     present = mesh_of(found.orbit)
     known = found.calibration
-    fits = found.errors.largest <= NEIGHBOUR.kept_mesh_error * accuracy
+    fits = found.errors.largest <= NEIGHBOUR.max_error_of_same_mesh * accuracy
     if known.reach and not fits:
         # Scaled errors that are too large are measured on this mesh before another mesh is planned.
         return present, known.outdated
@@ -143,12 +143,12 @@ def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -
     to keep it."""
     if before is None:
         # Coefficient tails, not measured errors, determined the first mesh of a chain.
-        return NEIGHBOUR.new_mesh_cost
+        return NEIGHBOUR.max_new_mesh_cost
     if not found.calibration.reach:
-        return NEIGHBOUR.calibrated_mesh_cost
+        return NEIGHBOUR.max_new_mesh_cost_when_calibrated
     step = relative_parameter_difference(before.predictor.orbit.form, found.orbit.form, name)
     # A mesh whose errors must be measured anyway may as well be another one.
-    return 0.0 if found.calibration.lasts(step) else NEIGHBOUR.new_mesh_cost
+    return 0.0 if found.calibration.lasts(step) else NEIGHBOUR.max_new_mesh_cost
 
 
 def cycle_from_neighbour(

@@ -25,7 +25,7 @@ from .transient.transient_settings import TRANSIENT
 class SmallMotionSettings:
     """Settings for small motions near a Hopf point."""
 
-    weak_bending: float = 0.02
+    max_cubic_growth_ratio: float = 0.02
     """Cubic term of the growth rate, in units of the linear term, below which the linear term determines the
     outcome of a motion."""
 
@@ -47,7 +47,7 @@ def small_cycle(
     except Unsolvable:
         return None
     settled = found.verdict(request.accuracy)[0] == CycleStatus.cycle
-    return found if settled and 1 - found.largest_multiplier >= TRANSIENT.neutral_distance else None
+    return found if settled and 1 - found.largest_multiplier >= TRANSIENT.min_unit_distance else None
 
 
 def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
@@ -59,11 +59,11 @@ def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
     if not (w.real < 0 < w.imag):
         return ""
     try:
-        normal = accurate_normal_form(rod, w, SMALL_MOTION.weak_bending)
+        normal = accurate_normal_form(rod, w, SMALL_MOTION.max_cubic_growth_ratio)
     except Unsolvable:
         return ""
     # d|z|/dt = (Re w + Re c |z|^2) |z|: while the cubic part is small, the motion can only decay.
     share = abs(normal.c.real) * amplitude**2 / -w.real
-    if share >= SMALL_MOTION.weak_bending:
+    if share >= SMALL_MOTION.max_cubic_growth_ratio:
         return ""
     return f"decays: at this amplitude the cubic term of the growth rate is {share:.0e} of the linear term"

@@ -21,12 +21,12 @@ from ..spectrum.search import SpectrumRequest, solve_spectrum
 class StraightRodSettings:
     """Settings for the stability of the straight rod by its leading eigenvalue."""
 
-    errors_from_axis: float = 4.0
+    min_axis_distance_in_errors: float = 4.0
     """Distance of the leading eigenvalue from the imaginary axis, in units of its error estimate, beyond
     which the sign of the growth rate is certain. The task spectrum has the same criterion."""
     accuracy: float = 1e-9
     """Relative accuracy of the leading eigenvalue."""
-    modes_of_chain: int = 6
+    chain_eigenvalues: int = 6
     """Number of eigenvalues of an arm from which a chain of rods starts. Near most Hopf points, with so many
     eigenvalues, a few values of D prove that no other eigenvalue is the leading one; an eigenvalue count
     takes three times as long."""
@@ -56,7 +56,7 @@ class StraightRod:
     def stable(self) -> bool | None:
         """Whether all small motions about the straight rod decay; None if the growth rate is 0 within its
         error or unknown."""
-        margin = max(STRAIGHT_ROD.errors_from_axis * self.error, ROOTS.on_the_axis * abs(self.w))
+        margin = max(STRAIGHT_ROD.min_axis_distance_in_errors * self.error, ROOTS.on_the_axis * abs(self.w))
         # A NaN satisfies no comparison, so an unknown eigenvalue gives None.
         return self.w.real < 0 if abs(self.w.real) > margin else None
 
@@ -104,7 +104,7 @@ def eigenvalues_to_follow(rod: Rod, found: StraightRod) -> Complex:
     if len(found.followed):
         return found.followed
     if not rod.uniform:
-        request = SpectrumRequest(STRAIGHT_ROD.modes_of_chain, STRAIGHT_ROD.accuracy, True)
+        request = SpectrumRequest(STRAIGHT_ROD.chain_eigenvalues, STRAIGHT_ROD.accuracy, True)
         w = solve_spectrum(rod, request).eigenvalues
         if np.isfinite(w).all():
             return w[w.imag >= 0]

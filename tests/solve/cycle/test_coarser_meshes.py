@@ -57,7 +57,7 @@ def test_finer_meshes_differ_by_no_more_than_is_stated(near):
         finer = replace(FINE, **{field: 2 * getattr(FINE, field)})
         true = path_differences(CyclePath(found), CyclePath(newton(finer.carry(found), 1e-12, MEMORY).orbit))
         for which in (PERIOD_CHANGE, LARGEST_Y, WHOLE_PATH):
-            assert true[which] <= CALIBRATION.safety * parts[which] + 1e-12
+            assert true[which] <= CALIBRATION.safety_factor * parts[which] + 1e-12
 
 
 def test_coarser_meshes_predict_those_that_are_a_little_finer(near):

@@ -92,8 +92,8 @@ def test_accuracy_asked_for_is_reached():
         assert c.measures.tip_y_max == pytest.approx(exact.measures.tip_y_max, rel=accuracy)
         for name in ("tip_x_min", "tip_x_max", "tip_theta_max"):
             error = abs(getattr(c.measures, name) - getattr(exact.measures, name)) / exact.measures.tip_y_max
-            assert error <= c.errors.extrema_error <= CYCLE_ERRORS.extrema_slack * accuracy
-        assert abs(c.measures.energy_imbalance) <= CYCLE_ERRORS.extrema_slack * accuracy
+            assert error <= c.errors.extrema_error <= CYCLE_ERRORS.extrema_tolerance_ratio * accuracy
+        assert abs(c.measures.energy_imbalance) <= CYCLE_ERRORS.extrema_tolerance_ratio * accuracy
 
 
 def test_cycle_does_not_depend_on_the_start():

@@ -71,7 +71,7 @@ class SpecialBoundaries:
         for kind in FOLLOWED_KINDS:
             curves = _CurvesOfKind(kind, self.line, self.rows, self.special, results)
             seeds = (i for i, one in enumerate(self.special) if one.kind == kind)
-            yield curves, boundary_search(curves, seeds, CURVE_IDENTITY.on_curve)
+            yield curves, boundary_search(curves, seeds, CURVE_IDENTITY.max_distance)
 
     def solve(
         self, unit: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
@@ -130,8 +130,7 @@ class _CurvesOfKind:
         return [behind] if on and behind not in self.results else []
 
     def likely(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
-        """Units that may be needed later: from the other special points on the row where the search
-        stopped."""
+        """Units that may be needed later, from special points on the row where the search stopped."""
         rows = {self.special[unit // 2].row for unit in search.missing_units}
         beside = sorted((i for i in search.open_seeds if self.special[i].row in rows), key=self._place)
         return [unit for i in beside for unit in self.missing_units(i)]
@@ -155,7 +154,7 @@ class _CurvesOfKind:
     def distance(self, curve: _TracedCurve, seed: int) -> float:
         """Distance of a special point from a curve, in units of the length of a row; inf if not near."""
         near = curve.distances.get(seed, math.inf)
-        lies_off = near > CURVE_IDENTITY.on_curve
+        lies_off = near > CURVE_IDENTITY.max_distance
         # Between its last cycle and the Hopf point a curve is extrapolated: no cycle is solved there.
         return 0.0 if lies_off and self._vanishes(curve.curve, self.special[seed]) else near
 
@@ -163,7 +162,7 @@ class _CurvesOfKind:
         """Whether two curves are identical, because both ends are equal."""
         pairs = zip(self._ends(one.curve), self._ends(other.curve), strict=True)
         distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
-        return all(distance <= CURVE_IDENTITY.equal_ends for distance in distances)
+        return all(distance <= CURVE_IDENTITY.max_end_distance for distance in distances)
 
     def _place(self, i: int) -> tuple[float, float]:
         """Sort key of special point i: value of the rows' parameter, then value of the parameter along the
@@ -175,9 +174,8 @@ class _CurvesOfKind:
         return sorted((p.place, self.line.scaled(p.at)) for p in (curve.points[0], curve.points[-1]))
 
     def _vanishes(self, curve: CycleCurve, one: RowSpecialPoint) -> bool:
-        """Whether a special point lies on the extrapolation of a curve from its last cycle to a Hopf
-        point."""
-        if one.tip_y_max >= CYCLE_CURVES.vanishing:
+        """Whether a special point lies on the extrapolation of a curve to a Hopf point."""
+        if one.tip_y_max >= CYCLE_CURVES.min_amplitude:
             return False
         for end, last in zip(curve.vanishing, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
@@ -188,7 +186,10 @@ class _CurvesOfKind:
             # proportion.
             share = (self.rows.scaled(one.row) - y) / (last.place - y)
             chord = x + share * (self.line.scaled(last.at) - x)
-            if 0 <= share <= 1 and abs(chord - self.line.scaled(one.at)) <= CURVE_IDENTITY.on_last_chord:
+            if (
+                0 <= share <= 1
+                and abs(chord - self.line.scaled(one.at)) <= CURVE_IDENTITY.max_last_chord_distance
+            ):
                 return True
         return False
 
@@ -206,8 +207,8 @@ def _traced(
         point
         for point in located
         if point.kind == one.kind
-        and abs(point.at - one.at) <= CURVE_IDENTITY.on_curve * width
-        and abs(point.period / one.period - 1) <= CURVE_IDENTITY.equal_period
+        and abs(point.at - one.at) <= CURVE_IDENTITY.max_distance * width
+        and abs(point.period / one.period - 1) <= CURVE_IDENTITY.max_period_difference
     ]
     if not same:
         return TracedHalf(None)
@@ -216,7 +217,7 @@ def _traced(
     except (*FAILURES, ValueError):  # a logarithmic axis refuses a value that is not positive
         return TracedHalf(None)
     distances = {i: _distance(limits, points, other) for i, other in enumerate(special)}
-    near = {i: distance for i, distance in distances.items() if distance <= CURVE_IDENTITY.on_curve}
+    near = {i: distance for i, distance in distances.items() if distance <= CURVE_IDENTITY.max_distance}
     return TracedHalf(HalfCurve(tuple(map(CurvePoint.of, points)), end), near)
 
 
@@ -234,7 +235,7 @@ def _distance(limits: CurveLimits, points: Sequence[SolvedPoint], one: RowSpecia
             crossing = limits.on_row(a, b, place)
         except Unsolvable:
             continue
-        if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY.equal_period:
+        if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY.max_period_difference:
             best = min(best, abs(limits.line.scaled(crossing.at) - at))
     return best
 
@@ -244,6 +245,6 @@ def _near(limits: CurveLimits, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPo
     x = limits.line.scaled(one.at)
     ends = sorted(limits.line.scaled(p.at) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
-    on_line = ends[0] - CURVE_IDENTITY.near_chord <= x <= ends[1] + CURVE_IDENTITY.near_chord
-    ratio = 1 + CURVE_IDENTITY.near_period
+    on_line = ends[0] - CURVE_IDENTITY.max_chord_distance <= x <= ends[1] + CURVE_IDENTITY.max_chord_distance
+    ratio = 1 + CURVE_IDENTITY.max_period_change
     return on_line and periods[0] / ratio <= one.period <= periods[1] * ratio

@@ -36,7 +36,7 @@ CURVE_STEPS = StepControl(
     min_length=1e-4,
     target_error=3e-3,
     max_error=0.1,
-    prediction_order=CURVE_IDENTITY.max_interpolated,
+    prediction_order=CURVE_IDENTITY.max_interpolated_points,
     max_angle=0.55,
     max_ratio=2.0,
     max_solutions=400,
@@ -51,7 +51,7 @@ class CycleCurveSettings:
 
     min_loop_points: int = 5
     """Number of points of a curve below which the curve cannot be closed."""
-    on_edge: float = 1e-8
+    max_edge_distance: float = 1e-8
     """Largest distance of a point on an edge of the plane from this edge; each axis has length 1."""
     edge_bracket: float = 1e-10
     """Tolerance of the point at which a curve crosses a limit, in units of the step."""
@@ -60,9 +60,9 @@ class CycleCurveSettings:
     crushing_accuracy: float = 1e-6
     """Relative tolerance of the length of a step that is shortened to end in the middle of
     `crushing_margin`."""
-    vanishing: float = 0.01
+    min_amplitude: float = 0.01
     """Largest tip y, in L, below which a curve is not followed, but extrapolated to a Hopf point."""
-    almost_real: float = 0.2
+    min_sine_at_resonance: float = 0.2
     """Sine of the angle between a multiplier and the real axis, below which a lost curve of torus points ends
     at a resonance: the complex pair becomes real."""
 
@@ -144,14 +144,14 @@ class CurveLimits:
 
     def _predicted(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
         """(orbit, rows' axis coordinate) predicted one step beyond the last point; raises Unsolvable."""
-        known = points[-CURVE_IDENTITY.max_interpolated :]
+        known = points[-CURVE_IDENTITY.max_interpolated_points :]
         return self._mixed(known, lagrange_weights(arc_lengths(known), step), mesh_of(known[-1].orbit))
 
     def _step_before_crushing(self, points: Sequence[SolvedPoint], step: float) -> float:
         """The step length, shortened so that the predicted rod keeps half of the crushing margin."""
         from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
-        known = points[-CURVE_IDENTITY.max_interpolated :]
+        known = points[-CURVE_IDENTITY.max_interpolated_points :]
         lengths = arc_lengths(known)
 
         def distance(longest: float) -> float:
@@ -177,13 +177,13 @@ class CurveLimits:
 
     def margins(self, point: SolvedPoint) -> Array:
         """Margins of a point of the curve, (7,): distances from the four edges, distance from crushing,
-        smallest h1, and largest tip y above `vanishing`."""
+        smallest h1, and largest tip y above `min_amplitude`."""
         x = self.line.scaled(point.at)
         y = point.place
         rod = point.orbit.form.rod
         crushing = 1 - CYCLE_CURVES.crushing_margin - rod.F / rod.k1
         stretch = least_stretch_of_orbit(point.orbit)
-        return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - CYCLE_CURVES.vanishing])
+        return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - CYCLE_CURVES.min_amplitude])
 
     def located_zero(
         self, behind: Sequence[SolvedPoint], outer: SolvedPoint, margin: int
@@ -193,7 +193,7 @@ class CurveLimits:
         if END_BY_MARGIN[margin] is CurveEnd.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated
         ends = float(self.margins(inner)[margin]), float(self.margins(outer)[margin])
-        if ends[0] <= CYCLE_CURVES.on_edge:
+        if ends[0] <= CYCLE_CURVES.max_edge_distance:
             return None
         try:
             if margin in ROW_EDGES:
@@ -245,6 +245,6 @@ class CurveLimits:
         """Reason why a curve was lost beyond its last point: a resonance, or none known (`not_followed`)."""
         if self.kind == SpecialKind.torus:
             pair = pair_nearest_unit_circle(BorderedMatrix(last.orbit, last.scale, self.workspace))
-            if pair is None or abs(pair.imag) < CYCLE_CURVES.almost_real * abs(pair):
+            if pair is None or abs(pair.imag) < CYCLE_CURVES.min_sine_at_resonance * abs(pair):
                 return CurveEnd.resonance
         return CurveEnd.not_followed

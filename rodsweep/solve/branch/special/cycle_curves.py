@@ -20,29 +20,29 @@ class CurveIdentitySettings:
     """Tolerances for deciding whether a special point lies on a known curve, and whether two curves are
     identical."""
 
-    on_curve: float = 1e-6
+    max_distance: float = 1e-6
     """Largest distance of a special point of a row from a curve through this point, in units of the length of
     a row."""
-    near_chord: float = 0.1
+    max_chord_distance: float = 0.1
     """Distance of a special point from a chord between two points of a curve, beyond which the special point
     cannot lie on the arc of this chord; in units of the length of a row."""
-    near_period: float = 0.1
+    max_period_change: float = 0.1
     """Relative difference from the periods at two points of a curve, beyond which a special point cannot lie
     on the arc between."""
-    equal_period: float = 1e-4
+    max_period_difference: float = 1e-4
     """Largest relative difference between the periods of two solutions for the same cycle."""
-    equal_ends: float = 1e-4
+    max_end_distance: float = 1e-4
     """Largest distance between the ends of two identical curves; each axis has length 1."""
-    on_last_chord: float = 1e-3
+    max_last_chord_distance: float = 1e-3
     """Largest distance of a special point of a curve from the chord between the curve's last cycle and the
     Hopf point where the cycles vanish; in units of the length of a row."""
-    max_interpolated: int = 4
+    max_interpolated_points: int = 4
     """Maximum number of points of the polynomial that predicts the next point or the vanishing point of a
     curve."""
     extrapolation_factor: float = 10.0
     """Safety factor on the error of an extrapolated Hopf point: the mesh displaces the Hopf point along the
     curve, and the errors of the points do not include this displacement."""
-    at_hopf: float = 0.01
+    max_hopf_distance: float = 0.01
     """Largest distance of an extrapolated Hopf point from the identical generalised Hopf point of a Hopf
     curve; each axis has length 1."""
 
@@ -181,7 +181,10 @@ def with_located_ends(curve: CycleCurve, plane: Plane, known: Sequence[Generalis
             return end
         for point in known:
             pairs = zip(plane.axes, point.values, (end.at, end.row), strict=True)
-            if all(abs(axis.scaled(a) - axis.scaled(b)) <= CURVE_IDENTITY.at_hopf for axis, a, b in pairs):
+            if all(
+                abs(axis.scaled(a) - axis.scaled(b)) <= CURVE_IDENTITY.max_hopf_distance
+                for axis, a, b in pairs
+            ):
                 return VanishingPoint(*point.values, point.errors[0], 2 * np.pi / point.frequency)
         return end
 
@@ -200,8 +203,8 @@ def lagrange_weights(places: Array, at: float) -> Array:
 def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
     """The Hopf point where cycles vanish beyond the last of `points`, extrapolated by polynomials in the
     squared amplitude; None for too few points."""
-    known = points[-CURVE_IDENTITY.max_interpolated :]
-    if len(known) < CURVE_IDENTITY.max_interpolated:
+    known = points[-CURVE_IDENTITY.max_interpolated_points :]
+    if len(known) < CURVE_IDENTITY.max_interpolated_points:
         return None
     squares = np.array([point.tip_y_max**2 for point in known])
     table = np.array([[point.at, point.row, point.period] for point in known])

@@ -198,7 +198,7 @@ class _SecantAcross:
         length = self.length + self.at * float(self.direction[0])
         self.orbit = family.placed(self.orbit, self.place + self.at * float(self.direction[1]))
         slope = abs(rates.test) if rates else 1.0
-        enough = AUGMENTED.tolerance if rates else AUGMENTED.function_share * ACROSS_CURVE.first_secant
+        enough = AUGMENTED.tolerance if rates else AUGMENTED.tolerance_share * ACROSS_CURVE.first_secant
         condition = BorderCondition(family.scale, family.border, length)
         self.orbit, test = self.near.solved(self.orbit, condition, slope, enough)
         return _CycleAcross(self.orbit, self.near.function.vectors, test, self.at)

@@ -113,10 +113,11 @@ def _finer(mesh: OrbitMesh, excess: float) -> OrbitMesh:
     """The next finer mesh. excess: error on this mesh in units of the accuracy; 1 for the smallest
     refinement."""
     # Errors fall with a power of the number of intervals that is proportional to the stages.
-    growth = excess ** (1 / (SPECIAL_POINT.power_by_stages * mesh.stages))
-    growth = min(max(growth, SPECIAL_POINT.more_intervals), SPECIAL_POINT.max_interval_ratio)
+    growth = excess ** (1 / (SPECIAL_POINT.time_order_by_stages * mesh.stages))
+    growth = min(max(growth, SPECIAL_POINT.min_interval_ratio), SPECIAL_POINT.max_interval_ratio)
     more = min(
-        max(ceil(log(excess) / SPECIAL_POINT.fall), SPECIAL_POINT.more_orders), SPECIAL_POINT.max_more_orders
+        max(ceil(log(excess) / SPECIAL_POINT.space_decay), SPECIAL_POINT.min_more_orders),
+        SPECIAL_POINT.max_more_orders,
     )
     return replace(mesh, order=mesh.order + more, intervals=ceil(growth * mesh.intervals))
 
@@ -128,7 +129,9 @@ def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: 
     start, end: the cycles on both sides of the point, by which the errors of period and largest tip y include
     the arc length error of the last secant step.
     """
-    place = SPECIAL_POINT.secant_end_at_fold if point.kind is SpecialKind.fold else SPECIAL_POINT.secant_end
+    place = (
+        SPECIAL_POINT.secant_error_at_fold if point.kind is SpecialKind.fold else SPECIAL_POINT.secant_error
+    )
     one = start.cycle.measures
     other = end.cycle.measures
     period = SPECIAL_POINT.error_factor * abs(point.period - last.period) + place * abs(
@@ -139,9 +142,10 @@ def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: 
     )
     return replace(
         point,
-        error=SPECIAL_POINT.error_factor * abs(point.at - last.at) + SPECIAL_POINT.rounding * abs(point.at),
-        period_error=period / point.period + SPECIAL_POINT.rounding,
-        size_error=size / point.tip_y_max + SPECIAL_POINT.rounding,
+        error=SPECIAL_POINT.error_factor * abs(point.at - last.at)
+        + SPECIAL_POINT.rounding_error * abs(point.at),
+        period_error=period / point.period + SPECIAL_POINT.rounding_error,
+        size_error=size / point.tip_y_max + SPECIAL_POINT.rounding_error,
     )
 
 
@@ -191,8 +195,8 @@ def _enclosed(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
         return values[length]
 
     ends = values[0.0], values[segment.length]
-    least = SPECIAL_POINT.enclosure_share * min(map(abs, ends))
-    at = zero_along_step(kept, ends, segment.length, least, SPECIAL_POINT.enclosure_share)
+    least = SPECIAL_POINT.bracket_tolerance * min(map(abs, ends))
+    at = zero_along_step(kept, ends, segment.length, least, SPECIAL_POINT.bracket_tolerance)
     # The nearest other arc length with a known value and this zero give the slope.
     other = min((x for x in values if x != at), key=lambda x: abs(x - at))
     slope = (values[at] - values[other]) / (at - other)
@@ -207,7 +211,9 @@ def _zero(
 
     slope: approximate slope, for the first step.
     """
-    linear = SPECIAL_POINT.linear_step_at_fold if kind == SpecialKind.fold else SPECIAL_POINT.linear_step
+    linear = (
+        SPECIAL_POINT.max_linear_step_at_fold if kind == SpecialKind.fold else SPECIAL_POINT.max_linear_step
+    )
     enough = segment.length * linear
     at = guess
     step = np.inf
@@ -221,7 +227,7 @@ def _zero(
         if not abs(step) < segment.length:
             raise Unsolvable("the secant method leaves the step between the two cycles")
         # A short step that does not halve any more is rounding error.
-        if abs(step) <= enough or last / 2 < abs(step) <= SPECIAL_POINT.stalled_secant * segment.length:
+        if abs(step) <= enough or last / 2 < abs(step) <= SPECIAL_POINT.max_stalled_step * segment.length:
             _, orbit, tangent = segment.known
             change = step * tangent
             if kind == SpecialKind.fold:

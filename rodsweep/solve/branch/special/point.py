@@ -26,48 +26,48 @@ class SpecialPointSettings:
     parameter at a fold has an error of second order in the test function."""
     max_secants: int = 12
     """Maximum number of secant steps."""
-    stalled_secant: float = 1e-6
+    max_stalled_step: float = 1e-6
     """Length of a secant step, in units of the step of the branch, below which a step that did not halve is
     rounding error; the secant method stops there."""
-    linear_step: float = 1e-6
+    max_linear_step: float = 1e-6
     """Longest last secant step, in units of the step of the branch. The cycle is then only moved along its
-    tangent; the slope, with a relative error of 1e-3, leaves an error of `secant_end`."""
-    linear_step_at_fold: float = 1e-5
+    tangent; the slope, with a relative error of 1e-3, leaves an error of `secant_error`."""
+    max_linear_step_at_fold: float = 1e-5
     """Longest last secant step at a fold, where the parameter is quadratic in arc length; in units of the
     step of the branch."""
-    secant_end: float = 1e-9
+    secant_error: float = 1e-9
     """Arc length error of a located special point, from its last secant step, in units of the step of the
     branch."""
-    secant_end_at_fold: float = 1e-5
+    secant_error_at_fold: float = 1e-5
     """Arc length error of a located fold, in units of the step of the branch: the slope may come from a
     coarser mesh, with a relative error of 0.1."""
     matrix_distance: float = 1e-3
     """Largest relative distance between a cycle and the orbit whose matrix factors correct the test function:
     each correction then gains at least two digits."""
-    enclosure_share: float = 1e-3
+    bracket_tolerance: float = 1e-3
     """Relative tolerance of the bracketing: of the test function in units of its values at the ends, and of
     the arc length in units of the step."""
     max_mesh_pairs: int = 4
     """Maximum number of comparisons of two meshes."""
-    more_orders: int = 2
+    min_more_orders: int = 2
     """Smallest increase of the order of the elements on the next finer mesh."""
     max_more_orders: int = 8
     """Largest increase of the order of the elements on the next finer mesh."""
-    fall: float = 0.8
+    space_decay: float = 0.8
     """Decrease of the natural logarithm of the error in space per order of the elements, measured at a torus
     point."""
-    more_intervals: float = 1.2
+    min_interval_ratio: float = 1.2
     """Smallest ratio of the numbers of time intervals on the next finer mesh and on the present mesh."""
     max_interval_ratio: float = 2.0
     """Largest ratio of the numbers of time intervals on the next finer mesh and on the present mesh."""
-    power_by_stages: float = 1.5
+    time_order_by_stages: float = 1.5
     """Assumed order in time of the error of a special point, in units of the number of stages; measured
     orders are larger."""
     error_factor: float = 3.0
     """Safety factor on the difference between two meshes, which gives the error estimate."""
-    rounding: float = 1e-13
+    rounding_error: float = 1e-13
     """Relative rounding error of the parameter, the period and the largest tip y of a special point."""
-    near_one: float = 3e-3
+    unit_multiplier_distance: float = 3e-3
     """Distance of a multiplier from 1 below which errors may move it across the unit circle. Near a fold, two
     multipliers are close to 1."""
     max_halvings: int = 7

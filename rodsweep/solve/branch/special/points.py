@@ -49,7 +49,7 @@ def _beyond_minus_one(point: ArcPoint) -> int:
 
 
 def _near_one(point: ArcPoint) -> bool:
-    return bool((np.abs(point.partial_multipliers - 1) < SPECIAL_POINT.near_one).any())
+    return bool((np.abs(point.partial_multipliers - 1) < SPECIAL_POINT.unit_multiplier_distance).any())
 
 
 def _has_pair(point: ArcPoint) -> bool:

@@ -53,8 +53,8 @@ class Calibration:
     """Estimated growth factors of the errors in space and in time since the measurement, (2,)."""
 
     def arrays(self) -> dict[str, Array]:
-        """The calibration as named arrays for a checkpoint: errors and rates (5,), tails (3,), reach, mesh;
-        `growth`, which belongs to a single orbit, is left out."""
+        """Named arrays for a checkpoint: errors and rates (5,), tails (3,), reach and mesh, without
+        `growth`."""
         errors = {name: getattr(self, name) for name in ("space", "time", "fall", "power", "tails")}
         numbers = {"reach": np.array(self.reach), "calibrated_mesh": self.mesh.numbers}
         return errors | numbers
@@ -76,10 +76,7 @@ class Calibration:
 
     def on_branch(self, orbit: Orbit) -> "Calibration":
         """The calibration with its errors scaled to a later orbit of a branch, which is followed by arc
-        length.
-
-        Newton's method prescribes the deflection there, so that no error grows because the orbits shrink.
-        """
+        length: no error grows because the orbits shrink."""
         growth = _growth(self.tails, _tails(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails * (0.0, 0.0, 1.0))
         return replace(self, growth=growth)
 
@@ -91,11 +88,14 @@ class Calibration:
     @property
     def holds(self) -> bool:
         """Whether the measured errors, scaled by `growth`, still apply to the later orbit."""
-        return self.reach <= CALIBRATION.max_reach and float(self.growth.max()) <= CALIBRATION.max_growth
+        return (
+            self.reach <= CALIBRATION.max_parameter_change
+            and float(self.growth.max()) <= CALIBRATION.max_error_growth
+        )
 
     def lasts(self, change: float) -> bool:
         """Whether the measured errors may still apply after a further relative change of the parameter."""
-        return self.reach + change <= CALIBRATION.max_reach
+        return self.reach + change <= CALIBRATION.max_parameter_change
 
     def least(self, orbit: Orbit) -> tuple[Array, Array]:
         """(smallest errors in space, smallest errors in time), (5,) each, that a new measurement on the same
@@ -150,20 +150,22 @@ class Calibration:
 def _stated(space: Array, time: Array, accuracy: float) -> Array:
     """The four errors of `CycleErrors`, (4, ...), from errors in space and in time, (5, ...) each, with
     safety factors and lower limits."""
-    whole = CALIBRATION.safety * (space + time)
+    whole = CALIBRATION.safety_factor * (space + time)
     apart = space[WHOLE_PATH] + time[WHOLE_PATH]
-    in_time = CALIBRATION.share_in_time * time[WHOLE_PATH]
+    in_time = CALIBRATION.min_error_share_in_time * time[WHOLE_PATH]
     parts = [np.maximum(part[PERIOD_CHANGE], part[LARGEST_Y]) for part in (space, time)]
     either = CALIBRATION.mutual_bound * (parts[0] + parts[1])
-    of_period = CALIBRATION.period_share * space[WHOLE_PATH] + in_time
-    of_height = CALIBRATION.height_share * space[WHOLE_PATH] + in_time
+    of_period = CALIBRATION.min_period_error_share * space[WHOLE_PATH] + in_time
+    of_height = CALIBRATION.min_height_error_share * space[WHOLE_PATH] + in_time
     stated = [
         np.maximum(np.maximum(whole[PERIOD_CHANGE], of_period), either),
         np.maximum(np.maximum(whole[LARGEST_Y], of_height), either),
-        np.maximum(whole[WORST_EXTREMUM], CALIBRATION.others_share * apart),
+        np.maximum(whole[WORST_EXTREMUM], CALIBRATION.min_extrema_error_share * apart),
         whole[MULTIPLIER],
     ]
-    least: Array = np.maximum(np.array(stated), max(CYCLE_ERRORS.min_claim * accuracy, CYCLE_ERRORS.rounding))
+    least: Array = np.maximum(
+        np.array(stated), max(CYCLE_ERRORS.min_error_share * accuracy, CYCLE_ERRORS.rounding_error)
+    )
     return least
 
 
@@ -203,9 +205,9 @@ def calibration_of(
     """
     tails = _tails(orbit)
     if before is None:
-        decay = CALIBRATION.fall_by_decay * tails_of(orbit).decay
-        fall = np.full(ERROR_COUNT, min(max(decay, CALIBRATION.min_fall), CALIBRATION.max_fall))
-        power = np.full(ERROR_COUNT, CALIBRATION.power_by_stages * orbit.stages)
+        decay = CALIBRATION.error_decay_ratio * tails_of(orbit).decay
+        fall = np.full(ERROR_COUNT, min(max(decay, CALIBRATION.min_space_decay), CALIBRATION.max_space_decay))
+        power = np.full(ERROR_COUNT, CALIBRATION.time_order_by_stages * orbit.stages)
         return Calibration(mesh, space, time, fall, power, tails, 0.0)
     previous = before.mesh
     fall = before.fall
@@ -223,7 +225,9 @@ def _fall(before: Array, after: Array, orders: int) -> Array:
     before, after: errors on two meshes, (5,) each. orders: increase of the order from the first mesh to the
     second.
     """
-    fall: Array = np.clip(_logarithm(before, after) / orders, CALIBRATION.min_fall, CALIBRATION.max_fall)
+    fall: Array = np.clip(
+        _logarithm(before, after) / orders, CALIBRATION.min_space_decay, CALIBRATION.max_space_decay
+    )
     return fall
 
 
@@ -233,13 +237,13 @@ def _power(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) ->
     # Radau IIA has the order 2 stages - 1, of which stiff problems may keep only stages + 1.
     least = mesh.stages + 1
     steps = np.log(mesh.full_intervals / previous.full_intervals)
-    power: Array = np.clip(_logarithm(before, after) / steps, least, CALIBRATION.max_power_ratio * least)
+    power: Array = np.clip(_logarithm(before, after) / steps, least, CALIBRATION.max_time_order_ratio * least)
     return power
 
 
 def _logarithm(before: Array, after: Array) -> Array:
-    """Natural logarithm of the ratios before/after of two arrays of errors of equal shape; an error may
-    be 0."""
+    """Natural logarithm of the ratios before/after of two arrays of errors of any shape; an error may be
+    0."""
     least = EXPONENTS.least_divisor
     quotient: Array = np.log(np.maximum(before, least) / np.maximum(after, least))
     return quotient

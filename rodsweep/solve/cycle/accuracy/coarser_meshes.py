@@ -28,11 +28,11 @@ from .finer_meshes import COMPARISON, ComparedCycle
 class CoarserMeshSettings:
     """Settings for the coarser meshes that predict a cycle on a fine mesh."""
 
-    fewer_orders: int = 2
+    min_fewer_orders: int = 2
     """Smallest difference between the orders of a fine mesh and of its coarse mesh."""
-    most_fewer_orders: int = 4
+    max_fewer_orders: int = 4
     """Largest difference between the orders of a fine mesh and of its coarse mesh."""
-    fall_between: float = 1.5
+    min_space_decay: float = 1.5
     """Smallest expected decrease of the natural logarithm of the errors in space from the coarse mesh to the
     fine mesh, which determines the difference of the orders. Where coefficients decay slowly, errors
     oscillate with the order, and meshes of nearly the same order may agree by coincidence. With a difference
@@ -41,13 +41,13 @@ class CoarserMeshSettings:
     more_intervals: float = 0.4
     """Additional time intervals of the fine mesh, as a fraction of the number of intervals of the coarse
     mesh."""
-    more_predicted_orders: int = 2
+    max_more_orders: int = 2
     """Largest increase of the order, beyond the fine mesh for which the coarse mesh was made, at which the
     coarse mesh still predicts a cycle."""
     max_interval_ratio: float = 2.0
     """Largest ratio of the numbers of time intervals of the fine mesh and of the coarse mesh that predicts
     its cycle."""
-    slowest_fall: float = 1.2
+    slowest_decay_ratio: float = 1.2
     """Pessimistic decrease of the logarithm of the errors in space per order, in units of the same decrease
     of the coefficients."""
 
@@ -63,11 +63,11 @@ class CoarserMeshes:
         """mesh: the fine mesh. near: an orbit near the cycle, on any mesh. accuracy: requested relative
         accuracy. Raises Unsolvable."""
         fewer = _fewer_orders(near)
-        order = max(mesh.order - fewer, ORBIT_MESH.min_order - COARSER_MESHES.fewer_orders)
-        self._highest_order = order + fewer + COARSER_MESHES.more_predicted_orders
+        order = max(mesh.order - fewer, ORBIT_MESH.min_order - COARSER_MESHES.min_fewer_orders)
+        self._highest_order = order + fewer + COARSER_MESHES.max_more_orders
         intervals = round(mesh.full_intervals / (1 + COARSER_MESHES.more_intervals)) + 1
         self.mesh = replace(mesh, order=order, intervals=intervals)
-        self._tolerance = COMPARISON.newton_share * accuracy
+        self._tolerance = COMPARISON.newton_tolerance_share * accuracy
         self._workspace = workspace
         self._coarse = self._solved(self.mesh, near)
         self._finer: dict[OrbitMesh, ComparedCycle] = {}
@@ -123,11 +123,11 @@ class CoarserMeshes:
 def _fall(orbit: Orbit) -> float:
     """Pessimistic decrease of the natural logarithm of the errors in space per order, from the coefficients
     of an orbit."""
-    slowest = COARSER_MESHES.slowest_fall * tails_of(orbit).decay
-    return min(max(slowest, CALIBRATION.min_fall), CALIBRATION.max_fall)
+    slowest = COARSER_MESHES.slowest_decay_ratio * tails_of(orbit).decay
+    return min(max(slowest, CALIBRATION.min_space_decay), CALIBRATION.max_space_decay)
 
 
 def _fewer_orders(near: Orbit) -> int:
     """Difference between the orders of a fine mesh and its coarse mesh, for a cycle near the orbit `near`."""
-    needed = ceil(COARSER_MESHES.fall_between / _fall(near))
-    return min(max(needed, COARSER_MESHES.fewer_orders), COARSER_MESHES.most_fewer_orders)
+    needed = ceil(COARSER_MESHES.min_space_decay / _fall(near))
+    return min(max(needed, COARSER_MESHES.min_fewer_orders), COARSER_MESHES.max_fewer_orders)

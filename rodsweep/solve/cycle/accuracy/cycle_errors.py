@@ -14,11 +14,11 @@ class CycleErrorSettings:
     """Settings for the smallest error estimates of a cycle, and for the error that is compared with the
     accuracy."""
 
-    rounding: float = 2e-14
+    rounding_error: float = 2e-14
     """Smallest relative error estimate of period and extrema: the rounding error on any mesh."""
-    min_claim: float = 0.1
+    min_error_share: float = 0.1
     """Smallest error estimate, in units of the accuracy: a smaller estimate may be a coincidence."""
-    extrema_slack: float = 100.0
+    extrema_tolerance_ratio: float = 100.0
     """Tolerance of the tip's other extrema, in units of the tolerance of period and largest y. Period and
     largest y converge fastest, because a time node lies at the largest y."""
 
@@ -43,7 +43,7 @@ class CycleErrors:
     @property
     def largest(self) -> float:
         """The error that is compared with the requested accuracy: the largest of the errors of period and
-        largest y, and of the error of the other extrema divided by `extrema_slack`."""
+        largest y, and of the error of the other extrema divided by `extrema_tolerance_ratio`."""
         return float(largest_error(self.period_error, self.amplitude_error, self.extrema_error))
 
 
@@ -51,7 +51,7 @@ def largest_error(period: Array | float, amplitude: Array | float, extrema: Arra
     """`CycleErrors.largest` from the errors of period, amplitude and other extrema: numbers, or arrays of a
     common shape."""
     largest: Array = np.maximum(
-        np.maximum(period, amplitude), np.asarray(extrema) / CYCLE_ERRORS.extrema_slack
+        np.maximum(period, amplitude), np.asarray(extrema) / CYCLE_ERRORS.extrema_tolerance_ratio
     )
     return largest
 

@@ -28,7 +28,7 @@ class ComparisonSettings:
     more_intervals: float = 0.4
     """Additional time intervals of the mesh finer in time, as a fraction of the intervals of the mesh; the
     fraction of the error in time that remains is known."""
-    newton_share: float = 0.1
+    newton_tolerance_share: float = 0.1
     """Tolerance of Newton's method on the finer meshes, in units of the accuracy."""
     matrix_distance: float = 1e-3
     """Largest relative distance between a cycle and the orbit whose matrix gives its multipliers."""
@@ -56,7 +56,7 @@ def measured_calibration(found: ConvergedOrbit, accuracy: float, before: Calibra
     mesh = mesh_of(found.orbit)
     measured = ComparedCycle(found)
     finer, share = finer_meshes(mesh)
-    tolerance = COMPARISON.newton_share * accuracy
+    tolerance = COMPARISON.newton_tolerance_share * accuracy
     others = (newton(target.carry(found.orbit), tolerance, found.workspace) for target in finer)
     space, time = (measured.difference(ComparedCycle(other)) for other in others)
     time = time / share

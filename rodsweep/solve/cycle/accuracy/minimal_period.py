@@ -21,13 +21,13 @@ from ...orbit.orbit import Orbit, node_times
 class MinimalPeriodSettings:
     """Settings for the size above which a harmonic counts as nonzero."""
 
-    present: float = 1e-3
+    min_harmonic: float = 1e-3
     """Size of a harmonic, in units of the largest harmonic, above which it counts as nonzero while the error
     of the orbit is not known."""
-    certain: float = 10.0
+    certain_harmonic_ratio: float = 10.0
     """Size of a harmonic relative to the largest, in units of the relative error of the extrema, above which
     the harmonic is certainly nonzero."""
-    min_present: float = 1e-6
+    min_certain_harmonic: float = 1e-6
     """Lower limit of this relative size: the error estimate is of the tip, and the bending strain may have a
     larger error."""
 
@@ -59,12 +59,14 @@ def undecided_divisor(path: CyclePath, error: float) -> int:
 
     error: relative error of the extrema.
     """
-    return common_divisor(path, max(MINIMAL_PERIOD.certain * error, MINIMAL_PERIOD.min_present))
+    return common_divisor(
+        path, max(MINIMAL_PERIOD.certain_harmonic_ratio * error, MINIMAL_PERIOD.min_certain_harmonic)
+    )
 
 
 def over_minimal_period(orbit: Orbit) -> Orbit:
     """The orbit over the minimal period by its large harmonics, as a start for Newton's method."""
-    g = common_divisor(CyclePath(orbit), MINIMAL_PERIOD.present)
+    g = common_divisor(CyclePath(orbit), MINIMAL_PERIOD.min_harmonic)
     if g == 1:
         return orbit
     times = node_times(orbit.intervals, orbit.stages)

@@ -33,7 +33,7 @@ def with_calibrated_errors(calibration: Calibration, found: ConvergedOrbit, accu
     multipliers, trivial_error = multipliers_of(found)
     largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
     # The matrix was assembled at a nearby orbit; the error of the trivial multiplier shows the effect.
-    by_matrix = REFINEMENT.multiplier_factor * largest * (found.distance + trivial_error)
+    by_matrix = REFINEMENT.multiplier_error_factor * largest * (found.distance + trivial_error)
     by_exponent = errors.amplitude_error * _multiplier_per_exponent(multipliers)
     errors = replace(errors, multiplier_error=max(errors.multiplier_error, by_exponent) + by_matrix)
     measures = measures_of(path)
@@ -81,7 +81,7 @@ def refined_at_period(
             # Only symmetric cycles are born at Hopf points.
             if aim <= REFINEMENT.finest_accuracy or not orbit.symmetric:
                 raise
-            aim = max(REFINEMENT.aim_factor * aim, REFINEMENT.finest_accuracy)
+            aim = max(REFINEMENT.retry_accuracy_factor * aim, REFINEMENT.finest_accuracy)
             mesh = wanted_mesh(orbit, aim, orbit.stages)
             if mesh.intervals * mesh.unknowns**3 > REFINEMENT.max_retry_work:
                 raise
@@ -100,7 +100,7 @@ def _predicted_cycle(
     coarser = CoarserMeshes(mesh, near, accuracy, workspace)
     last = inf
     orbit, known = best = coarser.predicted(mesh)
-    for _ in range(REFINEMENT.max_rounds):
+    for _ in range(REFINEMENT.max_meshes):
         error = known.errors(accuracy).largest
         if error < best[1].errors(accuracy).largest:
             best = orbit, known
@@ -110,7 +110,7 @@ def _predicted_cycle(
         if error > last:
             raise Unsolvable("the errors do not decrease on finer meshes")
         mesh = finer_mesh(mesh, known.planned(accuracy))
-        last = REFINEMENT.allowed_increase * error
+        last = REFINEMENT.max_error_increase * error
         if not mesh.allowed:
             break
         if not coarser.can_predict(mesh):
@@ -118,7 +118,9 @@ def _predicted_cycle(
         orbit, known = coarser.predicted(mesh)
     orbit, known = best
     found = require_similar_size(newton(orbit, newton_tolerance(accuracy), workspace), near.size)
-    if found.distance > max(REFINEMENT.predicted_within * accuracy, REFINEMENT.min_predicted_distance):
+    if found.distance > max(
+        REFINEMENT.max_prediction_distance * accuracy, REFINEMENT.min_prediction_distance
+    ):
         raise Unsolvable("coarser meshes do not predict the cycle")
     return with_calibrated_errors(
         known, at_orbit(found, min(accuracy, REFINEMENT.max_matrix_distance)), accuracy
@@ -136,14 +138,14 @@ def calibrated_cycle(
     """
     best = None
     last = inf
-    for _ in range(REFINEMENT.max_rounds):
+    for _ in range(REFINEMENT.max_meshes):
         before = measured_calibration(found, accuracy, before)
         cycle = with_calibrated_errors(before, found, accuracy)
         if best is None or cycle.errors.largest < best.errors.largest:
             best = cycle
         if cycle.errors.largest <= accuracy or cycle.errors.largest > last:
             break
-        last = REFINEMENT.allowed_increase * cycle.errors.largest
+        last = REFINEMENT.max_error_increase * cycle.errors.largest
         finer = finer_mesh(before.mesh, before.planned(accuracy))
         if not finer.allowed:
             break
@@ -164,7 +166,7 @@ def _on(mesh: OrbitMesh, found: ConvergedOrbit, accuracy: float, parameter: str 
 
 def require_similar_size(found: ConvergedOrbit, size: float) -> ConvergedOrbit:
     """The solved orbit `found`; raises Unsolvable if its size is far from `size`, the size of the start."""
-    if not REFINEMENT.min_size * size < found.orbit.size < REFINEMENT.max_size * size:
+    if not REFINEMENT.min_size_ratio * size < found.orbit.size < REFINEMENT.max_size_ratio * size:
         raise Unsolvable("Newton's method converged to an orbit of a very different size than its start")
     return found
 
@@ -178,13 +180,13 @@ def refined_cycle(
     stability is undecided, the cycle is solved again for a hundredth of the accuracy.
     """
     found = refined_at_period(over_minimal_period(orbit), accuracy, workspace, parameter)
-    if common_divisor(found.path, MINIMAL_PERIOD.present) > 1:
+    if common_divisor(found.path, MINIMAL_PERIOD.min_harmonic) > 1:
         found = refined_at_period(over_minimal_period(found.orbit), accuracy, workspace, parameter)
     # The multiplier is 1 within its error: a hundredth of the error may decide.
     if found.stable is None:
         found = refined_at_period(
             found.orbit,
-            max(accuracy / REFINEMENT.undecided_divisor, REFINEMENT.finest_accuracy),
+            max(accuracy / REFINEMENT.undecided_accuracy_divisor, REFINEMENT.finest_accuracy),
             workspace,
             parameter,
         )
@@ -193,7 +195,7 @@ def refined_cycle(
 
 def newton_tolerance(accuracy: float) -> float:
     """Relative tolerance of Newton's method for a cycle of a given relative accuracy."""
-    return max(REFINEMENT.newton_share * accuracy, REFINEMENT.min_newton_tolerance)
+    return max(REFINEMENT.newton_tolerance_share * accuracy, REFINEMENT.min_newton_tolerance)
 
 
 def matrix_distance(accuracy: float) -> float:

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 class RefinementSettings:
     """Settings for meshes, tolerances and matrices of a cycle of a requested accuracy."""
 
-    newton_share: float = 1e-2
+    newton_tolerance_share: float = 1e-2
     """Relative tolerance of Newton's method for a cycle, in units of the accuracy."""
     min_newton_tolerance: float = 1e-13
     """Smallest relative tolerance of Newton's method for a cycle: some hundred rounding errors."""
-    undecided_divisor: float = 100.0
+    undecided_accuracy_divisor: float = 100.0
     """Divisor of the accuracy with which a cycle is solved again if its largest multiplier is 1 within its
     error."""
     matrix_distance_share: float = 3.0
@@ -21,7 +21,7 @@ class RefinementSettings:
     """Lower limit of this relative distance: multipliers need no more digits."""
     max_matrix_distance: float = 1e-5
     """Upper limit of this relative distance."""
-    multiplier_factor: float = 10.0
+    multiplier_error_factor: float = 10.0
     """Relative error of the multipliers, in units of the sum of this distance and of the trivial multiplier's
     error."""
     finest_accuracy: float = 1e-12
@@ -32,7 +32,7 @@ class RefinementSettings:
     nearby_tolerance: float = 1e-3
     """Relative tolerance of Newton's method for the nearby orbit whose coefficient tails determine the first
     mesh."""
-    aim_factor: float = 1e-3
+    retry_accuracy_factor: float = 1e-3
     """Factor on the accuracy for which the next mesh is chosen, if a mesh is so coarse that no cycle exists
     on it."""
     max_retry_work: float = 1e8
@@ -46,20 +46,20 @@ class RefinementSettings:
     """Smallest number of time intervals of a fine mesh whose cycle coarser meshes predict. With 5 intervals,
     the coarser meshes would have 4 and 5 intervals, where errors in time do not decrease as a power yet: the
     error of the largest y was four times its estimate."""
-    predicted_within: float = 30.0
+    max_prediction_distance: float = 30.0
     """Largest relative distance of a cycle from its prediction by coarser meshes, in units of the accuracy,
     at which the predicted errors are accepted; the largest observed distance was 4.4."""
-    min_predicted_distance: float = 1e-9
+    min_prediction_distance: float = 1e-9
     """Lower limit of this bound on the relative distance, for rounding errors."""
-    min_size: float = 0.2
+    min_size_ratio: float = 0.2
     """Smallest size of a solved orbit, in units of the size of Newton's start; a smaller orbit is a different
     motion."""
-    max_size: float = 5.0
+    max_size_ratio: float = 5.0
     """Largest size of a solved orbit, in units of the size of Newton's start; a larger orbit is a different
     motion."""
-    allowed_increase: float = 10.0
+    max_error_increase: float = 10.0
     """Largest factor by which the error estimate may increase on a finer mesh, by coincidence."""
-    max_rounds: int = 8
+    max_meshes: int = 8
     """Maximum number of meshes tried for one cycle."""
 
 

@@ -20,20 +20,20 @@ from ....arrays import Array
 class AmplitudeEquationSettings:
     """Settings for the prediction of the amplitude of a slowly growing motion."""
 
-    slow_growth: float = 0.2
+    max_slow_growth: float = 0.2
     """Linear growth per period, in modulus, below which the final amplitude of a motion is predicted instead
     of integrated."""
-    significant_growth: float = 10.0
+    min_significant_growth: float = 10.0
     """Smallest contribution c a^2 to the growth, in units of the noise, at which a new measurement of c
     replaces an earlier one. The noise then is a tenth of c; a c measured within the noise may have the wrong
     sign."""
-    near_amplitude: float = 0.1
+    max_amplitude_distance: float = 0.1
     """Relative distance from the predicted amplitude below which the state is not scaled, because Newton's
     method converges."""
-    shrink: float = 0.7
+    decay_factor: float = 0.7
     """Factor on the state of a slowly decaying motion; its inverse is the factor on a growing motion with c <
     0. The factor is close enough to 1 not to miss a cycle."""
-    max_jump: float = 4.0
+    max_jump_factor: float = 4.0
     """Largest factor by which a state is scaled up, or its inverse down, in one jump."""
     linear_tolerance: float = 0.05
     """Largest relative deviation of a motion's decay rate and frequency from the leading mode's, at which the
@@ -77,7 +77,7 @@ class AmplitudeEquation:
         (k, unknowns)."""
         return max(
             map(abs, self.growth(times, states))
-        ) <= AMPLITUDE_EQUATION.slow_growth and self._has_period_of_mode(times)
+        ) <= AMPLITUDE_EQUATION.max_slow_growth and self._has_period_of_mode(times)
 
     def decays_as_linear(self, times: Array, states: Array) -> bool:
         """Whether a motion decays steadily, and over its last return as the leading mode. times: (k,);
@@ -96,7 +96,7 @@ class AmplitudeEquation:
         states: (k, unknowns)."""
         growth, linear = self.growth(times, states)
         known = self.coefficient > 0 and self.slow(times, states)
-        return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION.slow_growth) + (
+        return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION.max_slow_growth) + (
             self.noise if known else 0
         )
 
@@ -114,28 +114,28 @@ class AmplitudeEquation:
         # d|z|/dt = linear |z| - c |z|^3, so what the growth lacks is c |z|^2.
         measured = (linear - growth) / size**2
         if abs(linear - growth) > self.noise * (
-            1 if isnan(self.coefficient) else AMPLITUDE_EQUATION.significant_growth
+            1 if isnan(self.coefficient) else AMPLITUDE_EQUATION.min_significant_growth
         ):
             self.coefficient = measured
         coefficient = measured if isnan(self.coefficient) else self.coefficient
         if isnan(self.coefficient) and linear > 0:
-            factor = AMPLITUDE_EQUATION.max_jump  # at this small amplitude the growth does not show c
+            factor = AMPLITUDE_EQUATION.max_jump_factor  # at this small amplitude the growth does not show c
         elif linear > 0 and coefficient > 0:
             factor = float(
                 np.clip(
                     # The amplitude at which linear = c |z|^2.
                     np.sqrt(linear / coefficient) / size,
-                    1 / AMPLITUDE_EQUATION.max_jump,
-                    AMPLITUDE_EQUATION.max_jump,
+                    1 / AMPLITUDE_EQUATION.max_jump_factor,
+                    AMPLITUDE_EQUATION.max_jump_factor,
                 )
             )
         elif linear > 0 or (coefficient < 0 and growth > self.noise):
-            factor = 1 / AMPLITUDE_EQUATION.shrink  # the growth increases with the amplitude
+            factor = 1 / AMPLITUDE_EQUATION.decay_factor  # the growth increases with the amplitude
         elif coefficient > 0 or growth < -self.noise:
-            factor = AMPLITUDE_EQUATION.shrink
+            factor = AMPLITUDE_EQUATION.decay_factor
         else:
             return None
-        return factor if abs(factor - 1) >= AMPLITUDE_EQUATION.near_amplitude else None
+        return factor if abs(factor - 1) >= AMPLITUDE_EQUATION.max_amplitude_distance else None
 
     def _has_period_of_mode(self, times: Array) -> bool:
         """Whether the last return took the leading mode's period; otherwise the motion is not the leading

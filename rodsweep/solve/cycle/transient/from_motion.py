@@ -21,7 +21,7 @@ class NewtonFromMotionSettings:
     """Number of collocation stages per interval of the approximate orbit."""
     intervals: int = 20
     """Number of time intervals of the approximate orbit per return of the tip."""
-    phases: int = 128
+    peak_search_times: int = 128
     """Number of times per period at which the largest y is searched."""
     max_asymmetry: float = 0.2
     """Relative distance of a motion from its reflection half a period later, below which the orbit is solved
@@ -42,7 +42,7 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
 
     spline = CubicSpline(run.times, run.states)
     begin = float(run.times[-1]) - period
-    times = begin + period * np.arange(FROM_MOTION.phases) / FROM_MOTION.phases
+    times = begin + period * np.arange(FROM_MOTION.peak_search_times) / FROM_MOTION.peak_search_times
     whole = spline(times)
     top = float(times[int(np.argmax(beam.tip(whole)[1]))])
     symmetry = REFLECTION if relative_asymmetry(beam, whole) < FROM_MOTION.max_asymmetry else NO_SYMMETRY

@@ -26,11 +26,11 @@ class ReturnSettings:
     """Norm of the state z below which a rod with a stable straight state counts as straight, and norm of the
     bending and shear components of z below which a rod no longer swings. Numerical damping governs smaller
     motions."""
-    same_return: float = 0.03
+    max_return_distance: float = 0.03
     """Largest relative distance between the states at two returns that count as equal."""
     max_returns_per_period: int = 8
     """Largest number of returns of the tip per period of a recognised cycle."""
-    steps_per_run: int = 20_000
+    max_steps_per_run: int = 20_000
     """Maximum number of time steps in one run."""
     bisections: int = 50
     """Number of bisections of a time step for the time of a crossing; enough for all digits."""
@@ -57,7 +57,7 @@ def until_returns(row: Array, z: Array, wanted: int) -> RunLimit:
         last = angle
         return count >= wanted
 
-    return RunLimit(enough, RETURNS.steps_per_run)
+    return RunLimit(enough, RETURNS.max_steps_per_run)
 
 
 class EarlyEnd(NamedTuple):
@@ -133,7 +133,7 @@ def repetition(moments: Sequence[Array]) -> tuple[int, float]:
         return 1, inf
     found = [(float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))]
     # The first repetition that is nearly as good as the best: multiples of a period repeat as well.
-    enough = max(2 * min(found)[0], RETURNS.same_return)
+    enough = max(2 * min(found)[0], RETURNS.max_return_distance)
     return next((m, distance) for distance, m in found if distance <= enough)
 
 

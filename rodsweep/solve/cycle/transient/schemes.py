@@ -12,9 +12,9 @@ class SchemeSettings:
     """Settings for the time schemes `usual`, `quick` and `careful`, and for the choice of a scheme by the
     linear growth."""
 
-    weak_growth: float = 0.01
+    max_careful_growth: float = 0.01
     """Linear growth per period, in modulus, below which the scheme is `careful`."""
-    growth_noise: float = 1e-3
+    usual_noise: float = 1e-3
     """Largest growth per period that integration errors of the schemes `usual` and `quick` may add; 3e-4 was
     measured."""
     careful_noise: float = 1e-5
@@ -69,8 +69,8 @@ class TransientSchemes(NamedTuple):
 def schemes_for_growth(growth: float, is_stored: bool) -> TransientSchemes:
     """Time schemes of a motion. growth: linear growth per period of the leading mode. is_stored: whether the
     path of the motion is stored."""
-    if abs(growth) < SCHEMES.weak_growth or is_stored:
+    if abs(growth) < SCHEMES.max_careful_growth or is_stored:
         careful = SCHEMES.careful
         return TransientSchemes(careful, careful, SCHEMES.careful_noise, SCHEMES.careful_steps)
-    first = SCHEMES.quick if growth > AMPLITUDE_EQUATION.slow_growth else SCHEMES.usual
-    return TransientSchemes(first, SCHEMES.usual, SCHEMES.growth_noise, SCHEMES.usual_steps)
+    first = SCHEMES.quick if growth > AMPLITUDE_EQUATION.max_slow_growth else SCHEMES.usual
+    return TransientSchemes(first, SCHEMES.usual, SCHEMES.usual_noise, SCHEMES.usual_steps)

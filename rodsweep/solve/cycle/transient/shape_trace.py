@@ -20,9 +20,9 @@ class ShapeTraceSettings:
     """Maximum number of recorded time steps: some 50 to 100 returns of the tip, or 4 MB."""
     max_frames: int = 1600
     """Maximum number of stored shapes: 50 periods of 32 shapes."""
-    at_rest: float = 2e-3
+    max_rest_deflection: float = 2e-3
     """Tip's |y|, in L, below which an arm counts as at rest."""
-    few_returns: int = 3
+    min_returns: int = 3
     """Number of returns of the tip below which the leading mode's period is taken as the period of the
     motion."""
 
@@ -48,7 +48,7 @@ class ShapeTrace:
     def records_on(self, z: Array) -> bool:
         """Whether to integrate the motion further from the state z, (unknowns,), although its outcome is
         known: until the arm is at rest or the record is full."""
-        return not self.is_full and abs(float(self.beam.tip(z)[1])) > SHAPE_TRACE.at_rest
+        return not self.is_full and abs(float(self.beam.tip(z)[1])) > SHAPE_TRACE.max_rest_deflection
 
     def begin(self, z: Array, relaxed: Array, duration: float) -> None:
         """Records the start state z, (unknowns,). Its relaxation to the state `relaxed`, (unknowns,), within
@@ -76,7 +76,7 @@ class ShapeTrace:
         from scipy.interpolate import CubicSpline  # a tenth of a second of every start
 
         step = (
-            float(np.median(np.diff(returns))) if len(returns) >= SHAPE_TRACE.few_returns else period
+            float(np.median(np.diff(returns))) if len(returns) >= SHAPE_TRACE.min_returns else period
         ) / frames
         due = step * np.arange(min(int(self.times[-1][-1] / step) + 1, SHAPE_TRACE.max_frames))
         run_of = np.searchsorted([times[0] for times in self.times], due, side="right") - 1
@@ -87,5 +87,5 @@ class ShapeTrace:
                 states[within] = CubicSpline(times, steps)(due[within]) if len(times) > 1 else steps[:1]
         shapes = self.beam.shape(states)[:2] @ self.beam.mesh.evaluation(lobatto_points(nodes)).T
         is_whole = not self.is_full and len(due) < SHAPE_TRACE.max_frames
-        swings = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE.at_rest)
+        swings = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE.max_rest_deflection)
         return MotionShapes(step, shapes[:, : int(swings.max(initial=0)) + 2], is_whole)

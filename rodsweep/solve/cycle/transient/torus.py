@@ -6,7 +6,7 @@ curve by the same angle on average. The bending moments at the k-th return are t
 times this angle. The series is fitted to the earlier returns and must predict the later returns, which
 excludes growing, decaying and irregular motions. The earlier returns must fill the closed curve: a periodic
 motion that closes after several returns leaves gaps, as does a short motion. A motion that closes after
-`TORUS_TEST.inverse_gap` or more returns cannot be distinguished from a torus.
+`TORUS_TEST.min_returns_around` or more returns cannot be distinguished from a torus.
 """
 
 from collections.abc import Iterator
@@ -31,24 +31,24 @@ class TorusTestSettings:
     harmonics: int = 6
     """Number of harmonics of the second frequency in the fitted Fourier series. On the studied tori each
     harmonic was a fifth of the previous harmonic, and the sum of all harmonics beyond the sixth was 6e-4."""
-    inverse_gap: int = 16
+    min_returns_around: int = 16
     """Inverse of the largest allowed gap between returns, as a fraction of the closed curve. The returns then
     determine the 13 terms of the Fourier series, and a motion that closes after fewer returns is rejected."""
     max_prediction_error: float = 0.05
     """Largest rms error of the predicted returns on a torus, in units of the rms modulation. Errors of 7e-4
     to 0.03 were measured on tori, and 0.11 for a growing modulation."""
-    skipped_share: float = 1 / 3
+    skipped_fraction: float = 1 / 3
     """Fraction of the returns, counted from the start, that the test ignores, because the motion still
     approaches the torus."""
-    angle_tolerance: float = 0.3
+    max_angle_difference: float = 0.3
     """Largest difference, in rad, between the angle per return on a torus and the angle of the cycle's
     multipliers. The difference is 0 at the torus point; 0.18 was observed far away."""
     trials_per_width: int = 4
     """Number of trial angles over the width of the residual's minimum for one harmonic, before the best trial
     is refined."""
-    angle_share: float = 1e-4
+    angle_tolerance_share: float = 1e-4
     """Tolerance of the fitted angle, in units of half the width of the residual's minimum."""
-    period_tolerance: float = 0.1
+    max_period_difference: float = 0.1
     """Largest relative difference between the mean return time on a torus and the period of the cycle; the
     difference is 0 at the torus point."""
 
@@ -72,15 +72,17 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
         return end
     # Only the last returns are stored, so the first third may be missing already, in part or wholly.
     skipped = max(
-        0, int(TORUS_TEST.skipped_share * transient.waited) - (transient.waited - len(transient.past))
+        0, int(TORUS_TEST.skipped_fraction * transient.waited) - (transient.waited - len(transient.past))
     )
     past = list(transient.past)[skipped:]
-    if len(past) < 2 * TORUS_TEST.inverse_gap:
+    if len(past) < 2 * TORUS_TEST.min_returns_around:
         return end
     times = np.array([time for time, _ in past])
     moments = np.array([moment for _, moment in past])
     for cycle in _unstable_cycles(transient):
-        near = abs(np.ptp(times) / (len(times) - 1) / cycle.orbit.period - 1) <= TORUS_TEST.period_tolerance
+        near = (
+            abs(np.ptp(times) / (len(times) - 1) / cycle.orbit.period - 1) <= TORUS_TEST.max_period_difference
+        )
         angle = unstable_pair_angle(cycle)
         modulation = modulation_of(moments, angle) if near and angle else None
         if modulation and modulation.error <= TORUS_TEST.max_prediction_error:
@@ -128,7 +130,7 @@ def modulation_of(returns: Array, angle: float) -> Modulation | None:
     later = returns[half:]
     best = fitted_angle(fitted, angle)
     size = float(np.linalg.norm(later - later.mean(axis=0)))
-    if size == 0 or largest_phase_gap(best * numbers[:half]) > 2 * np.pi / TORUS_TEST.inverse_gap:
+    if size == 0 or largest_phase_gap(best * numbers[:half]) > 2 * np.pi / TORUS_TEST.min_returns_around:
         return None
     basis = fourier_basis(best * numbers, TORUS_TEST.harmonics)
     # Fitted on the first half, tested on the second: a fit alone would explain any motion.
@@ -149,9 +151,9 @@ def fitted_angle(returns: Array, angle: float) -> float:
 
     # The minimum for one harmonic is 2 pi/k wide, that for m harmonics m times narrower.
     tried = np.linspace(
-        angle - TORUS_TEST.angle_tolerance,
-        angle + TORUS_TEST.angle_tolerance,
-        int(TORUS_TEST.trials_per_width * TORUS_TEST.angle_tolerance * len(returns)) + 1,
+        angle - TORUS_TEST.max_angle_difference,
+        angle + TORUS_TEST.max_angle_difference,
+        int(TORUS_TEST.trials_per_width * TORUS_TEST.max_angle_difference * len(returns)) + 1,
     )
     best = min(map(float, tried), key=lambda at: residual(at, 1))
     for harmonics in range(1, TORUS_TEST.harmonics + 1):
@@ -162,7 +164,7 @@ def fitted_angle(returns: Array, angle: float) -> float:
             bounds=bounds,
             args=(harmonics,),
             method="bounded",
-            options={"xatol": TORUS_TEST.angle_share * reach},
+            options={"xatol": TORUS_TEST.angle_tolerance_share * reach},
         )
         best = float(found.x)
     return best

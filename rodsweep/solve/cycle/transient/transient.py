@@ -74,9 +74,9 @@ class Transient:
         )
         self.max_steps = steps * max(request.most_periods, TRANSIENT.min_returns)
         self.small = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
-        self.step = period / TRANSIENT.first_steps
+        self.step = period / TRANSIENT.first_steps_per_period
         """First time step of the next run, in tau2."""
-        self.past: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT.max_returns)
+        self.past: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT.max_stored_returns)
         """Times, in tau2, and bending moments of the last returns since the last jump."""
         self.clock = 0.0
         self.waited = self.steps = self.jumps = self.failures = self.next_newton = 0
@@ -189,7 +189,7 @@ class Transient:
 
     def _run_of_returns(self, z: Array, first: bool) -> Trajectory:
         """A run from the state z, (unknowns,), over TRANSIENT.returns_per_run returns, or
-        TRANSIENT.longest_wait times their expected duration. first: whether this is the first run of the
+        TRANSIENT.max_run_duration times their expected duration. first: whether this is the first run of the
         motion."""
         returns, scheme = (
             (TRANSIENT.first_returns, self.first_scheme)
@@ -197,7 +197,7 @@ class Transient:
             else (TRANSIENT.returns_per_run, self.scheme)
         )
         limit = until_returns(self.row, z, returns)
-        duration = TRANSIENT.longest_wait * returns * self.mode.period
+        duration = TRANSIENT.max_run_duration * returns * self.mode.period
         run = integrator(self.beam.mesh, scheme).run(self.beam, z, duration, self.step, limit)
         if len(run.times) > 2:
             self.step = run.times[-1] - run.times[-2]
@@ -209,7 +209,7 @@ class Transient:
         """The stable cycle near the end of a run, if the returns repeat and Newton's method converges; else
         None."""
         turns, distance = repetition([state for _, state in self.past][-1 - RETURNS.max_returns_per_period :])
-        if self.failed_starts >= TRANSIENT.max_unsolved and distance < TRANSIENT.closed_distance:
+        if self.failed_starts >= TRANSIENT.max_failed_starts and distance < TRANSIENT.max_periodic_distance:
             self.unsolved = (
                 f"periodic within {distance:.0e}, but on finer meshes no cycle is found near the motion"
             )
@@ -222,7 +222,7 @@ class Transient:
 
     def _near_enough(self) -> float:
         """Relative distance between two returns below which Newton's method starts next."""
-        distance = TRANSIENT.newton_distance / TRANSIENT.newton_divisor**self.failures
+        distance = TRANSIENT.max_newton_distance / TRANSIENT.newton_divisor**self.failures
         settles = self.trace and self.waited < self.most_periods // 2
         return min(distance, TRANSIENT.stored_path_distance) if settles else distance
 
@@ -244,4 +244,4 @@ class Transient:
         if found.stable is False:
             self.unstable = found
         # A multiplier of 1 to rounding belongs to a family of periodic orbits of any amplitude.
-        return found if found.stable and 1 - found.largest_multiplier >= TRANSIENT.neutral_distance else None
+        return found if found.stable and 1 - found.largest_multiplier >= TRANSIENT.min_unit_distance else None

@@ -28,7 +28,7 @@ class AugmentedSettings:
     tolerance: float = 1e-9
     """Relative tolerance of a cycle and its test function; the test function then has an error of about
     1e-8."""
-    function_share: float = 0.01
+    tolerance_share: float = 0.01
     """Tolerance of a cycle, in units of its distance from the curve by the test function; the larger of both
     tolerances applies."""
     min_contraction: float = 10.0
@@ -37,9 +37,9 @@ class AugmentedSettings:
     rate is safe."""
     contraction_safety: float = 3.0
     """Safety factor on a measured contraction rate that is assumed for the next cycle."""
-    slow: float = 0.3
+    max_correction_ratio: float = 0.3
     """Ratio of the sizes of successive corrections, above which a new matrix is assembled."""
-    rounding: float = 1e-8
+    rounding_correction: float = 1e-8
     """Relative size of a correction below which corrections that hardly decrease are rounding errors: the
     iteration stops."""
     max_corrections: int = 30
@@ -152,7 +152,9 @@ def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
         before = value
         value = function.value(orbit)
         change = abs(value - before)
-        if change <= SPECIAL_POINT.function_tolerance or (change > last / 2 and change <= AUGMENTED.rounding):
+        if change <= SPECIAL_POINT.function_tolerance or (
+            change > last / 2 and change <= AUGMENTED.rounding_correction
+        ):
             return
         if change > last:
             break

@@ -91,10 +91,10 @@ class NearbyCycles:
             if last and not self._family.small:
                 measured = AUGMENTED.contraction_safety * rate / distance
                 self.contraction = max(AUGMENTED.min_contraction, measured)
-            if off * min(rate, 1.0) <= max(enough, AUGMENTED.function_share * abs(value) / slope):
+            if off * min(rate, 1.0) <= max(enough, AUGMENTED.tolerance_share * abs(value) / slope):
                 return orbit, value
-            if last and rate > AUGMENTED.slow:
-                if off <= AUGMENTED.rounding:
+            if last and rate > AUGMENTED.max_correction_ratio:
+                if off <= AUGMENTED.rounding_correction:
                     return orbit, value
                 self._eliminate(orbit)
                 off = 0.0
