@@ -96,7 +96,7 @@ class ArcPoint:
         return self.orbit.form.rod.coordinate(self.scale.name)
 
     @property
-    def rises(self) -> float:
+    def parameter_rate(self) -> float:
         """Derivative of the scaled parameter coordinate by arc length; at a fold the sign changes."""
         return self.derivatives.rate
 
@@ -149,7 +149,7 @@ def branch_derivatives(found: ConvergedOrbit, scale: Scale, tangent: Array) -> B
 
     Curvature and multiplier rate are 0 in the result; the caller replaces both.
     """
-    own = Scale.of(found.orbit, scale.name, scale.least)
+    own = Scale.of(found.orbit, scale.name, scale.min_deflection_unit)
     ahead = own.moved(found.orbit, tangent)
     unit = float(np.linalg.norm(ahead))
     return BranchDerivatives(own, tangent / unit, ahead / unit, 0.0, 0.0)
@@ -210,7 +210,7 @@ def unmeasured_cycle(
     """
     cycle = with_calibrated_errors(start.calibration.at_parameter, found, accuracy)
     derivatives = branch_derivatives(found, start.scale, tangent)
-    curvature = (derivatives.rate - start.rises) / length
+    curvature = (derivatives.rate - start.parameter_rate) / length
     changed = multiplier_change(cycle.multipliers, start.cycle.multipliers) / length
     return ArcPoint(
         cycle=cycle,

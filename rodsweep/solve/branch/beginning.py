@@ -67,7 +67,7 @@ class HopfBirth:
     """Coordinate of the parameter at the Hopf point: 1/k for a stiffness k, otherwise the value itself."""
     slope: complex
     """Derivative dw/d(coordinate) of the critical eigenvalue w at the Hopf point, w in 1/tau2."""
-    normal: NormalForm
+    normal_form: NormalForm
     """Normal form on a mesh that is fine enough for the prediction of the first cycle."""
     coefficients: HopfCoefficients
     """Coefficients of the normal form from a finer mesh, with error estimates."""
@@ -111,7 +111,7 @@ class HopfBirth:
 
     def moved_by(self, amplitude: float) -> tuple[float, float]:
         """(change of the coordinate, frequency) of the cycle with a given largest tip y, in L."""
-        c = self.normal.c
+        c = self.normal_form.c
         # The growth rate of the cycle vanishes: Re slope dp + Re c a^2 = 0.
         change = -c.real * amplitude**2 / self.slope.real
         return change, self.crossing.frequency + self.slope.imag * change + c.imag * amplitude**2
@@ -130,7 +130,7 @@ def hopf_point(path: Path, crossing: Crossing) -> HopfBirth:
         name=path.name,
         coordinate=path.variable(crossing.at),
         slope=complex(slope),
-        normal=normal,
+        normal_form=normal,
         coefficients=hopf_coefficients(at, crossing, HOPF_START.normal_form_accuracy),
     )
 
@@ -194,7 +194,7 @@ def _cycle_of(
         raise Unsolvable("Newton's method left the cycle that the normal form predicts")
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
-    born = abs(deflection_of(first.orbit)) / scale.deflection
+    born = abs(deflection_of(first.orbit)) / scale.deflection_unit
     return first_measured_cycle(first, scale, border, born, accuracy)
 
 
@@ -202,9 +202,9 @@ def predicted_cycle(hopf: HopfBirth, amplitude: float) -> Orbit:
     """The normal form's cycle with a given amplitude (largest tip y, in L), on the normal form's mesh in
     space and on a coarse mesh in time; raises Unsolvable."""
     change, frequency = hopf.moved_by(amplitude)
-    form = StressForm(hopf.rod, hopf.normal.form.mesh)
+    form = StressForm(hopf.rod, hopf.normal_form.form.mesh)
     try:
         form = form.with_coordinate(hopf.name, hopf.coordinate + change)
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the branch leaves the range of possible rods: {error}") from error
-    return orbit_of_amplitude(hopf.normal, form, amplitude, frequency)
+    return orbit_of_amplitude(hopf.normal_form, form, amplitude, frequency)

@@ -170,7 +170,7 @@ class BranchCalibration:
                 (self.parameter_errors, other.parameter_errors),
             )
         ]
-        known = replace(self.at_parameter, space=mean[0], time=mean[1], growth=np.ones(2))
+        known = replace(self.at_parameter, space=mean[0], time=mean[1], error_growth=np.ones(2))
         return BranchCalibration(known, mean[2], sensitivity)
 
 

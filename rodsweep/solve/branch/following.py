@@ -219,7 +219,7 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
     # Near a Hopf point parameter and period are quadratic in the deflection.
     tangent = start.tangent
     # From d to 0 the parabola p = p0 + k d^2 changes by half as much as its tangent at d.
-    share = start.deflection / (2 * start.ahead[0] * start.scale.deflection)
+    share = start.deflection / (2 * start.ahead[0] * start.scale.deflection_unit)
     at = start.at - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
     rounding = max(BRANCH_END.parameter_tolerance, limits.accuracy)

@@ -17,7 +17,7 @@ ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
 def range_end_condition(start: ArcPoint, limit: float) -> BorderCondition:
     """The condition that the parameter coordinate of a cycle equals `limit`, in the scale of the cycle
     `start`."""
-    return BorderCondition(start.scale, ALONG_PARAMETER, limit / start.scale.coordinate)
+    return BorderCondition(start.scale, ALONG_PARAMETER, limit / start.scale.coordinate_unit)
 
 
 def cycle_at_range_end(

@@ -35,8 +35,8 @@ class BranchMeshSettings:
     smaller derivative at the two measured cycles. Near a fold the derivative is smaller, and the measured
     errors are no bound."""
     max_tail_growth: float = 2.0
-    """Largest growth of the error estimate, since the measured cycle with the smaller growth, at which errors
-    are interpolated."""
+    """Growth of the errors since both measured cycles, estimated by the coefficient tails, above which errors
+    are measured instead of interpolated."""
     max_unmeasured: int = 3
     """Maximum number of steps between two cycles with measured errors."""
     remeasure_growth: float = 4.0
@@ -76,7 +76,7 @@ def first_measured_cycle(
 
 def measurement_due(point: ArcPoint) -> bool:
     """Whether the errors of a cycle must be measured, because the last measured cycle is too far away."""
-    growth = float(point.calibration.at_parameter.on_branch(point.orbit).growth.max())
+    growth = float(point.calibration.at_parameter.on_branch(point.orbit).error_growth.max())
     return point.unmeasured >= BRANCH_MESH.max_unmeasured or growth > BRANCH_MESH.remeasure_growth
 
 
@@ -188,8 +188,10 @@ def _with_errors_between(
     `last` and `end` are then no bound.
     """
     ends = (last, end)
-    slow = abs(point.rises) < BRANCH_MESH.min_rate_share * min(abs(one.rises) for one in ends)
-    grown = min(one.calibration.at_parameter.on_branch(point.orbit).growth.max() for one in ends)
+    slow = abs(point.parameter_rate) < BRANCH_MESH.min_rate_share * min(
+        abs(one.parameter_rate) for one in ends
+    )
+    grown = min(one.calibration.at_parameter.on_branch(point.orbit).error_growth.max() for one in ends)
     if slow or float(grown) > BRANCH_MESH.max_tail_growth:
         return with_measured_errors(point, accuracy)
     known = last.calibration.towards(

@@ -38,8 +38,8 @@ class BranchEndSettings:
     range."""
 
     max_last_amplitude: float = 0.06
-    """Largest amplitude (largest tip y, in L) of a cycle from which the Hopf point at the end of the branch
-    is extrapolated; larger cycles get shorter steps."""
+    """Largest tip y, in L, of a cycle from which the Hopf point at the end of the branch is extrapolated;
+    larger cycles get shorter steps."""
     max_last_asymmetry: float = 0.2
     """Largest asymmetry, in units of the largest bending moment, of a cycle from which the symmetric cycle at
     the end of the branch is extrapolated; more asymmetric cycles get shorter steps."""
@@ -62,15 +62,15 @@ class BranchEndSettings:
     breaking the accuracy applies if larger."""
     range_end_tolerance: float = 1e-6
     """Tolerance of the predicted arc length to the end of the parameter range, in units of the step; Newton's
-    method then solves for the cycle exactly at the end of the range."""
+    method then solves exactly at this end."""
     range_end_error: float = 1e-15
     """Relative error of the parameter at an end of the range."""
     max_peak_shift: float = 0.05
     """Time between the largest tip y of two successive cycles, in periods, beyond which two different maxima
     of y(t) are the largest."""
     max_step_with_corner: float = 0.02
-    """Longest last step along a branch, in arc length, that may contain a corner of the largest tip y; a
-    longer step is halved."""
+    """Longest last step, in arc length, that may contain a corner of the largest tip y; a longer step is
+    halved."""
 
 
 BRANCH_END = BranchEndSettings()
@@ -99,7 +99,7 @@ class SymmetryBreaking:
 
 
 def symmetry_breakings_in(branches: Sequence[Sequence[SpecialPoint]]) -> list[SymmetryBreaking]:
-    """Symmetry breakings with a known cycle, from the lists of special points of all branches."""
+    """Symmetry breakings with a known cycle, from the special points of each branch."""
     return [
         SymmetryBreaking(number, place, point)
         for number, special in enumerate(branches, 1)
@@ -136,10 +136,7 @@ def first_asymmetric_cycle(
     breaking: SymmetryBreaking, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> ArcPoint:
     """The first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`; raises
-    Unsolvable.
-
-    Of two mirror images, the cycle with the larger tip y is chosen. workspace: memory of Newton's matrices.
-    """
+    Unsolvable. Of two mirror images, the cycle with the larger tip y is chosen."""
     if breaking.point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
     whole = extended_to_whole_period(breaking.point.orbit)
@@ -178,7 +175,7 @@ def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: f
     aim = max(accuracy, REFINEMENT.first_accuracy)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
-    return first_measured_cycle(first, scale, border, abs(change) / scale.deflection, accuracy)
+    return first_measured_cycle(first, scale, border, abs(change) / scale.deflection_unit, accuracy)
 
 
 def reaches_symmetric_cycle(
@@ -195,7 +192,11 @@ def reaches_symmetric_cycle(
     # The asymmetry changes sign where the branch passes a symmetric cycle, or falls steeply just before.
     if float(asymmetry(other) @ reference) < BRANCH_END.lost_asymmetry_ratio * float(reference @ reference):
         return True
-    return start.rises * end.rises < 0 and _nearly_symmetric(start) and _nearest(start, known, accuracy) >= 0
+    return (
+        start.parameter_rate * end.parameter_rate < 0
+        and _nearly_symmetric(start)
+        and _nearest(start, known, accuracy) >= 0
+    )
 
 
 def _relative_asymmetry(start: ArcPoint) -> float:
@@ -212,10 +213,8 @@ def symmetry_breaking_between(
     start: ArcPoint, end: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float
 ) -> int | None:
     """Index of the symmetry breaking in `known` between two cycles of an asymmetric branch; -1 if `known`
-    does not contain it.
-
-    None if shorter steps must decide. Raises Unsolvable if no shorter step is allowed.
-    """
+    does not contain it, None if shorter steps must decide. Raises Unsolvable if no shorter step is
+    allowed."""
     which = _nearest(start, known, accuracy) if _nearly_symmetric(start) else -1
     if which >= 0 or _relative_asymmetry(start) <= BRANCH_END.min_asymmetry:
         return which

@@ -58,12 +58,12 @@ class _SettledMotion:
 
 
 class _NoCycle(Exception):
-    """The motion does not end on a cycle. status, why: outcome of the motion, and message."""
+    """The motion does not end on a cycle. status, message: outcome of the motion."""
 
-    def __init__(self, status: MarchedStatus, why: str) -> None:
-        super().__init__(why)
+    def __init__(self, status: MarchedStatus, message: str) -> None:
+        super().__init__(message)
         self.status = status
-        self.why = why
+        self.message = message
 
 
 def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
@@ -109,7 +109,7 @@ class _MarchedMotion:
             if in_limit:
                 errors = self._limit_errors(settled, path, errors)
         except _NoCycle as end:
-            return replace(straight, status=end.status, message=end.why, periods=self.waited)
+            return replace(straight, status=end.status, message=end.message, periods=self.waited)
         return self._measured(straight, path, errors)
 
     def _beam(self) -> Beam:
@@ -172,7 +172,7 @@ class _MarchedMotion:
         run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
         if end := early_end(self.beam, run, self.waited):
             status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed
-            raise _NoCycle(status, end.why)
+            raise _NoCycle(status, end.message)
         return run
 
     def _crossings(self, run: Trajectory) -> tuple[Array, Array]:

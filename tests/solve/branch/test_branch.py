@@ -18,7 +18,7 @@ from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.branches import BranchRequest, BranchStatus, solve_branches
 from rodsweep.solve.branch.following import BranchLimits, follow_branch
 from rodsweep.solve.branch.special.augmented.functions import pair_nearest_unit_circle
-from rodsweep.solve.branch.special.curves import CurveLimits
+from rodsweep.solve.branch.special.curves import SpecialCurveProblem
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
@@ -168,7 +168,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
         assert abs(cycle.multipliers[0].imag) > 0.5
         assert 1e-4 < side * (cycle.multiplier - 1) < 2e-3
         assert cycle.measures.tip_y_max == pytest.approx(torus.tip_y_max, rel=2e-3)
-    points, end = CurveLimits(
+    points, end = SpecialCurveProblem(
         SpecialKind.torus, PlaneAxis("F", 150.0, 220.0), PlaneAxis("k2", 97.0, 103.0), NewtonWorkspace(), -1.0
     ).followed(torus, 100.0)
     assert end is CurveEnd.edge

@@ -54,7 +54,7 @@ class BorderCondition:
         step = matrix.step(self.border, self.residual(orbit))
         for _ in range(ORBIT_NEWTON.max_iterations):
             report()
-            change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
+            change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
             if not change <= ORBIT_NEWTON.longest_step:
                 raise Unsolvable("no cycle of the branch is near the start of Newton's method")
             orbit = moved_orbit(orbit, self.scale.name, step)

@@ -171,9 +171,9 @@ class BorderedMatrix:
         """
         n = len(self.orbit.start)
         matrix = self._matrix.copy()
-        matrix[-1, :n] = border[0] / self.scale.deflection * deflection_row(self.orbit)
+        matrix[-1, :n] = border[0] / self.scale.deflection_unit * deflection_row(self.orbit)
         # The border acts on log T, whose derivative is 1/T.
-        matrix[-1, -2:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate
+        matrix[-1, -2:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate_unit
         return self._back_substitute(np.linalg.solve(matrix, right), sides, share)
 
     def _back_substitute(self, found: Array, sides: Array, share: float) -> Array:

@@ -28,13 +28,13 @@ from ...orbit.orbit import Orbit
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """Units of arc length on a branch at one cycle. name: the continuation parameter. deflection: unit of the
-    deflection, at least `least`. coordinate: unit of the parameter coordinate."""
+    """Units of arc length on a branch at one cycle: of the deflection, not below `min_deflection_unit`, and
+    of the coordinate of the continuation parameter `name`."""
 
     name: str
-    deflection: float
-    coordinate: float
-    least: float
+    deflection_unit: float
+    coordinate_unit: float
+    min_deflection_unit: float
 
     @classmethod
     def of(cls, orbit: Orbit, name: str, least: float) -> "Scale":
@@ -47,15 +47,15 @@ class Scale:
     def place(self, orbit: Orbit) -> Array:
         """(deflection at t = 0, logarithm of the period, parameter coordinate) of an orbit in units of the
         scale, (3,)."""
-        deflection = deflection_of(orbit) / self.deflection
-        at = orbit.form.rod.coordinate(self.name) / self.coordinate
+        deflection = deflection_of(orbit) / self.deflection_unit
+        at = orbit.form.rod.coordinate(self.name) / self.coordinate_unit
         return np.array([deflection, np.log(orbit.period), at])
 
     def moved(self, orbit: Orbit, change: Array) -> Array:
         """Derivative of `place` at an orbit along a change, (N + 1,), of orbit values and parameter
         coordinate; shape (3,)."""
-        deflection = float(deflection_row(orbit) @ change[: orbit.form.unknowns]) / self.deflection
-        return np.array([deflection, change[-2] / orbit.period, change[-1] / self.coordinate])
+        deflection = float(deflection_row(orbit) @ change[: orbit.form.unknowns]) / self.deflection_unit
+        return np.array([deflection, change[-2] / orbit.period, change[-1] / self.coordinate_unit])
 
 
 def deflection_of(orbit: Orbit) -> float:

@@ -13,7 +13,7 @@ from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.boundaries import Boundaries, BoundarySearch, boundary_search
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import FAILURES, Unsolvable
-from .curves import CYCLE_CURVES, CurveLimits
+from .curves import CYCLE_CURVES, SpecialCurveProblem
 from .cycle_curves import CURVE_IDENTITY, Arrays, CurveEnd, CurvePoint, CycleCurve, HalfCurve, TracedHalf
 from .on_curve import SolvedPoint
 from .point import SpecialKind, SpecialPoint
@@ -81,7 +81,7 @@ class SpecialBoundaries:
         # A unit is half a curve: twice the index of its special point, plus one for the half behind it.
         place, behind = divmod(unit, 2)
         one = self.special[place]
-        limits = CurveLimits(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
+        limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
         return _traced(limits, one, located(one.number), self.special).arrays()
 
     def row_of(self, unit: int) -> int:
@@ -195,7 +195,7 @@ class _CurvesOfKind:
 
 
 def _traced(
-    limits: CurveLimits,
+    limits: SpecialCurveProblem,
     one: RowSpecialPoint,
     located: Iterable[SpecialPoint],
     special: Sequence[RowSpecialPoint],
@@ -221,7 +221,7 @@ def _traced(
     return TracedHalf(HalfCurve(tuple(map(CurvePoint.of, points)), end), near)
 
 
-def _distance(limits: CurveLimits, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
+def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
     """Distance of the special point `one` from a curve along its row, in row lengths; inf if not near."""
     if limits.kind != one.kind:
         return math.inf
@@ -240,7 +240,7 @@ def _distance(limits: CurveLimits, points: Sequence[SolvedPoint], one: RowSpecia
     return best
 
 
-def _near(limits: CurveLimits, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
+def _near(limits: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
     """Whether the special point `one` may lie on the curve between its successive points `a` and `b`."""
     x = limits.line.scaled(one.at)
     ends = sorted(limits.line.scaled(p.at) for p in (a, b))

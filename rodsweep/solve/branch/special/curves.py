@@ -82,7 +82,7 @@ END_BY_MARGIN = (*EDGE_COUNT * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left
 
 
 @dataclass(frozen=True, slots=True)
-class CurveLimits:
+class SpecialCurveProblem:
     """Continuation problem for curves of one kind of special points in a parameter plane. line: axis of the
     parameter along a row. rows: axis of the rows' parameter. side: 1 or -1, first direction along it."""
 

@@ -21,8 +21,8 @@ class CurveIdentitySettings:
     identical."""
 
     max_distance: float = 1e-6
-    """Largest distance of a special point of a row from a curve through this point, in units of the length of
-    a row."""
+    """Largest distance from a curve at which a special point of a row lies on the curve, in units of the
+    length of a row."""
     max_chord_distance: float = 0.1
     """Distance of a special point from a chord between two points of a curve, beyond which the special point
     cannot lie on the arc of this chord; in units of the length of a row."""

@@ -26,7 +26,7 @@ from ..bordered.condition import BorderCondition, moved_orbit
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import Scale
 from .augmented.functions import AUGMENTED, FoldFunction, TorusFunction
-from .augmented.nearby_cycles import NearbyCycles
+from .augmented.nearby_cycles import NearbyCycleSolver
 from .on_curve import ACROSS_CURVE, CurveErrors, NormalDerivatives, SolvedPoint, orbit_with_parameters
 from .point import SpecialKind
 
@@ -163,7 +163,7 @@ class _SecantAcross:
         self.trusted = ACROSS_CURVE.max_linear_step if same else ACROSS_CURVE.max_carried_step
         """Longest last secant step with derivatives that were not computed from two cycles of this search."""
         contraction = rates.contraction if rates and not family.small else inf
-        self.near = NearbyCycles(family, self.orbit, contraction)
+        self.near = NearbyCycleSolver(family, self.orbit, contraction)
 
     def next(self) -> SolvedPoint | None:
         """Makes one secant step and returns the point of the curve, or None if more steps are needed; raises
@@ -234,7 +234,7 @@ class _SecantAcross:
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
         place = self.place + (self.at + step) * float(self.direction[1])
         orbit = family.placed(self._moved(step, rates), place)
-        scale = Scale.of(orbit, family.scale.name, family.scale.least)
+        scale = Scale.of(orbit, family.scale.name, family.scale.min_deflection_unit)
         ahead = scale.moved(orbit, tangent)
         return SolvedPoint(
             orbit=orbit,

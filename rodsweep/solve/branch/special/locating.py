@@ -38,7 +38,7 @@ def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrb
     """The test function that is zero at special points of a kind, at the cycle `found`, which `segment`
     solved last; raises Unsolvable."""
     if kind == SpecialKind.fold:
-        return segment.rises()
+        return segment.parameter_rate()
     if kind == SpecialKind.left_the_model:
         return least_stretch(CyclePath(found.orbit))
     if kind == SpecialKind.torus:
@@ -71,7 +71,7 @@ def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> f
     if kind == SpecialKind.fold:
         # In lengths along the segment's own direction, in which the zero is sought.
         rate = float(scale.moved(point.orbit, point.tangent) @ ahead)
-        return float(point.tangent[-1]) / scale.coordinate / rate
+        return float(point.tangent[-1]) / scale.coordinate_unit / rate
     if kind == SpecialKind.left_the_model:
         return least_stretch(point.cycle.path)
     return multiplier_test_function(kind, point.partial_multipliers)

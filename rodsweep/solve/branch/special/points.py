@@ -29,7 +29,7 @@ def special_kinds_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialK
     """(kinds of the special points between two cycles, whether these kinds explain the change of the number
     of multipliers outside the unit circle)."""
     found = []
-    if start.rises * end.rises < 0:
+    if start.parameter_rate * end.parameter_rate < 0:
         found.append(SpecialKind.fold)
     # Two multipliers may pass -1 together or become a pair near -1; an odd difference needs a crossing.
     if (_beyond_minus_one(start) - _beyond_minus_one(end)) % 2:

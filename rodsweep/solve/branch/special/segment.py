@@ -61,6 +61,6 @@ class BranchSegment:
             raise ValueError("no cycle was solved on this segment and mesh yet")
         return self._known
 
-    def rises(self) -> float:
+    def parameter_rate(self) -> float:
         """Derivative of the scaled parameter coordinate by arc length, at the last cycle that `at` solved."""
-        return float(self.known[2][-1]) / self.start.scale.coordinate
+        return float(self.known[2][-1]) / self.start.scale.coordinate_unit

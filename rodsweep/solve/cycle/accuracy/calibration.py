@@ -49,19 +49,19 @@ class Calibration:
     reach: float
     """Sum of the relative changes of the parameter since the measurement; inf if the errors no longer
     apply."""
-    growth: Array = field(default_factory=lambda: np.ones(2))
+    error_growth: Array = field(default_factory=lambda: np.ones(2))
     """Estimated growth factors of the errors in space and in time since the measurement, (2,)."""
 
     def arrays(self) -> dict[str, Array]:
         """Named arrays for a checkpoint: errors and rates (5,), tails (3,), reach and mesh, without
-        `growth`."""
+        `error_growth`."""
         errors = {name: getattr(self, name) for name in ("space", "time", "fall", "power", "tails")}
         numbers = {"reach": np.array(self.reach), "calibrated_mesh": self.mesh.numbers}
         return errors | numbers
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, Array]) -> "Calibration":
-        """The calibration from its named arrays, as `Calibration.arrays` makes them."""
+        """The calibration from the named arrays of `Calibration.arrays`."""
         mesh = OrbitMesh.from_numbers(arrays["calibrated_mesh"])
         errors = {name: arrays[name] for name in ("space", "time", "fall", "power", "tails")}
         return cls(mesh=mesh, reach=float(arrays["reach"]), **errors)
@@ -72,13 +72,15 @@ class Calibration:
         tails = _tails(orbit)
         # The errors are relative to the size of the orbit: for a shrinking cycle they are measured again.
         dies = tails[-1] < CALIBRATION.min_size_ratio * self.tails[-1]
-        return replace(self, growth=_growth(self.tails, tails), reach=inf if dies else self.reach + change)
+        return replace(
+            self, error_growth=_growth(self.tails, tails), reach=inf if dies else self.reach + change
+        )
 
     def on_branch(self, orbit: Orbit) -> "Calibration":
-        """The calibration with its errors scaled to a later orbit of a branch, which is followed by arc
-        length: no error grows because the orbits shrink."""
+        """The calibration with its errors scaled to a later orbit of a branch. On a branch, which is followed
+        by arc length, errors do not grow as orbits shrink."""
         growth = _growth(self.tails, _tails(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails * (0.0, 0.0, 1.0))
-        return replace(self, growth=growth)
+        return replace(self, error_growth=growth)
 
     @property
     def outdated(self) -> "Calibration":
@@ -87,14 +89,14 @@ class Calibration:
 
     @property
     def holds(self) -> bool:
-        """Whether the measured errors, scaled by `growth`, still apply to the later orbit."""
+        """Whether the scaled errors still apply to the later orbit."""
         return (
             self.reach <= CALIBRATION.max_parameter_change
-            and float(self.growth.max()) <= CALIBRATION.max_error_growth
+            and float(self.error_growth.max()) <= CALIBRATION.max_error_growth
         )
 
     def lasts(self, change: float) -> bool:
-        """Whether the measured errors may still apply after a further relative change of the parameter."""
+        """Whether the errors may still apply after a further relative change of the parameter."""
         return self.reach + change <= CALIBRATION.max_parameter_change
 
     def least(self, orbit: Orbit) -> tuple[Array, Array]:
@@ -113,9 +115,9 @@ class Calibration:
         growth, because an error was once seen to grow 2.7 times as much as its tail. For period and largest
         y, whose errors determine the mesh, the larger growth would cost a tenth of the time of a sweep.
         """
-        in_space, in_time = self.growth
+        in_space, in_time = self.error_growth
         stated = _stated(self.space * in_space, self.time * in_time, accuracy)
-        larger = float(self.growth.max())
+        larger = float(self.error_growth.max())
         # Extrema and multipliers mix the errors in space and in time, so the larger growth applies.
         stated[2:] = _stated(self.space * larger, self.time * larger, accuracy)[2:]
         return CycleErrors(*stated.tolist())
@@ -170,7 +172,7 @@ def _stated(space: Array, time: Array, accuracy: float) -> Array:
 
 
 def _tails(orbit: Orbit) -> Array:
-    """Coefficient tails of an orbit in space and in time, not below `min_tail`, and its size, (3,)."""
+    """Tails of an orbit in space and in time, not below `min_tail`, and its size, (3,)."""
     return np.append(np.maximum(lasting_tails(orbit), CALIBRATION.min_tail), orbit.size)
 
 
@@ -189,8 +191,8 @@ def _growth(before: Array, after: Array) -> Array:
 
 
 def _change(before: Array, after: Array) -> Array:
-    """Ratios of the squared absolute tails in space and in time of two orbits, (2,). before, after: relative
-    tails and size, (3,) each."""
+    """Ratios of the squared absolute tails of two orbits, in space and in time, (2,). before, after: relative
+    tails and size, (3,)."""
     change: Array = ((after * after[2] / (before * before[2])) ** 2)[:2]
     return change
 
@@ -220,11 +222,9 @@ def calibration_of(
 
 
 def _fall(before: Array, after: Array, orders: int) -> Array:
-    """Decrease of the natural logarithm of the errors in space per order of the elements, (5,).
-
-    before, after: errors on two meshes, (5,) each. orders: increase of the order from the first mesh to the
-    second.
-    """
+    """Decrease of the natural logarithm of the errors in space per order of the elements, (5,). before,
+    after: errors on two meshes, (5,) each. orders: increase of the order from the first mesh to the
+    second."""
     fall: Array = np.clip(
         _logarithm(before, after) / orders, CALIBRATION.min_space_decay, CALIBRATION.max_space_decay
     )
@@ -242,8 +242,7 @@ def _power(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) ->
 
 
 def _logarithm(before: Array, after: Array) -> Array:
-    """Natural logarithm of the ratios before/after of two arrays of errors of any shape; an error may be
-    0."""
+    """Logarithm of the ratios before/after of two arrays of errors of any shape; an error may be 0."""
     least = EXPONENTS.least_divisor
     quotient: Array = np.log(np.maximum(before, least) / np.maximum(after, least))
     return quotient

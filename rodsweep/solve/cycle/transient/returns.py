@@ -61,11 +61,10 @@ def until_returns(row: Array, z: Array, wanted: int) -> RunLimit:
 
 
 class EarlyEnd(NamedTuple):
-    """Failure of a run before its limit. left_the_model: whether the rod left the range of the model. why:
-    message."""
+    """Failure of a run before its limit. left_the_model: whether the rod left the range of the model."""
 
     left_the_model: bool
-    why: str
+    message: str
 
 
 def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:

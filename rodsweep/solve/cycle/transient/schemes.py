@@ -56,14 +56,14 @@ SCHEMES = SchemeSettings()
 
 
 class TransientSchemes(NamedTuple):
-    """Time schemes of a motion. first: of the first run. others: of all later runs. noise: growth per period
-    that integration errors may add. steps: maximum number of time steps, divided by the allowed number of
-    returns of the tip."""
+    """Time schemes of the first run and of all later runs of a motion. growth_noise: growth per period that
+    integration errors may add. max_steps_per_return: maximum number of time steps, divided by the allowed
+    number of returns."""
 
-    first: TimeScheme
-    others: TimeScheme
-    noise: float
-    steps: int
+    first_run: TimeScheme
+    later_runs: TimeScheme
+    growth_noise: float
+    max_steps_per_return: int
 
 
 def schemes_for_growth(growth: float, is_stored: bool) -> TransientSchemes:

@@ -59,10 +59,10 @@ TORUS_TEST = TorusTestSettings()
 @dataclass(frozen=True, slots=True)
 class Modulation:
     """Second frequency of a quasiperiodic motion. angle: advance on the closed curve per return, in rad.
-    error: relative rms error of the predicted returns."""
+    prediction_error: relative rms error of the predicted returns."""
 
     angle: float
-    error: float
+    prediction_error: float
 
 
 def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> TransientOutcome:
@@ -85,7 +85,7 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
         )
         angle = unstable_pair_angle(cycle)
         modulation = modulation_of(moments, angle) if near and angle else None
-        if modulation and modulation.error <= TORUS_TEST.max_prediction_error:
+        if modulation and modulation.prediction_error <= TORUS_TEST.max_prediction_error:
             message = (
                 f"modulated with {modulation.angle / (2 * np.pi):.3f} of the return frequency; "
                 f"the cycle inside the torus is unstable, multiplier {cycle.largest_multiplier:.3g}"

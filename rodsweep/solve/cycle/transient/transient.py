@@ -100,7 +100,7 @@ class Transient:
             run = self._run_of_returns(z, first)
             if end := early_end(self.beam, run, self.waited):
                 status = CycleStatus.left_the_model if end.left_the_model else CycleStatus.failed
-                return self._ended(status, end.why)
+                return self._ended(status, end.message)
             z = run.states[-1]
             times, states = section_crossings(self.beam, run)
             self._remember(run, times, states)

@@ -71,9 +71,9 @@ class FoldFunction:
 
     def value(self, orbit: Orbit) -> float:
         """The test function at an orbit, from the last corrected tangent."""
-        rises = float(self.vectors[-1] / self.matrix.scale.coordinate)
+        rises = float(self.vectors[-1] / self.matrix.scale.coordinate_unit)
         # Beside a Hopf point the rate vanishes with the amplitude; divided by it the function stays regular.
-        return rises * self.matrix.scale.deflection / deflection_of(orbit) if self.small else rises
+        return rises * self.matrix.scale.deflection_unit / deflection_of(orbit) if self.small else rises
 
     def start_from(self, tangent: Array) -> None:
         """Sets the tangent, (N + 1,), from which the next correction starts."""

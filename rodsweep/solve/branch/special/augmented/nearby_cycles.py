@@ -19,8 +19,8 @@ from ...bordered.scale import Scale
 from .functions import AUGMENTED, FoldFunction, TorusFunction
 
 
-class FamilyOfCycles(Protocol):
-    """Interface of `NearbyCycles` to a two-parameter family of cycles near a curve of special points.
+class CycleFamilyInterface(Protocol):
+    """Interface of `NearbyCycleSolver` to a two-parameter family of cycles near a curve of special points.
 
     border: direction of the branch in the components of `Scale.place`, (3,). small: whether the cycles are so
     small that the fold function is divided by the deflection. workspace: memory of Newton's matrices.
@@ -40,11 +40,11 @@ class FamilyOfCycles(Protocol):
         matrix."""
 
 
-class NearbyCycles:
+class NearbyCycleSolver:
     """Solver for cycles of a family, with their test function, near a cycle with a factorised Newton
     matrix."""
 
-    def __init__(self, family: FamilyOfCycles, start: Orbit, contraction: float) -> None:
+    def __init__(self, family: CycleFamilyInterface, start: Orbit, contraction: float) -> None:
         """start: orbit at which the first matrix is assembled. contraction: contraction rate of earlier
         corrections in the family, inf if unknown; it is updated here unless the cycles are small."""
         self.scale = family.scale
@@ -105,7 +105,7 @@ class NearbyCycles:
         """(orbit after one correction with the present matrix, relative change of the orbit); raises
         Unsolvable."""
         step = self.matrix.correction(orbit, self.border, condition.residual(orbit))
-        change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
+        change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
         if not change <= ORBIT_NEWTON.longest_step:
             raise Unsolvable("no cycle of the branch is near the start of the corrections")
         self.distance += change
