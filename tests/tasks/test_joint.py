@@ -14,7 +14,7 @@ from surveyed import survey_only
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.results.run.checkpoints import UnitResults
 from rodsweep.solve.branch.special.boundaries import RowSpecialPoint, SpecialBoundaries
-from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalf
+from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalfCurve
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.sweep.handout import NO_WORK_LEFT, Pool, RankReport
 
@@ -187,7 +187,7 @@ def half(units, unit):
     near = {i: 0.0 for i, other in enumerate(units.special) if other.at == one.at}
     low, high = sorted((one.row, last))
     near = {i: d for i, d in near.items() if low <= units.special[i].row <= high}
-    return TracedHalf(HalfCurve(points, CurveEnd.edge), near).arrays()
+    return TracedHalfCurve(HalfCurve(points, CurveEnd.edge), near).arrays()
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 3, 8])

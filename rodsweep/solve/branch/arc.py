@@ -78,7 +78,7 @@ class ArcPoint:
 
     @property
     def ahead(self) -> Array:
-        """The tangent in the components of `Scale.place`, (3,), a unit vector."""
+        """The tangent in components (deflection, log period, parameter), (3,), a unit vector."""
         return self.derivatives.ahead
 
     @property
@@ -132,7 +132,7 @@ class ArcPoint:
         coordinate = last.form.rod.coordinate(name)
         # Both tangents on one mesh: the cubic combines their values node by node.
         slope = np.append(carried_change(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])
-        step = float(self.ahead @ (self.scale.place(self.orbit) - self.scale.place(last)))
+        step = float(self.ahead @ (self.scale.components(self.orbit) - self.scale.components(last)))
         rate = float(self.ahead @ self.scale.moved(last, slope))
         # Without progress along the tangent the two cycles do not define a cubic: the tangent alone predicts.
         if not (step > 0 and rate > 0):
@@ -156,8 +156,8 @@ def branch_derivatives(found: ConvergedOrbit, scale: Scale, tangent: Array) -> B
 
 
 def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix) -> Array:
-    """Tangent of the branch at an orbit, (N + 1,), from its bordered matrix. side: direction in the
-    components of `Scale.place`, (3,), with which the tangent makes an acute angle."""
+    """Tangent of the branch at an orbit, (N + 1,), from its bordered matrix. side: direction in components
+    (deflection, log period, parameter), (3,), with which the tangent makes an acute angle."""
     tangent = matrix.direction(side)
     # A null vector has no sign; the branch must not turn back.
     return tangent if scale.moved(orbit, tangent) @ side > 0 else -tangent
@@ -197,7 +197,7 @@ def _stepped(start: ArcPoint, accuracy: float, length: float) -> StepResult[ArcP
 
 def arc_length_between(start: ArcPoint, end: ArcPoint) -> float:
     """Arc length from the cycle `start` to the cycle `end`, projected on the tangent at `start`."""
-    return float(start.ahead @ (start.scale.place(end.orbit) - start.scale.place(start.orbit)))
+    return float(start.ahead @ (start.scale.components(end.orbit) - start.scale.components(start.orbit)))
 
 
 def unmeasured_cycle(

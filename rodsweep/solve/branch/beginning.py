@@ -53,7 +53,7 @@ BEGINNING = BeginningSettings()
 
 
 ALONG_DEFLECTION = np.array([1.0, 0.0, 0.0])
-"""Unit vector along the deflection, (3,), in the components of `Scale.place`."""
+"""Unit vector along the deflection, (3,), in components (deflection, log period, parameter)."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

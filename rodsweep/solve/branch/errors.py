@@ -66,7 +66,7 @@ class BranchDerivatives:
     """Tangent of the branch with unit arc length, (N + 1,): derivatives of orbit values and parameter
     coordinate."""
     ahead: Array
-    """The tangent in the components of `Scale.place`, (3,), a unit vector."""
+    """The tangent in components (deflection, log period, parameter), (3,), a unit vector."""
     curvature: float
     """Second derivative of the scaled parameter coordinate by arc length."""
     multiplier_rate: float
@@ -218,7 +218,7 @@ def _difference(
     """
     orbit = rough.orbit
     scale = derivatives.scale
-    deflection, _, off = scale.place(orbit) - scale.place(fine.orbit)
+    deflection, _, off = scale.components(orbit) - scale.components(fine.orbit)
     length = derivatives.slide(off)
     target = mesh_of(fine.orbit)
     along = np.append(carried_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1])

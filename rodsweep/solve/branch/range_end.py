@@ -11,7 +11,7 @@ from .special.segment import BranchSegment
 from .symmetry import BRANCH_END
 
 ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
-"""Unit vector along the parameter, (3,), in the components of `Scale.place`."""
+"""Unit vector along the parameter, (3,), in components (deflection, log period, parameter)."""
 
 
 def range_end_condition(start: ArcPoint, limit: float) -> BorderCondition:

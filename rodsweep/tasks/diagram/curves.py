@@ -79,19 +79,19 @@ class DiagramCurves:
         return SpecialBoundaries(*plane.axes, special)
 
     def solve(self, units: "SpecialBoundaries", unit: int) -> dict[str, np.ndarray]:
-        """Result of a unit, arrays with the shapes of `TracedHalf`."""
+        """Result of a unit, arrays with the shapes of `TracedHalfCurve`."""
         return units.solve(unit, self._special_points, self.workspace)
 
     def nothing(self) -> dict[str, np.ndarray]:
         """Result of a unit without a curve: arrays of shape (0, ...)."""
-        from ...solve.branch.special.cycle_curves import TracedHalf
+        from ...solve.branch.special.cycle_curves import TracedHalfCurve
 
-        return TracedHalf(None).arrays()
+        return TracedHalfCurve(None).arrays()
 
     def variables(
         self, view: View, units: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
     ) -> list[Filled]:
-        """All curves as variables of the file. results: of all wanted units, shapes as in `TracedHalf`."""
+        """All curves as variables of the file. results: of all units, shapes as in `TracedHalfCurve`."""
         plane = self.plane
         if plane is None:
             return []

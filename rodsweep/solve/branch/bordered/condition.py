@@ -21,8 +21,8 @@ from .scale import Scale
 
 @dataclass(frozen=True, eq=False)
 class BorderCondition:
-    """Equation that closes the bordered system of an orbit: `border` . `Scale.place`(orbit) = `value`, with
-    `border` (3,)."""
+    """Equation that closes the bordered system of an orbit: `border` . `scale.components(orbit)` = `value`;
+    border: (3,)."""
 
     scale: Scale
     border: Array
@@ -32,12 +32,11 @@ class BorderCondition:
     def at(cls, scale: Scale, border: Array, orbit: Orbit, length: float = 0.0) -> "BorderCondition":
         """The condition that an orbit lies farther along `border`, (3,), than the given orbit, by an arc
         length `length`."""
-        return cls(scale, border, float(border @ scale.place(orbit)) + length)
+        return cls(scale, border, float(border @ scale.components(orbit)) + length)
 
     def residual(self, orbit: Orbit) -> float:
-        """Residual of the condition at an orbit: prescribed value minus the value of `border` .
-        `Scale.place`(orbit)."""
-        return self.value - float(self.border @ self.scale.place(orbit))
+        """Residual of the condition at an orbit: `value` minus `border` . `scale.components(orbit)`."""
+        return self.value - float(self.border @ self.scale.components(orbit))
 
     def solved(
         self, orbit: Orbit, tolerance: float, workspace: NewtonWorkspace, distance: float = np.inf

@@ -68,8 +68,8 @@ class BorderedMatrix:
         self._right = self._jump(orbit, self._columns[:, :, 1:2], ends[1:2])
 
     def step(self, border: Array, length: float) -> Array:
-        """Newton's step at the orbit, (N + 1,), with the condition that `border` . `Scale.place` grows by
-        `length`; border: (3,)."""
+        """Newton's step at the orbit, (N + 1,), with the condition that the component along `border`, (3,),
+        in `Scale` grows by `length`."""
         return self.solved(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
 
     def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
@@ -163,8 +163,8 @@ class BorderedMatrix:
         return np.append(right, -phase(orbit.start, p.rod, p.matrices))
 
     def solved(self, border: Array, right: Array, sides: Array, share: float) -> Array:
-        """Solution of the bordered linear system, (N + 1,). border: last row, in the components of
-        `Scale.place`, (3,).
+        """Solution of the bordered linear system, (N + 1,). border: last row, in components (deflection, log
+        period, parameter), (3,).
 
         right: right-hand sides of the closing conditions, of the phase condition and of the border,
         (m n + 2,). sides: right-hand sides of the stages, (K, s, n), which are multiplied by `share`.

@@ -44,7 +44,7 @@ class Scale:
         # The least unit keeps the scale finite beside a Hopf point, where the deflection vanishes.
         return cls(name, float(np.hypot(largest, least)), abs(orbit.form.rod.coordinate(name)), least)
 
-    def place(self, orbit: Orbit) -> Array:
+    def components(self, orbit: Orbit) -> Array:
         """(deflection at t = 0, logarithm of the period, parameter coordinate) of an orbit in units of the
         scale, (3,)."""
         deflection = deflection_of(orbit) / self.deflection_unit
@@ -52,7 +52,7 @@ class Scale:
         return np.array([deflection, np.log(orbit.period), at])
 
     def moved(self, orbit: Orbit, change: Array) -> Array:
-        """Derivative of `place` at an orbit along a change, (N + 1,), of orbit values and parameter
+        """Derivative of `components` at an orbit along a change, (N + 1,), of orbit values and parameter
         coordinate; shape (3,)."""
         deflection = float(deflection_row(orbit) @ change[: orbit.form.unknowns]) / self.deflection_unit
         return np.array([deflection, change[-2] / orbit.period, change[-1] / self.coordinate_unit])

@@ -14,7 +14,7 @@ from ...continuation.boundaries import Boundaries, BoundarySearch, boundary_sear
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import FAILURES, Unsolvable
 from .curves import CYCLE_CURVES, SpecialCurveProblem
-from .cycle_curves import CURVE_IDENTITY, Arrays, CurveEnd, CurvePoint, CycleCurve, HalfCurve, TracedHalf
+from .cycle_curves import CURVE_IDENTITY, Arrays, CurveEnd, CurvePoint, CycleCurve, HalfCurve, TracedHalfCurve
 from .on_curve import SolvedPoint
 from .point import SpecialKind, SpecialPoint
 
@@ -76,8 +76,8 @@ class SpecialBoundaries:
     def solve(
         self, unit: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
     ) -> Arrays:
-        """The result of a unit of work, as `TracedHalf.arrays`. located: function from the index of a row to
-        its special points with cycles. workspace: memory of Newton's matrices."""
+        """The result of a unit of work, as `TracedHalfCurve.arrays`. located: function from the index of a
+        row to its special points with cycles. workspace: memory of Newton's matrices."""
         # A unit is half a curve: twice the index of its special point, plus one for the half behind it.
         place, behind = divmod(unit, 2)
         one = self.special[place]
@@ -124,7 +124,7 @@ class _CurvesOfKind:
         behind = 2 * seed + 1
         if ahead not in self.results:
             return [unit for unit in (ahead, behind) if unit not in self.results]
-        half = TracedHalf.of(self.results[ahead]).half
+        half = TracedHalfCurve.of(self.results[ahead]).half
         # A closed curve has no second half; if the first half failed, the second is not needed.
         on = half is not None and half.end is not CurveEnd.closed
         return [behind] if on and behind not in self.results else []
@@ -138,11 +138,11 @@ class _CurvesOfKind:
     def curve(self, seed: int) -> _TracedCurve | None:
         """The curve through a special point, joined from its two halves; None if a half could not be
         followed."""
-        ahead = TracedHalf.of(self.results[2 * seed])
+        ahead = TracedHalfCurve.of(self.results[2 * seed])
         if ahead.half is None:
             return None
         closed = ahead.half.end is CurveEnd.closed
-        behind = TracedHalf(None) if closed else TracedHalf.of(self.results[2 * seed + 1])
+        behind = TracedHalfCurve(None) if closed else TracedHalfCurve.of(self.results[2 * seed + 1])
         if behind.half is None and not closed:
             return None
         curve = CycleCurve.joined(self.kind, ahead.half, behind.half)
@@ -199,7 +199,7 @@ def _traced(
     one: RowSpecialPoint,
     located: Iterable[SpecialPoint],
     special: Sequence[RowSpecialPoint],
-) -> TracedHalf:
+) -> TracedHalfCurve:
     """One half of a curve, followed from the special point `one` of a row. located: special points of this
     row with cycles. special: all special points, whose distances from the half are measured."""
     width = abs(limits.line.stretch(one.at))
@@ -211,14 +211,14 @@ def _traced(
         and abs(point.period / one.period - 1) <= CURVE_IDENTITY.max_period_difference
     ]
     if not same:
-        return TracedHalf(None)
+        return TracedHalfCurve(None)
     try:
         points, end = limits.followed(same[0], one.row)
     except (*FAILURES, ValueError):  # a logarithmic axis refuses a value that is not positive
-        return TracedHalf(None)
+        return TracedHalfCurve(None)
     distances = {i: _distance(limits, points, other) for i, other in enumerate(special)}
     near = {i: distance for i, distance in distances.items() if distance <= CURVE_IDENTITY.max_distance}
-    return TracedHalf(HalfCurve(tuple(map(CurvePoint.of, points)), end), near)
+    return TracedHalfCurve(HalfCurve(tuple(map(CurvePoint.of, points)), end), near)
 
 
 def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:

@@ -41,8 +41,8 @@ CURVE_STEPS = StepControl(
     max_ratio=2.0,
     max_solutions=400,
 )
-"""Step length control along a curve of special points. Steps have four components: three of `Scale.place`,
-and the axis coordinate of the rows' parameter, from 0 to 1."""
+"""Step length control along a curve of special points. Steps have four components: the three of `Scale`, and
+the rows' axis coordinate, from 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,7 +124,9 @@ class SpecialCurveProblem:
             rates = None
         else:
             start, place = self._predicted(behind, self._step_before_crushing(behind, length))
-            way = np.append(last.scale.place(start) - last.scale.place(last.orbit), place - last.place)
+            way = np.append(
+                last.scale.components(start) - last.scale.components(last.orbit), place - last.place
+            )
             across = last.across(way)
             slope = chord_slope(*behind[-2:])
             rates = last.rates
@@ -168,8 +170,8 @@ class SpecialCurveProblem:
     def _mixed(
         self, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
     ) -> tuple[Orbit, float]:
-        """(orbit, rows' axis coordinate): weighted sums over `points`, on a given mesh; raises Unsolvable.
-        weights: (points,)."""
+        """(orbit, rows' axis coordinate): sums with weights, (points,), on a given mesh; raises
+        Unsolvable."""
         values = np.dot(weights, [mesh.carry(point.orbit).values for point in points])
         at, place = (float(np.dot(weights, [getattr(p, n) for p in points])) for n in ("at", "place"))
         changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
@@ -207,8 +209,7 @@ class SpecialCurveProblem:
     def _where_zero(
         self, inner: SolvedPoint, outer: SolvedPoint, margin: int, ends: tuple[float, float]
     ) -> SolvedPoint:
-        """The point of the curve between `inner` and `outer` at which a margin, with the values `ends` at
-        both points, is 0; raises Unsolvable."""
+        """The point at which a margin is 0; raises Unsolvable. ends: its values at `inner` and `outer`."""
         found: dict[float, SolvedPoint] = {1.0: outer}
 
         def left(share: float) -> float:
@@ -229,14 +230,14 @@ class SpecialCurveProblem:
         return len(behind) > CYCLE_CURVES.min_loop_points and 0 <= passed <= 1 and near
 
     def between(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
-        """The point of the curve near a fraction of the chord from `one` to `other`; raises Unsolvable."""
+        """The point of the curve near a fraction of the chord between two points; raises Unsolvable."""
         start, place = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.across(other.step_from(one))
         return self._family(other).nearest(start, place, across, other.rates)
 
     def on_row(self, one: SolvedPoint, other: SolvedPoint, place: float) -> SolvedPoint:
-        """The point of the curve at the rows' axis coordinate `place`, between the points `one` and `other`;
-        raises Unsolvable."""
+        """The point of the curve at the rows' axis coordinate `place` between two points; raises
+        Unsolvable."""
         share = (place - one.place) / (other.place - one.place) if other.place != one.place else 0.0
         start, _ = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         return self._family(other).nearest(start, place, ALONG_BRANCH, other.rates)

@@ -114,7 +114,7 @@ class HalfCurve:
 
 
 @dataclass(frozen=True, slots=True)
-class TracedHalf:
+class TracedHalfCurve:
     """Result of following one half of a curve of special points. half: None if the half could not be
     followed.
 
@@ -136,7 +136,7 @@ class TracedHalf:
         }
 
     @classmethod
-    def of(cls, arrays: Arrays) -> "TracedHalf":
+    def of(cls, arrays: Arrays) -> "TracedHalfCurve":
         """The result from its named arrays, as `arrays` makes them."""
         points = tuple(CurvePoint(*map(float, row)) for row in arrays["points"])
         half = HalfCurve(points, CurveEnd(int(arrays["end"][0]))) if points else None

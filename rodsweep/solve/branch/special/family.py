@@ -47,9 +47,9 @@ class _CycleAcross(NamedTuple):
 class CycleFamily:
     """Two-parameter family of the cycles near a point of a curve of special points.
 
-    rows: axis of the rows' parameter. border: direction of the branch in the components of `Scale.place`,
-    (3,). small: whether the fold test function is divided by the deflection, because a Hopf point is near.
-    workspace: memory of Newton's matrices.
+    rows: axis of the rows' parameter. border: direction of the branch in components (deflection, log period,
+    parameter), (3,). small: whether the fold test function is divided by the deflection, because a Hopf point
+    is near. workspace: memory of Newton's matrices.
     """
 
     kind: SpecialKind
@@ -159,7 +159,7 @@ class _SecantAcross:
         self.orbit = family.placed(start, place)
         self.at = 0.0
         self.before: _CycleAcross | None = None
-        self.length = float(family.border @ family.scale.place(start))
+        self.length = float(family.border @ family.scale.components(start))
         self.trusted = ACROSS_CURVE.max_linear_step if same else ACROSS_CURVE.max_carried_step
         """Longest last secant step with derivatives that were not computed from two cycles of this search."""
         contraction = rates.contraction if rates and not family.small else inf

@@ -131,7 +131,8 @@ class SolvedPoint:
     orbit: Orbit
     scale: Scale
     ahead: Array
-    """Direction of the branch along the row, (3,), a unit vector in the components of `Scale.place`."""
+    """Direction of the branch along the row, (3,), a unit vector in components (deflection, log period,
+    parameter)."""
     place: float
     """Axis coordinate of the rows' parameter, from 0 to 1."""
     at: float
@@ -152,9 +153,9 @@ class SolvedPoint:
         return abs(float(self.orbit.form.tip(self.orbit.start)[1]))
 
     def step_from(self, other: "SolvedPoint") -> Array:
-        """Step from the point `other` to this point, (4,): three components of `Scale.place`, then the axis
-        coordinate `place`."""
-        moved = self.scale.place(self.orbit) - self.scale.place(other.orbit)
+        """Step from the point `other` to this point, (4,): deflection, log period, parameter along a row, and
+        rows' axis coordinate."""
+        moved = self.scale.components(self.orbit) - self.scale.components(other.orbit)
         return np.append(moved, self.place - other.place)
 
     def across(self, step: Array) -> Array:

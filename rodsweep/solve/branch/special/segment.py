@@ -19,7 +19,7 @@ class BranchSegment:
         self.start = start
         self.end = end
         self.length = arc_length_between(start, end)
-        self._back = float(end.ahead @ (end.scale.place(end.orbit) - end.scale.place(start.orbit)))
+        self._back = float(end.ahead @ (end.scale.components(end.orbit) - end.scale.components(start.orbit)))
         self._known: tuple[float, Orbit, Array] | None = None
 
     def predicted(self, length: float) -> Orbit:

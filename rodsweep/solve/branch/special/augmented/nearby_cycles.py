@@ -22,8 +22,9 @@ from .functions import AUGMENTED, FoldFunction, TorusFunction
 class CycleFamilyInterface(Protocol):
     """Interface of `NearbyCycleSolver` to a two-parameter family of cycles near a curve of special points.
 
-    border: direction of the branch in the components of `Scale.place`, (3,). small: whether the cycles are so
-    small that the fold function is divided by the deflection. workspace: memory of Newton's matrices.
+    border: direction of the branch in components (deflection, log period, parameter), (3,). small: whether
+    the cycles are so small that the fold function is divided by the deflection. workspace: memory of Newton's
+    matrices.
     """
 
     @property
