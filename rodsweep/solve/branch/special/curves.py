@@ -150,7 +150,7 @@ class SpecialCurveProblem:
         return self._mixed(known, lagrange_weights(arc_lengths(known), step), mesh_of(known[-1].orbit))
 
     def _step_before_crushing(self, points: Sequence[SolvedPoint], step: float) -> float:
-        """The step length, shortened so that the predicted rod keeps half of the crushing margin."""
+        """The step length, shortened to keep the predicted rod half of the crushing margin away."""
         from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
         known = points[-CURVE_IDENTITY.max_interpolated_points :]
@@ -170,16 +170,15 @@ class SpecialCurveProblem:
     def _mixed(
         self, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
     ) -> tuple[Orbit, float]:
-        """(orbit, rows' axis coordinate): sums with weights, (points,), on a given mesh; raises
-        Unsolvable."""
+        """(orbit, rows' axis coordinate): sums with weights, (points,), on a mesh; raises Unsolvable."""
         values = np.dot(weights, [mesh.carry(point.orbit).values for point in points])
         at, place = (float(np.dot(weights, [getattr(p, n) for p in points])) for n in ("at", "place"))
         changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
         return orbit_with_parameters(replace(mesh.carry(points[-1].orbit), values=values), changed), place
 
     def margins(self, point: SolvedPoint) -> Array:
-        """Margins of a point of the curve, (7,): distances from the four edges, distance from crushing,
-        smallest h1, and largest tip y above `min_amplitude`."""
+        """Margins, (7,): distances from the four edges and from crushing, smallest h1, and largest tip y
+        minus `min_amplitude`."""
         x = self.line.scaled(point.at)
         y = point.place
         rod = point.orbit.form.rod
