@@ -191,7 +191,7 @@ def _cycle_of(
     # A different cycle with the same deflection would have an amplitude far from the normal form's.
     least_ratio, largest_ratio = BEGINNING.amplitude_ratios
     if not least_ratio < y / amplitude < largest_ratio:
-        raise Unsolvable("Newton's method left the cycle that the normal form predicts")
+        raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
     born = abs(deflection_of(first.orbit)) / scale.deflection_unit

@@ -120,7 +120,7 @@ def on_sufficient_mesh(
         if not planned.allowed:
             break
         point = solved_on_mesh(point, planned, condition, accuracy)
-    raise Unsolvable("no allowed mesh reaches the accuracy")
+    raise Unsolvable("no mesh within the limits reaches the requested accuracy")
 
 
 def solved_on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accuracy: float) -> ArcPoint:

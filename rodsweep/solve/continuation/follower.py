@@ -95,7 +95,7 @@ class StepControl:
         """The argument `there`; raises Unsolvable if its prediction error or its angle is too large for the
         same curve."""
         if not there.prediction_error <= self.max_error:
-            raise Unsolvable("the solution is far from its prediction")
+            raise Unsolvable("the solution is far from its prediction and may lie on another curve")
         if not _angle(there.cosine) <= self.max_angle:
             raise Unsolvable("the curve turns by too large an angle")
         return there

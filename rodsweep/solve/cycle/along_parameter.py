@@ -107,7 +107,7 @@ class CyclePredictor:
         # The squared size is among the values: near a Hopf point it goes linearly through 0, where cycles
         # end.
         if not values[-1] > 0:
-            raise Unsolvable("the branch is predicted to end")
+            raise Unsolvable("the branch is predicted to end before this rod")
         target = replace(form, mesh=self.orbit.form.mesh)
         return replace(self.orbit, form=target, values=values_of(values, reflected(self.orbit)))
 
@@ -171,7 +171,7 @@ def orbit_near_prediction(
     prediction exceeds PREDICTION.max_prediction_distance."""
     found = newton(predicted, tolerance, workspace, name)
     if _distance(predicted, found) > PREDICTION.max_prediction_distance:
-        raise Unsolvable("the cycle is far from its prediction")
+        raise Unsolvable("the cycle is far from its prediction and may lie on another branch")
     return found
 
 

@@ -242,7 +242,9 @@ class _MarchedMotion:
         cycle = replace(
             straight,
             status=MarchedStatus.cycle if enough else MarchedStatus.not_settled,
-            message="" if enough else f"the cycle's errors are up to {errors.largest:.1e}",
+            message=""
+            if enough
+            else f"the cycle's errors, up to {errors.largest:.1e}, exceed the requested accuracy",
             periods=self.waited,
         )
         return with_measures(cycle, self.request, path, measures_of(path), errors)

@@ -71,7 +71,9 @@ class BorderCondition:
             else:
                 step = matrix.correction(orbit, self.border, self.residual(orbit))
                 last = change
-        raise Unsolvable(f"Newton's method on the branch does not converge; last step {change:.0e}")
+        raise Unsolvable(
+            f"Newton's method on the branch does not converge; relative change in the last step {change:.0e}"
+        )
 
     def on(
         self, mesh: OrbitMesh, found: ConvergedOrbit, tolerance: float, distance: float = np.inf
@@ -91,7 +93,7 @@ def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:
     result = replace(orbit, form=form, values=orbit.values + change[:-1])
     # Where gamma3 passes the least eliminated drag, states have other unknowns and cannot be compared.
     if form.omega_unknown != orbit.form.omega_unknown:
-        raise Unsolvable(f"gamma3 = {form.rod.gamma3:.3g} changes the unknowns of the discretization")
+        raise Unsolvable(f"at gamma3 = {form.rod.gamma3:.3g} the unknowns of the discretization change")
     if not result.period > 0:
         raise Unsolvable("Newton's method lost the cycle: its period is not positive")
     return result

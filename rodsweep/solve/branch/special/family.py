@@ -137,7 +137,7 @@ class CycleFamily:
                     last, errors=CurveErrors(error / abs(last.at), lasting_tails(last.orbit), mesh)
                 )
             last = fine
-        raise Unsolvable("no allowed mesh reaches the accuracy")
+        raise Unsolvable("no mesh within the limits reaches the requested accuracy")
 
 
 class _SecantAcross:

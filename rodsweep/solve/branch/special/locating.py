@@ -103,7 +103,7 @@ def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, acc
             if not mesh.allowed:
                 break
         if point is None or np.isnan(point.error):
-            raise Unsolvable("no allowed mesh reaches the accuracy")
+            raise Unsolvable("no mesh within the limits reaches the requested accuracy")
     except Unsolvable as why:
         return _between(kind, start, end, f"the {kind.name} is not located: {why}")
     return point

@@ -195,7 +195,7 @@ def orbit_with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the curve leaves the range of possible rods: {error}") from error
     if form.omega_unknown != orbit.form.omega_unknown:
-        raise Unsolvable(f"gamma3 = {form.rod.gamma3:.3g} changes the unknowns of the discretization")
+        raise Unsolvable(f"at gamma3 = {form.rod.gamma3:.3g} the unknowns of the discretization change")
     return replace(orbit, form=form)
 
 

@@ -151,7 +151,7 @@ def calibrated_cycle(
             break
         found = _on(finer, found, accuracy, parameter)
     if best is None:
-        raise Unsolvable("no allowed mesh reaches the accuracy")
+        raise Unsolvable("no mesh within the limits reaches the requested accuracy")
     return best
 
 

@@ -79,7 +79,7 @@ def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:
     if not run.message and np.isfinite(end).all() and not beam.is_convex(end):
         why = f"the energy of a section is not convex, {returns} returns from the start"
         return EarlyEnd(True, why)
-    why = "too many steps" if run.ending == RunEnding.too_many_steps else "no step succeeds"
+    why = "too many time steps" if run.ending == RunEnding.too_many_steps else "no time step succeeds"
     return EarlyEnd(False, run.message or why)
 
 

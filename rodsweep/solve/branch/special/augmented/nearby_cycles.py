@@ -100,7 +100,9 @@ class NearbyCycleSolver:
                 self._eliminate(orbit)
                 off = 0.0
             last = off
-        raise Unsolvable(f"the corrections of a cycle do not converge; last step {change:.0e}")
+        raise Unsolvable(
+            f"the corrections of a cycle do not converge; relative change in the last step {change:.0e}"
+        )
 
     def _corrected(self, orbit: Orbit, condition: BorderCondition) -> tuple[Orbit, float]:
         """(orbit after one correction with the present matrix, relative change of the orbit); raises
