@@ -188,8 +188,10 @@ def test_below_the_hopf_point_a_neighbours_cycle_decays():
 def test_what_a_neighbour_hands_on_is_its_cycle():
     c = reference()
     handed = c.neighbour
-    assert handed.branch.orbit.period == c.measures.period
-    assert handed.branch.orbit.form.tip(handed.branch.orbit.start)[1] == pytest.approx(c.measures.tip_y_max)
+    assert handed.predictor.orbit.period == c.measures.period
+    assert handed.predictor.orbit.form.tip(handed.predictor.orbit.start)[1] == pytest.approx(
+        c.measures.tip_y_max
+    )
     again = solve_cycle(rod_of(50.0, *SOFT), REQUEST, c.neighbour, "F")
     assert again.measures.period == pytest.approx(c.measures.period, rel=1e-9)
     assert again.periods == 0
