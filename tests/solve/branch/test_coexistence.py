@@ -105,7 +105,7 @@ def test_states_that_multipliers_on_the_circle_leave_undecided_have_a_status(mon
     def on_the_circle(rod, asked, workspace):
         branches = real(rod, asked, workspace)
         (curve,) = branches.curves
-        curve.points[:] = [replace(point, unstable=-1, multiplier=1.0) for point in curve.points]
+        curve.points[:] = [replace(point, unstable_count=-1, multiplier=1.0) for point in curve.points]
         return branches
 
     monkeypatch.setattr(coexistence, "solve_branches", on_the_circle)
