@@ -14,7 +14,7 @@ from .orbit.matrix.linearisation import change_along, reduced_variations
 from .orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from .orbit.orbit import Orbit
 from .orbit.symmetry import REFLECTION
-from .spectrum.path.carried_count import best_gap
+from .spectrum.path.carried_count import widest_gap
 from .spectrum.path.prediction import Track
 
 SAMPLE_ROD = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2)
@@ -28,7 +28,7 @@ def warm_up() -> None:
     """Calls each function with arrays of the types that runs have, and of values without a meaning."""
     w = np.ones((1, 2), dtype=complex)
     stability_change_between((SAMPLE_ROD.coefficients, SAMPLE_ROD.direction("F")), (1.0, 2.0), -w[0], w[0], 2)
-    best_gap(Track(w, w, np.zeros((1, 2)), np.zeros((1, 2), np.int64)), 0, 1)
+    widest_gap(Track(w, w, np.zeros((1, 2)), np.zeros((1, 2), np.int64)), 0, 1)
     form = StressForm(SAMPLE_ROD, mesh(1, 4))
     states = np.zeros((1 + SAMPLE_INTERVALS * SAMPLE_STAGES, form.unknowns))
     orbit = Orbit.of(form, REFLECTION, 1.0, states, SAMPLE_STAGES)

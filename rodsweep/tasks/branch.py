@@ -109,16 +109,20 @@ def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, in
     """
     numbers = {}
     for number, curve in enumerate(curves, 1):
-        for breaking, place in ((curve.breaking, 0), (curve.end_breaking, len(curve.special) - 1)):
+        for breaking, place in ((curve.start_breaking, 0), (curve.end_breaking, len(curve.special) - 1)):
             if breaking is not None:
                 numbers[number, place] = breaking.branch
-                numbers[breaking.branch, breaking.place] = number
+                numbers[breaking.branch, breaking.index] = number
     return numbers
 
 
 def _cycle(point: "BranchPoint", along: str) -> dict[str, Any]:
-    """Variables of the file for one cycle of a branch followed in the parameter `along`."""
-    own = {f"branch_{along}": "at", f"branch_{along}_error": "at_error", "unstable_multipliers": "unstable"}
+    """A cycle of a branch as variables of the file."""
+    own = {
+        f"branch_{along}": "at",
+        f"branch_{along}_error": "at_error",
+        "unstable_multipliers": "unstable_count",
+    }
     variables = [v for v in followed_variables(along) if v.name != "branch"]
     return recorded(variables, point, point.measures, point.errors, names=own)
 

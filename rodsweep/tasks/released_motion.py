@@ -51,11 +51,11 @@ def bent_shape(job: Job, tip: tuple[float, float] | None) -> Array:
     tip: position (x, y) in L at which the tip is held; None for the straight rod.
     """
     from ..discretization.beam import Beam
-    from ..solve.cycle.transient.motion_mesh import motion_mesh, near_rod
+    from ..solve.cycle.transient.motion_mesh import integrable_rod, motion_mesh
     from ..solve.motion.held_tip import held_by_tip
 
     rod = job.points.rod(0)
-    beam = Beam(near_rod(rod), motion_mesh(rod, MOTION_ACCURACY))
+    beam = Beam(integrable_rod(rod), motion_mesh(rod, MOTION_ACCURACY))
     z = np.zeros(beam.unknowns) if tip is None else held_by_tip(beam, *tip)
     shape: Array = beam.shape(z)[:2] @ beam.mesh.evaluation(lobatto_points(NODE_COUNT)).T
     return shape

@@ -14,7 +14,7 @@ from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_threshold
 from rodsweep.solve.cycle.accuracy.cycle_verdict import RefinedCycle
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
-from rodsweep.solve.cycle.neighbour import Neighbour, followed_cycle
+from rodsweep.solve.cycle.neighbour import Neighbour, cycle_from_neighbour
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import at_orbit, multipliers_of, newton
@@ -82,7 +82,7 @@ def chain_of(case, parameter, ratio, points):
     for _ in range(points):
         rod = replace(rod, **{parameter: ratio * getattr(rod, parameter)})
         try:
-            found = followed_cycle(neighbour, replace(form, rod=rod), parameter, case.accuracy, memory)
+            found = cycle_from_neighbour(neighbour, replace(form, rod=rod), parameter, case.accuracy, memory)
         except Unsolvable:
             return
         yield found

@@ -20,7 +20,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc import ArcPoint, next_point
 from rodsweep.solve.branch.beginning import first_cycle, hopf_point
 from rodsweep.solve.branch.branch_curve import BranchPoint
-from rodsweep.solve.branch.settling import measurement_due, settled
+from rodsweep.solve.branch.settling import measurement_due, with_errors_in_accuracy
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
@@ -96,7 +96,7 @@ def cycles_of(case: Case) -> Iterator[ArcPoint]:
             return
         waiting.append(here)
         if measurement_due(here):
-            yield from (points := settled(last, waiting, case.accuracy, None))
+            yield from (points := with_errors_in_accuracy(last, waiting, case.accuracy, None))
             here = last = points[-1]
             waiting = []
 
@@ -109,7 +109,7 @@ def broken_promises(case: Case) -> list[str]:
         longer = ceil(1.7 * mesh.intervals) + 1
         fine = replace(mesh, order=mesh.order + 6, intervals=longer, stages=min(mesh.stages + 1, 6))
         exact = linearised(newton(fine.carry(point.orbit), 1e-11, NewtonWorkspace()))
-        extrema, slope = CyclePath(exact.orbit).extrema, point.calibration.slope
+        extrema, slope = CyclePath(exact.orbit).extrema, point.calibration.sensitivity
         y, multipliers = extrema["tip_y_max"], multipliers_of(exact)[0]
         others = max(abs(getattr(stored.measures, name) - value) for name, value in extrema.items())
         errors = stored.errors
@@ -139,6 +139,6 @@ def test_branches_of_random_rods_keep_their_promises(first):
 
 def test_branch_is_exercised_where_it_is_steep_and_where_it_is_not():
     """The fold and the Hopf point of Fig. 2c's branch are steep; the promise there is another one."""
-    slopes = [point.calibration.slope for point in cycles_of(CASES["a fold close to the Hopf point"])]
+    slopes = [point.calibration.sensitivity for point in cycles_of(CASES["a fold close to the Hopf point"])]
     assert min(slopes) < 2
     assert max(slopes) > STEEP

@@ -42,7 +42,7 @@ from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.kept import forget_all
 from rodsweep.solve.branch.branches import BranchRequest, solve_branches
-from rodsweep.solve.branch.special.curves import CurveLimits
+from rodsweep.solve.branch.special.curves import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.changes.diagram.boundaries import curves_through, seed_of
@@ -128,7 +128,9 @@ def curve_of_folds(accuracy: float) -> Answer:
     """End of a curve of folds on an edge of the plane; the curve's accuracy is a setting itself."""
     plane = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0)
     try:
-        points, end = CurveLimits(SpecialKind.fold, *plane, NewtonWorkspace(), 1.0).followed(fold(), 149.9)
+        points, end = SpecialCurveProblem(SpecialKind.fold, *plane, NewtonWorkspace(), 1.0).followed(
+            fold(), 149.9
+        )
     except FAILURES:
         return None
     last = points[-1]
@@ -474,14 +476,14 @@ BETWEEN = Case(changes_between, 1.0, 1.0)
 SLOW = (LOPSIDED, TORUS, UNSTABLE, SLENDER_CONE)
 """Cases that take seconds."""
 CASES = {
-    "SETTLING": BRANCH,
+    "BRANCH_MESH": BRANCH,
     "BRANCH_ERRORS": BRANCH,
-    "ENDINGS": LOPSIDED,
+    "BRANCH_END": LOPSIDED,
     "ASYMMETRIC_START": LOPSIDED,
     "BEGINNING": BRANCH,
     "BRANCHES": BRANCH,
     "BRANCH_WORK": BRANCH,
-    "LOCATING": BRANCH,
+    "SPECIAL_POINT": BRANCH,
     "LEGS": UNSTABLE,
     "LEAST_STRETCH": BRANCH,
     "ARC_STEPS": BRANCH,

@@ -13,8 +13,8 @@ from surveyed import survey_only
 
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.results.run.checkpoints import UnitResults
-from rodsweep.solve.branch.special.boundaries import RowSpecial, SpecialBoundaries
-from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalf
+from rodsweep.solve.branch.special.boundaries import RowSpecialPoint, SpecialBoundaries
+from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalfCurve
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.sweep.handout import NO_WORK_LEFT, Pool, RankReport
 
@@ -168,7 +168,7 @@ LINE, ROWS = PlaneAxis("F", 0.0, 1.0), PlaneAxis("k1", 1.0, 5.0)
 def boundaries():
     """Two curves of folds through the rows 1 to 5, at F = 0.2 and at F = 0.6."""
     special = [
-        RowSpecial(number=row, row=float(row), kind=SpecialKind.fold, at=at, period=1.0, tip_y_max=0.1)
+        RowSpecialPoint(number=row, row=float(row), kind=SpecialKind.fold, at=at, period=1.0, tip_y_max=0.1)
         for row in range(1, 6)
         for at in (0.2, 0.6)
     ]
@@ -187,7 +187,7 @@ def half(units, unit):
     near = {i: 0.0 for i, other in enumerate(units.special) if other.at == one.at}
     low, high = sorted((one.row, last))
     near = {i: d for i, d in near.items() if low <= units.special[i].row <= high}
-    return TracedHalf(HalfCurve(points, CurveEnd.edge), near).arrays()
+    return TracedHalfCurve(HalfCurve(points, CurveEnd.edge), near).arrays()
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 3, 8])

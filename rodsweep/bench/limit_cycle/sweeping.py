@@ -13,7 +13,7 @@ from typing import Any
 from ...model.material.build import Build
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.rod import Rod
-from ...solve.cycle.accuracy.refinement import refine
+from ...solve.cycle.accuracy.refinement import refined_at_period
 from ...solve.cycle.limit_cycle import Cycle, CycleStatus, solve_cycle
 from ...solve.cycle.neighbour import Neighbour
 from ...solve.orbit.matrix.linearisation import Linearisation
@@ -80,8 +80,8 @@ class ExactCycle:
 
     @classmethod
     def near(cls, orbit: Orbit) -> "ExactCycle":
-        """The reference cycle of the orbit's rod; orbit: start of the refinement."""
-        found = refine(orbit, REFERENCE_ACCURACY, NewtonWorkspace())
+        """The exact cycle of the orbit's rod."""
+        found = refined_at_period(orbit, REFERENCE_ACCURACY, NewtonWorkspace())
         return cls(found.orbit, found.measures.period, found.measures.tip_y_max)
 
     def at(self, F: float) -> "ExactCycle":

@@ -22,7 +22,7 @@ from ...discretization.beam import Beam
 from ...discretization.elements.mesh import mesh
 from ...model.rod import Rod
 from ...solve.cycle.limit_cycle import Cycle, CycleRequest, solve_cycle
-from ...solve.cycle.transient.returns import angle_weights
+from ...solve.cycle.transient.returns import tip_angle_row
 from ...solve.motion.integrator import RunLimit, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
 from ...solve.orbit.matrix.workspace import NewtonWorkspace
@@ -95,7 +95,7 @@ def orbit_of(cycle: Cycle) -> Orbit:
     """The orbit of a cycle on the mesh that its solve chose; ArithmeticError if the solve found no cycle."""
     if cycle.neighbour is None:
         raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")
-    return cycle.neighbour.branch.orbit
+    return cycle.neighbour.predictor.orbit
 
 
 def state_on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
@@ -152,8 +152,8 @@ class TipReturns:
 
 
 def tip_returns(beam: Beam, run: Trajectory) -> TipReturns:
-    """All returns of the tip in a run, located by repeating the steps around them."""
-    row = angle_weights(beam)
+    """All returns of a run."""
+    row = tip_angle_row(beam)
     y = beam.tip(run.states)[1]
     angle = run.states @ row
     rising = list(map(int, np.flatnonzero((angle[:-1] < 0) & (angle[1:] >= 0))))

@@ -27,7 +27,7 @@ from .variables import (
 POWER_UNIT = "k3/(L tau2)"
 """Unit of the power of the force and of the dissipation."""
 STORED_MULTIPLIERS = 6
-"""Number of stored nontrivial Floquet multipliers, the solver's `MULTIPLIER_LIST.number`; NaN stands for a
+"""Number of stored nontrivial Floquet multipliers, the solver's `MULTIPLIER_LIST.length`; NaN stands for a
 modulus below its `min_modulus`."""
 CYCLE_WORDS = ("cycle", "unstable")
 """Statuses of points with a cycle, stable or unstable."""

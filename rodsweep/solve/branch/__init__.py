@@ -1,1 +1,1 @@
-"""Branches of cycles, stable or not: followed through folds, with the special points on them."""
+"""Branches of stable and unstable cycles, followed through folds, with the special points on each branch."""

@@ -1,7 +1,8 @@
 """Arc-length continuation of a branch of cycles: the step from one cycle to the next.
 
-The cubic through two cycles and their tangents predicts; Newton's method corrects at a given arc length
-(`bordered`). The step length follows from the prediction's error and from the branch's curvature.
+The cubic through two cycles and their tangents predicts the next cycle; Newton's method corrects the
+prediction at a given arc length (`bordered`). The step length follows from the prediction error and from the
+curvature of the branch.
 """
 
 from dataclasses import dataclass, replace
@@ -18,28 +19,28 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, multiplier_change, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of
-from .bordered.condition import BorderCondition, moved
-from .bordered.matrix import BorderedMatrix, bordered
+from .bordered.condition import BorderCondition, moved_orbit
+from .bordered.matrix import BorderedMatrix, bordered_matrix_of
 from .bordered.scale import Scale, deflection_of
-from .errors import BranchCalibration, CyclePlace
+from .errors import BranchCalibration, BranchDerivatives
 
 ARC_STEPS = StepControl(
-    first=0.02,
-    longest=0.25,
-    shortest=5e-6,
-    aim=5e-4,
-    far=0.1,
-    order=4,
-    sharpest=0.45,
-    growth=2.0,
+    first_length=0.02,
+    max_length=0.25,
+    min_length=5e-6,
+    target_error=5e-4,
+    max_error=0.1,
+    prediction_order=4,
+    max_angle=0.45,
+    max_ratio=2.0,
 )
-"""Step lengths in units of the scale: a step of 0.1 changes the deflection, the period or the parameter by
-at most a tenth."""
+"""Control of the arc-length steps along a branch. Arc length is dimensionless (`Scale`): a step of 0.1
+changes the deflection, the period and the parameter by at most about a tenth."""
 
 
 @dataclass(frozen=True, eq=False)
 class PreviousCycle:
-    """The previous orbit and its derivative along the branch, in any unit, (N + 1,)."""
+    """The previous orbit of a branch, and the tangent of the branch there, of any length, (N + 1,)."""
 
     orbit: Orbit
     tangent: Array
@@ -47,34 +48,38 @@ class PreviousCycle:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ArcPoint:
-    """A cycle of a branch."""
+    """A cycle of a branch, with the tangent of the branch, the calibrated errors, and the length of the next
+    step."""
 
     cycle: RefinedCycle
-    place: CyclePlace
+    derivatives: BranchDerivatives
     length: float
-    """Length of the next step."""
+    """Arc length of the step to the next cycle."""
     calibration: BranchCalibration
-    """Errors of the last measured cycle."""
+    """Measured errors of the last cycle whose errors were measured; the errors of this cycle follow from
+    these."""
     unmeasured: int = 0
-    """Number of steps since the last measured cycle, 0 for a measured cycle."""
+    """Number of steps since the last cycle with measured errors; 0 if the errors of this cycle were measured.
+    """
     arc_since_measured: float = 0.0
-    """Arc length of the branch since the last measured cycle."""
+    """Arc length of the branch since the last cycle with measured errors."""
     before: PreviousCycle | None = None
-    """The previous cycle."""
+    """The previous cycle of the branch; None for the first."""
 
     @property
     def scale(self) -> Scale:
-        return self.place.scale
+        return self.derivatives.scale
 
     @property
     def tangent(self) -> Array:
-        """Tangent of the branch, of unit length in the scale, (N + 1,)."""
-        return self.place.tangent
+        """Tangent of the branch with unit arc length, (N + 1,): derivatives of orbit values and parameter
+        coordinate."""
+        return self.derivatives.tangent
 
     @property
     def ahead(self) -> Array:
-        """The tangent as a direction of `Scale.place`, (3,)."""
-        return self.place.ahead
+        """The tangent in components (deflection, log period, parameter), (3,), a unit vector."""
+        return self.derivatives.ahead
 
     @property
     def orbit(self) -> Orbit:
@@ -82,51 +87,52 @@ class ArcPoint:
 
     @property
     def workspace(self) -> NewtonWorkspace:
-        """The solver's memory, which holds the cycle's matrix."""
-        return self.cycle.fine.workspace
+        """Memory of Newton's matrices, which contains the matrix of this cycle."""
+        return self.cycle.converged.workspace
 
     @property
     def at(self) -> float:
-        """Coordinate of the followed parameter: 1/k for a stiffness k, otherwise the value itself."""
+        """Coordinate of the continuation parameter: 1/k for a stiffness k, otherwise the value itself."""
         return self.orbit.form.rod.coordinate(self.scale.name)
 
     @property
-    def rises(self) -> float:
-        """Derivative of the parameter's coordinate by arc length, of either sign; 0 at a fold."""
-        return self.place.rate
+    def parameter_rate(self) -> float:
+        """Derivative of the scaled parameter coordinate by arc length; at a fold the sign changes."""
+        return self.derivatives.rate
 
     @property
     def deflection(self) -> float:
-        """Deflection at t = 0, as in `Scale.place`."""
+        """Deflection of the cycle at t = 0, in L, as `deflection_of` defines it."""
         return deflection_of(self.orbit)
 
     @cached_property
     def partial_multipliers(self) -> Complex:
-        """Nontrivial multipliers of the half-period map composed with the reflection, (rank - 1,); of the
-        whole period for a cycle without symmetry."""
-        values = bordered(self.cycle.fine).partial_multipliers
+        """Nontrivial multipliers, (rank - 1,): of the half-period map composed with the reflection for a
+        symmetric cycle, of the whole period for an asymmetric cycle."""
+        values = bordered_matrix_of(self.cycle.converged).partial_multipliers
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
     def condition(self, length: float) -> BorderCondition:
-        """The condition of a given arc length from this cycle."""
+        """The condition that the next cycle lies at an arc length `length` from this cycle."""
         return BorderCondition.at(self.scale, self.ahead, self.orbit, length)
 
     def predicted(self, length: float) -> Orbit:
-        """Orbit at a length ahead on the cubic through this cycle and the previous one; raises Unsolvable."""
+        """Predicted orbit at an arc length `length` ahead, on the cubic through this cycle and the previous
+        cycle; raises Unsolvable."""
         change = length * self.tangent
         if self.before is not None:
             change = length ** np.arange(1, 4) @ self._taylor(self.before)
-        return moved(self.orbit, self.scale.name, change)
+        return moved_orbit(self.orbit, self.scale.name, change)
 
     def _taylor(self, before: PreviousCycle) -> Array:
-        """Coefficients of the cubic in powers 1 to 3 of the length, (3, N + 1)."""
+        """Coefficients, (3, N + 1), of the arc length, its square and its cube in the predicting cubic."""
         name = self.scale.name
         mesh = mesh_of(self.orbit)
         last = mesh.carry(before.orbit)
         coordinate = last.form.rod.coordinate(name)
         # Both tangents on one mesh: the cubic combines their values node by node.
         slope = np.append(carried_change(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])
-        step = float(self.ahead @ (self.scale.place(self.orbit) - self.scale.place(last)))
+        step = float(self.ahead @ (self.scale.components(self.orbit) - self.scale.components(last)))
         rate = float(self.ahead @ self.scale.moved(last, slope))
         # Without progress along the tangent the two cycles do not define a cubic: the tangent alone predicts.
         if not (step > 0 and rate > 0):
@@ -138,19 +144,20 @@ class ArcPoint:
         return np.array([self.tangent, 3 * A - 2 * B, (A - B) * (2 / step)])
 
 
-def cycle_place(found: ConvergedOrbit, scale: Scale, tangent: Array) -> CyclePlace:
-    """Scale and unit tangents of a cycle, from a tangent of any length, (N + 1,).
+def branch_derivatives(found: ConvergedOrbit, scale: Scale, tangent: Array) -> BranchDerivatives:
+    """Scale and unit tangent of a branch at a cycle. tangent: tangent of any length, (N + 1,).
 
-    The caller replaces the curvature and the rate of the multiplier, which are 0 here.
+    Curvature and multiplier rate are 0 in the result; the caller replaces both.
     """
-    own = Scale.of(found.orbit, scale.name, scale.least)
+    own = Scale.of(found.orbit, scale.name, scale.min_deflection_unit)
     ahead = own.moved(found.orbit, tangent)
     unit = float(np.linalg.norm(ahead))
-    return CyclePlace(own, tangent / unit, ahead / unit, 0.0, 0.0)
+    return BranchDerivatives(own, tangent / unit, ahead / unit, 0.0, 0.0)
 
 
 def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix) -> Array:
-    """Tangent of the branch at an orbit from its matrix, (N + 1,), oriented to a side, (3,)."""
+    """Tangent of the branch at an orbit, (N + 1,), from its bordered matrix. side: direction in components
+    (deflection, log period, parameter), (3,), with which the tangent makes an acute angle."""
     tangent = matrix.direction(side)
     # A null vector has no sign; the branch must not turn back.
     return tangent if scale.moved(orbit, tangent) @ side > 0 else -tangent
@@ -160,50 +167,54 @@ def next_point(start: ArcPoint, accuracy: float) -> ArcPoint:
     """The next cycle of a branch; raises Unsolvable if the shortest step fails."""
     end, length = advance(partial(_stepped, start, accuracy), start.length, ARC_STEPS)
     # The cubic through two cycles with tangents errs in the fourth power of the step, hence the order.
-    return replace(end.solution, length=ARC_STEPS.next_length(length, end, ARC_STEPS.order))
+    return replace(end.solution, length=ARC_STEPS.next_length(length, end, ARC_STEPS.prediction_order))
 
 
-def point_at(start: ArcPoint, length: float, accuracy: float) -> ArcPoint:
-    """The cycle at an arc length from `start`; raises Unsolvable if it may lie on another branch."""
+def cycle_at_length(start: ArcPoint, length: float, accuracy: float) -> ArcPoint:
+    """The cycle at an arc length `length` from `start`; raises Unsolvable if the cycle may lie on another
+    branch."""
     return ARC_STEPS.accepted(_stepped(start, accuracy, length)).solution
 
 
 def _stepped(start: ArcPoint, accuracy: float, length: float) -> StepResult[ArcPoint]:
-    """The cycle at an arc length from `start`, with an equal length for the next step.
+    """The cycle at an arc length `length` from `start`, with prediction error and angle; raises Unsolvable.
 
-    Raises Unsolvable.
+    The next step gets the same length.
     """
     condition = start.condition(length)
     predicted = start.predicted(length)
     tolerance = newton_tolerance(accuracy)
     found = condition.solved(predicted, tolerance, start.workspace, matrix_distance(accuracy))
     off = relative_change(predicted, found.orbit.values - predicted.values)
-    if start.before is None and off <= ARC_STEPS.far:
-        off = ARC_STEPS.aim  # the error of a tangent says nothing of the cubic of later steps
-    tangent = tangent_at(found.orbit, start.scale, start.ahead, bordered(found))
+    if start.before is None and off <= ARC_STEPS.max_error:
+        off = (
+            ARC_STEPS.target_error
+        )  # the error of the tangent predictor does not predict the error of the cubic
+    tangent = tangent_at(found.orbit, start.scale, start.ahead, bordered_matrix_of(found))
     cosine = float(start.scale.moved(found.orbit, tangent) @ start.ahead)  # both have unit length
-    return StepResult(cycle_ahead(start, found, tangent, length, length, accuracy), off, cosine)
+    return StepResult(unmeasured_cycle(start, found, tangent, length, length, accuracy), off, cosine)
 
 
-def arc_between(start: ArcPoint, end: ArcPoint) -> float:
-    """Arc length from one cycle to another, projected on the tangent at the first, as in a step."""
-    return float(start.ahead @ (start.scale.place(end.orbit) - start.scale.place(start.orbit)))
+def arc_length_between(start: ArcPoint, end: ArcPoint) -> float:
+    """Arc length from the cycle `start` to the cycle `end`, projected on the tangent at `start`."""
+    return float(start.ahead @ (start.scale.components(end.orbit) - start.scale.components(start.orbit)))
 
 
-def cycle_ahead(
+def unmeasured_cycle(
     start: ArcPoint, found: ConvergedOrbit, tangent: Array, length: float, ahead: float, accuracy: float
 ) -> ArcPoint:
-    """A cycle at a length from `start`, its errors not measured.
+    """The solved orbit `found` as a cycle of the branch at an arc length `length` from `start`, with errors
+    calibrated at an earlier cycle.
 
     tangent: tangent of the branch at the new cycle, (N + 1,). ahead: length of the next step.
     """
-    cycle = with_calibrated_errors(start.calibration.known, found, accuracy)
-    place = cycle_place(found, start.scale, tangent)
-    curvature = (place.rate - start.rises) / length
+    cycle = with_calibrated_errors(start.calibration.at_parameter, found, accuracy)
+    derivatives = branch_derivatives(found, start.scale, tangent)
+    curvature = (derivatives.rate - start.parameter_rate) / length
     changed = multiplier_change(cycle.multipliers, start.cycle.multipliers) / length
     return ArcPoint(
         cycle=cycle,
-        place=replace(place, curvature=curvature, multiplier_rate=changed),
+        derivatives=replace(derivatives, curvature=curvature, multiplier_rate=changed),
         length=ahead,
         calibration=start.calibration,
         unmeasured=start.unmeasured + 1,

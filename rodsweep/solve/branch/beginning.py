@@ -1,8 +1,8 @@
-"""The first cycle of a branch, from the normal form of the Hopf point where the branch is born.
+"""The first cycle of a branch, from the normal form of the Hopf point where the branch starts.
 
-The normal form relates the amplitude of a cycle to the parameter's distance from the Hopf point. Newton's
-method starts at the cycle predicted for a small amplitude and holds its deflection; this
-system is regular at the Hopf point too.
+The normal form relates the amplitude of a cycle to the distance of the parameter from the Hopf point.
+Newton's method starts at the cycle predicted for a small amplitude, with the deflection prescribed and the
+parameter unknown: this system is regular at the Hopf point too.
 """
 
 from dataclasses import dataclass
@@ -26,23 +26,25 @@ from ..point import Unsolvable
 from .arc import ArcPoint
 from .bordered.condition import BorderCondition
 from .bordered.scale import Scale, deflection_of
-from .settling import first_point
+from .settling import first_measured_cycle
 from .special.point import SpecialKind, SpecialPoint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BeginningSettings:
-    """Settings for the first cycle of a branch, beside its Hopf point."""
+    """Settings for the first cycle of a branch near its Hopf point."""
 
     first_amplitudes: tuple[float, ...] = (0.02, 0.008, 0.003)
-    """Largest tip y, in L, of the first cycle; tried in this order."""
-    amplitude_share: float = 0.05
-    """Largest tip y of the first cycle, in units of the amplitude coefficient. Beyond it the third-order
-    normal form is too inaccurate."""
+    """Amplitudes (largest tip y, in L) of the first cycle, tried in this order."""
+    max_amplitude_share: float = 0.05
+    """Upper limit of the amplitude of the first cycle, in units of `HopfBirth.amplitude_coefficient`. Beyond
+    this limit the third-order normal form is too inaccurate."""
     min_deflection_amplitude: float = 0.1
-    """Tip y, in L, of the cycle whose deflection is the smallest unit of deflections."""
+    """Amplitude (largest tip y, in L) of the cycle whose deflection is the smallest unit of deflections in a
+    `Scale`."""
     amplitude_ratios: tuple[float, float] = 0.5, 2.0
-    """Allowed range of the largest tip y of the first cycle, in units of the normal form's."""
+    """Allowed range of the amplitude of the first cycle, in units of the amplitude predicted by the normal
+    form."""
     frequency_rounding: float = 1e-14
     """Relative rounding error of the frequency of a Hopf point, a root of D."""
 
@@ -50,25 +52,25 @@ class BeginningSettings:
 BEGINNING = BeginningSettings()
 
 
-DEFLECTION = np.array([1.0, 0.0, 0.0])
-"""Unit vector along the deflection, in the coordinates of `Scale.place`."""
+ALONG_DEFLECTION = np.array([1.0, 0.0, 0.0])
+"""Unit vector along the deflection, (3,), in components (deflection, log period, parameter)."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HopfBirth:
-    """A Hopf point along a parameter, with the normal form of the cycles born there."""
+    """A Hopf point along the continuation parameter `name`, with the normal form of the cycles born there."""
 
     crossing: Crossing
     rod: Rod
     name: str
     coordinate: float
-    """Coordinate of the parameter at the Hopf point."""
+    """Coordinate of the parameter at the Hopf point: 1/k for a stiffness k, otherwise the value itself."""
     slope: complex
-    """Derivative dw/d(coordinate) of the eigenvalue at the Hopf point."""
-    normal: NormalForm
-    """Normal form on a mesh fine enough to start a branch."""
+    """Derivative dw/d(coordinate) of the critical eigenvalue w at the Hopf point, w in 1/tau2."""
+    normal_form: NormalForm
+    """Normal form on a mesh that is fine enough for the prediction of the first cycle."""
     coefficients: HopfCoefficients
-    """Coefficients of the normal form from a finer mesh, with errors."""
+    """Coefficients of the normal form from a finer mesh, with error estimates."""
 
     @property
     def period(self) -> float:
@@ -77,20 +79,22 @@ class HopfBirth:
 
     @property
     def amplitude_coefficient(self) -> float:
-        """a, in L: at p' next to the Hopf point at p the largest tip y is |a| sqrt(|p' - p|/p).
+        """Amplitude coefficient a, in L, of the branch born at the Hopf point with the parameter value p.
 
-        p is the parameter; a < 0 where the cycles are at p' < p.
+        A cycle at a nearby parameter value p' has the largest tip y |a| sqrt(|p' - p|/p). a < 0 if the cycles
+        exist at p' < p.
         """
         # Along a stiffness the coordinate is 1/k, which falls as the parameter rises.
         turned = -1.0 if Path(self.rod, self.name).inverse else 1.0
-        # 0 = Re slope dp + Re c a^2, so a^2 = -Re slope p/Re c per relative change of p; its sign is the
-        # side.
+        # 0 = Re slope dp + Re c a^2, so a^2 = -Re slope p/Re c per relative change of p; a negative value
+        # means cycles at smaller p.
         squared = -turned * self.slope.real * self.coordinate / self.coefficients.landau.real
         return float(np.copysign(abs(squared) ** 0.5, squared))
 
     @property
     def coefficient_error(self) -> float:
-        """Relative error of the amplitude coefficient: half the sum of the errors of c, slope and place."""
+        """Relative error of the amplitude coefficient: half the sum of the relative errors of Re c, of
+        Re(slope) and of the parameter at the Hopf point."""
         c = self.coefficients.landau
         slope = self.slope
         landau = self.coefficients.landau_error * abs(c) / abs(c.real)
@@ -100,21 +104,22 @@ class HopfBirth:
 
     @property
     def period_error(self) -> float:
-        """Relative error of the period: the change of the frequency within the error of the Hopf point, and
-        rounding."""
+        """Relative error of `period`: the relative change of the frequency over the parameter error of the
+        Hopf point, plus rounding error."""
         place = self.crossing.error / abs(self.crossing.at) * abs(self.coordinate)
         return abs(self.slope) * place / self.crossing.frequency + BEGINNING.frequency_rounding
 
     def moved_by(self, amplitude: float) -> tuple[float, float]:
         """(change of the coordinate, frequency) of the cycle with a given largest tip y, in L."""
-        c = self.normal.c
+        c = self.normal_form.c
         # The growth rate of the cycle vanishes: Re slope dp + Re c a^2 = 0.
         change = -c.real * amplitude**2 / self.slope.real
         return change, self.crossing.frequency + self.slope.imag * change + c.imag * amplitude**2
 
 
 def hopf_point(path: Path, crossing: Crossing) -> HopfBirth:
-    """The Hopf point at a crossing along the parameter of a path; raises Unsolvable."""
+    """The Hopf point with its normal form, from a crossing of the imaginary axis along a path; raises
+    Unsolvable."""
     w = complex(0.0, crossing.frequency)
     at = path.at(path.variable(crossing.at))
     _, slope, _ = path_problem(path).eigenvalue(w, path.variable(crossing.at))
@@ -125,13 +130,13 @@ def hopf_point(path: Path, crossing: Crossing) -> HopfBirth:
         name=path.name,
         coordinate=path.variable(crossing.at),
         slope=complex(slope),
-        normal=normal,
+        normal_form=normal,
         coefficients=hopf_coefficients(at, crossing, HOPF_START.normal_form_accuracy),
     )
 
 
-def special_hopf(hopf: HopfBirth) -> SpecialPoint:
-    """The Hopf point as a special point."""
+def hopf_as_special_point(hopf: HopfBirth) -> SpecialPoint:
+    """The Hopf point as the first or last special point of a branch."""
     return SpecialPoint(
         kind=SpecialKind.hopf,
         at=hopf.crossing.at,
@@ -146,30 +151,31 @@ def special_hopf(hopf: HopfBirth) -> SpecialPoint:
 
 
 def first_cycle(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) -> ArcPoint:
-    """The first cycle of the branch from a Hopf point; raises Unsolvable.
+    """The first cycle of the branch from a Hopf point, to a relative accuracy; raises Unsolvable.
 
-    workspace: memory of the branch's matrices.
+    workspace: memory of Newton's matrices.
     """
     a = abs(hopf.amplitude_coefficient)
     usual = max(accuracy, REFINEMENT.first_accuracy)
     # A coarse mesh may have no cycle here, because the mesh's own Hopf point lies beyond.
     for aim, finer in ((usual, False), (REFINEMENT.first_accuracy, True)):
         for share in BEGINNING.first_amplitudes:
-            amplitude = min(share, BEGINNING.amplitude_share * a)
+            amplitude = min(share, BEGINNING.max_amplitude_share * a)
             try:
                 return _cycle_of(hopf, amplitude, aim, finer, accuracy, workspace)
             except Unsolvable as error:
                 why = error
-    raise Unsolvable(f"no cycle is found beside the Hopf point: {why}") from why
+    raise Unsolvable(f"no cycle is found near the Hopf point: {why}") from why
 
 
 def _cycle_of(
     hopf: HopfBirth, amplitude: float, aim: float, finer: bool, accuracy: float, workspace: NewtonWorkspace
 ) -> ArcPoint:
-    """The cycle of a given amplitude, solved to an accuracy from the normal form; raises Unsolvable.
+    """The cycle near the normal form's cycle with a given amplitude (largest tip y, in L), to a relative
+    accuracy; raises Unsolvable.
 
-    aim: accuracy for which the first mesh is chosen. finer: whether the search starts on this mesh, instead
-    of the coarser mesh of the normal form.
+    aim: accuracy for which the first mesh is chosen. finer: whether Newton's method starts on this mesh,
+    instead of the coarser mesh of the normal form.
     """
     start = predicted_cycle(hopf, amplitude)
     if finer:
@@ -177,28 +183,28 @@ def _cycle_of(
     least = abs(deflection_of(start)) * BEGINNING.min_deflection_amplitude / amplitude
     scale = Scale.of(start, hopf.name, least)
     # The deflection is prescribed, not the parameter: it cannot collapse onto the straight rod.
-    border = np.sign(deflection_of(start)) * DEFLECTION
+    border = np.sign(deflection_of(start)) * ALONG_DEFLECTION
     condition = BorderCondition.at(scale, border, start)
     rough = condition.solved(start, REFINEMENT.nearby_tolerance, workspace)
     near = rough.orbit
     y = float(near.form.tip(near.start)[1])
-    # Another cycle of the same deflection would be far from the normal form's amplitude.
+    # A different cycle with the same deflection would have an amplitude far from the normal form's.
     least_ratio, largest_ratio = BEGINNING.amplitude_ratios
     if not least_ratio < y / amplitude < largest_ratio:
-        raise Unsolvable("Newton's method left the cycle that the normal form predicts")
+        raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
-    born = abs(deflection_of(first.orbit)) / scale.deflection
-    return first_point(first, scale, border, born, accuracy)
+    born = abs(deflection_of(first.orbit)) / scale.deflection_unit
+    return first_measured_cycle(first, scale, border, born, accuracy)
 
 
 def predicted_cycle(hopf: HopfBirth, amplitude: float) -> Orbit:
-    """Cycle with a given largest tip y, in L, from the normal form: on the normal form's mesh in space,
-    coarse in time."""
+    """The normal form's cycle with a given amplitude (largest tip y, in L), on the normal form's mesh in
+    space and on a coarse mesh in time; raises Unsolvable."""
     change, frequency = hopf.moved_by(amplitude)
-    form = StressForm(hopf.rod, hopf.normal.form.mesh)
+    form = StressForm(hopf.rod, hopf.normal_form.form.mesh)
     try:
         form = form.with_coordinate(hopf.name, hopf.coordinate + change)
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the branch leaves the allowed range of the parameters: {error}") from error
-    return orbit_of_amplitude(hopf.normal, form, amplitude, frequency)
+    return orbit_of_amplitude(hopf.normal_form, form, amplitude, frequency)

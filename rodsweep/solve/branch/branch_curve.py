@@ -1,4 +1,5 @@
-"""Stored form of a branch: numbers of the cycles, and special points."""
+"""A branch as it is stored: parameter, period, amplitude, errors and multiplier of each cycle, and special
+points."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -16,23 +17,24 @@ from .symmetry import SymmetryBreaking
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchPoint:
-    """Numbers of one cycle of a branch."""
+    """Stored quantities of one cycle of a branch."""
 
     at: float
-    """Value of the parameter."""
+    """Value of the continuation parameter."""
     at_error: float
-    """Relative error of the parameter at an equal deflection."""
+    """Relative error of the parameter, for the exact cycle with the same deflection."""
     measures: Measures
     errors: CycleErrors
-    """Errors at an equal parameter."""
+    """Errors relative to the exact cycle at the same value of the parameter."""
     multiplier: float
     """Modulus of the largest nontrivial Floquet multiplier."""
-    unstable: int
-    """Number of multipliers outside the unit circle, -1 if one lies on the circle within its error."""
+    unstable_count: int
+    """Number of multipliers outside the unit circle; -1 if a multiplier lies on the circle within its error.
+    """
 
     @classmethod
     def of(cls, point: ArcPoint, accuracy: float) -> "BranchPoint":
-        """The numbers of a cycle that was solved to an accuracy."""
+        """The stored quantities of the cycle `point`, which was solved to a relative accuracy."""
         cycle = point.cycle
         sizes = np.abs(cycle.multipliers)
         beyond = sizes - 1
@@ -43,85 +45,88 @@ class BranchPoint:
             measures=cycle.measures,
             errors=cycle.errors,
             multiplier=cycle.largest_multiplier,
-            unstable=-1 if undecided else int((beyond > 0).sum()),
+            unstable_count=-1 if undecided else int((beyond > 0).sum()),
         )
 
     @property
     def least_outside(self) -> int:
-        """Least number of multipliers outside the circle; 0: stable, -1: stability not known."""
-        return least_outside(self.unstable, self.multiplier, self.errors.multiplier_error)
+        """Smallest possible number of multipliers outside the unit circle; 0: stable, -1: stability
+        undecided."""
+        return least_outside(self.unstable_count, self.multiplier, self.errors.multiplier_error)
 
 
 def _margin(point: ArcPoint) -> float:
-    """Error of the moduli of multipliers near 1: a modulus closer to 1 is undecided.
+    """Error of the moduli of multipliers near 1; a multiplier with a modulus closer to 1 is undecided.
 
-    The largest multiplier's error, relative to that multiplier, holds for the others too; the trivial
-    multiplier's error is known, because its exact value is 1.
+    The relative error of the largest multiplier is used for all multipliers. The error of the trivial
+    multiplier is known, because its exact value is 1.
     """
     cycle = point.cycle
     relative = cycle.errors.multiplier_error / max(cycle.largest_multiplier, 1.0)
-    return relative + REFINEMENT.multiplier_factor * cycle.trivial_error
+    return relative + REFINEMENT.multiplier_error_factor * cycle.trivial_error
 
 
 @dataclass(frozen=True, slots=True)
 class BranchEnd:
-    """The special point where a branch ends, and whether it is a true end of the branch.
+    """The last special point of a branch, and whether the branch truly ends there.
 
-    complete, end_hopf, end_breaking and full: as in `BranchCurve`.
+    complete, end_hopf, end_breaking and list_full: as in `BranchCurve`.
     """
 
     special: SpecialPoint
     complete: bool
     end_hopf: int = -1
     end_breaking: SymmetryBreaking | None = None
-    full: bool = False
+    list_full: bool = False
 
 
 @dataclass(kw_only=True, slots=True)
 class BranchCurve:
-    """A branch: its cycles and its special points, each in order along the branch."""
+    """A branch: cycles and special points, both lists in order along the branch."""
 
-    hopf: int
-    """Number of the Hopf point where the branch starts, or -1."""
+    start_hopf: int
+    """Index of the Hopf point where the branch starts; -1 for an asymmetric branch."""
     points: list[BranchPoint] = field(default_factory=list)
     special: list[SpecialPoint] = field(default_factory=list)
     end_hopf: int = -1
-    """Number of the Hopf point where the branch ends, or -1."""
-    breaking: SymmetryBreaking | None = None
-    """Symmetry breaking where a branch without symmetry starts."""
+    """Index of the Hopf point where the branch ends; -1 if the branch ends elsewhere."""
+    start_breaking: SymmetryBreaking | None = None
+    """Symmetry breaking where an asymmetric branch starts; None for a branch from a Hopf point."""
     end_breaking: SymmetryBreaking | None = None
-    """Symmetry breaking where a branch without symmetry ends."""
+    """Symmetry breaking where an asymmetric branch ends; None if the branch ends elsewhere."""
     complete: bool = False
-    """Whether the branch was followed to a true end."""
-    full: bool = False
-    """Whether the branch ends because the limit on the number of cycles is reached."""
-    explained: bool = True
-    """Whether the special points account for all multipliers that cross the unit circle."""
+    """Whether the branch was followed to a true end: Hopf point, symmetry breaking, end of the range, or end
+    of the model."""
+    list_full: bool = False
+    """Whether following stopped at the maximum number of cycles."""
+    multipliers_explained: bool = True
+    """Whether special points explain every multiplier that crosses the unit circle along the branch."""
 
     def add(self, special: SpecialPoint) -> None:
-        """Adds a special point behind the last cycle."""
+        """Appends a special point; the present last cycle precedes it."""
         self.special.append(replace(special, after=len(self.points) - 1))
 
     def add_found(self, between: Sequence[SpecialPoint], explained: bool) -> None:
-        """Adds special points behind the last cycle. explained: whether these account for the multipliers of
-        the next cycle."""
+        """Appends special points that follow the present last cycle. explained: whether these points explain
+        the multipliers of the next cycle."""
         for special in between:
             self.add(special)
-        self.explained &= explained
+        self.multipliers_explained &= explained
 
     def judge(self, points: Sequence[BranchPoint]) -> None:
-        """Replaces the last cycles by the same cycles with errors."""
+        """Replaces the last len(points) cycles by `points`: the same cycles with measured or interpolated
+        errors."""
         self.points[-len(points) :] = points
 
     def cut(self, count: int) -> None:
-        """Drops a number of cycles at the end, and the special points behind them."""
+        """Removes the last `count` cycles, and the special points that follow the removed cycles."""
         del self.points[-count:]
         self.special[:] = [point for point in self.special if point.after < len(self.points)]
 
     def end(self, end: BranchEnd) -> None:
-        """Ends the branch at a special point."""
+        """Appends the end of the branch as its last special point."""
         self.add(end.special)
         self.complete = end.complete
-        self.full = end.full
+        self.list_full = end.list_full
         self.end_hopf = end.end_hopf
         self.end_breaking = end.end_breaking

@@ -1,8 +1,9 @@
-"""The task branch for one rod: all cycles born at its Hopf points along a parameter, followed to their ends.
+"""The task branch for one rod: all branches of cycles born at Hopf points along a parameter, followed to
+their ends.
 
 The Hopf points come from the covering of `task: thresholds`. A branch between two Hopf points is followed
-once, from the first. Where a branch loses its mirror symmetry, the branch of asymmetric cycles is followed
-too. Cycles on other branches are not found.
+only once, from the first Hopf point. At a symmetry breaking on such a branch, the branch of asymmetric cycles
+is followed too. Cycles on other branches are not found.
 """
 
 from dataclasses import dataclass, field, replace
@@ -18,23 +19,24 @@ from ..point import FAILURES, cause_of, solved
 from ..status import PointStatus
 from .beginning import hopf_point
 from .branch_curve import BranchCurve
-from .following import BranchLimits, follow_branch, follow_without_symmetry
-from .special.point import LOCATING, EndReason
-from .symmetry import SymmetryBreaking, breakings_of
-from .work import shares_of_branches
+from .following import BranchLimits, follow_asymmetric_branch, follow_branch
+from .special.point import SPECIAL_POINT, EndReason
+from .symmetry import SymmetryBreaking, symmetry_breakings_in
+from .work import fractions_before_branches
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchesSettings:
-    """Settings shared by all branches of a rod, or of a row of a diagram."""
+    """Settings for all branches of a rod: margin from crushing, and maximum number of cycles on a row of a
+    diagram."""
 
     crushing_margin: float = 1e-4
-    """Relative distance below the crushing force k1 at which a branch along F ends; nearer, the rod at rest
-    is almost crushed."""
+    """Relative distance of F from the crushing force at which a branch ends. Closer to the crushing force,
+    the rod at rest is almost crushed. Branches along k1 or taper have the same margin."""
     taper_accuracy: float = 1e-9
-    """Relative accuracy of the smallest taper whose tip is not crushed."""
+    """Relative tolerance of the smallest taper at which the force does not crush the tip."""
     max_row_cycles: int = 500
-    """Maximum number of cycles on all branches of one row."""
+    """Maximum number of cycles on all branches of one row of a phase diagram."""
 
 
 BRANCHES = BranchesSettings()
@@ -71,10 +73,8 @@ class BranchStatus(PointStatus):
 
 @dataclass(frozen=True, slots=True)
 class BranchRequest:
-    """Request for every rod: the continuation parameter, its range, the relative accuracy, and whether to
-    certify.
-
-    cycles, special: maximum number of cycles and of special points that are stored.
+    """Request for every rod: name and range of the continuation parameter, relative accuracy of the cycles,
+    whether to prove that no Hopf point is missing, and maximum numbers of stored cycles and special points.
     """
 
     along: str
@@ -88,10 +88,9 @@ class BranchRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchesOfRod:
-    """Branches of a rod. crossings: Hopf points within the range, ordered by the parameter.
-
-    unstable_at_start: number of unstable modes of the straight rod at the start of the range, -1 if unknown.
-    """
+    """Outcome of the task branch for one rod: all branches. crossings: Hopf points within the range, ordered
+    by the parameter. unstable_at_start: number of unstable modes of the straight rod at the start of the
+    range, -1 if unknown. proved: whether `crossings` is proved complete."""
 
     status: BranchStatus
     message: str = ""
@@ -105,11 +104,9 @@ class BranchesOfRod:
 def solve_branches(
     rod: Rod, request: BranchRequest, workspace: NewtonWorkspace | None = None
 ) -> BranchesOfRod:
-    """All branches born at Hopf points of a rod along a parameter; a failure is a status, never an exception.
-
-    rod: with any value of the continuation parameter. workspace: shared memory of Newton's matrices; by
-    default the rod has its own.
-    """
+    """All branches born at Hopf points of a rod along a parameter; a failure becomes a status, never an
+    exception. rod: its value of the continuation parameter is ignored. workspace: memory of Newton's
+    matrices, shared by many rods; None makes a new workspace."""
     memory = workspace or NewtonWorkspace()
     try:
         return solved(
@@ -122,7 +119,8 @@ def solve_branches(
 
 @cache
 def warm_up() -> None:
-    """Loads compiled code and creates solver objects, so that the first point takes no extra time."""
+    """Loads compiled code and creates solver objects by solving one rod, so that the first point takes no
+    extra time."""
     solve_branches(
         Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), BranchRequest("F", 0.0, 40.0, 1e-5, False, 100, 10)
     )
@@ -176,7 +174,8 @@ def _range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
 
 
 def _thinnest(rod: Rod, low: float, high: float) -> float:
-    """Smallest taper between `low` and `high` at which the force does not crush the tip."""
+    """Smallest taper between `low` and `high` at which the force does not crush the tip; `high` if the force
+    crushes every tip."""
 
     def holds(taper: float) -> bool:
         return (1 - BRANCHES.crushing_margin) * rod.build.crushing_share(taper) * rod.k1 > rod.F
@@ -190,13 +189,13 @@ def _thinnest(rod: Rod, low: float, high: float) -> float:
 
 
 def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
-    """Branches from all Hopf points, then the asymmetric branches. A branch between two Hopf points occurs
-    only once."""
+    """Branches from all Hopf points, then from all symmetry breakings. name: continuation parameter. A branch
+    that connects two Hopf points, or two symmetry breakings, occurs only once."""
     curves: list[BranchCurve] = []
     arrived: set[int] = set()
     left = limits.max_cycles
     count = len(limits.hopfs)
-    shares = shares_of_branches([hopf.coordinate for hopf in limits.hopfs], limits.ends)
+    shares = fractions_before_branches([hopf.coordinate for hopf in limits.hopfs], limits.ends)
     for number in range(count):
         if number in arrived:
             continue
@@ -208,13 +207,13 @@ def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
         arrived.add(curve.end_hopf)
         left -= len(curve.points)
         curves.append(curve)
-    breakings = breakings_of([curve.special for curve in curves])
+    breakings = symmetry_breakings_in([curve.special for curve in curves])
     met: list[SymmetryBreaking] = []
     for which, breaking in enumerate(breakings):
         if breaking in met:
             continue
         with solve_part(f"branch {len(curves) + 1}, without symmetry"):
-            curve = follow_without_symmetry(
+            curve = follow_asymmetric_branch(
                 which, name, replace(limits, max_cycles=left, breakings=breakings)
             )
         met += [curve.end_breaking] if curve.end_breaking else []
@@ -226,7 +225,8 @@ def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
 def _judged(
     found: Transitions, curves: list[BranchCurve], failures: list[str], request: BranchRequest
 ) -> tuple[BranchStatus, str]:
-    """(status, message); the gravest problem determines the status."""
+    """(status, message) of all branches of a rod. The gravest problem determines the status; the message
+    names every problem."""
     messages = [
         f"branch {number}: {special.message} at {request.along} = {special.at:.9g}"
         for number, curve in enumerate(curves, 1)
@@ -235,15 +235,16 @@ def _judged(
     ]
     count = sum(len(curve.special) for curve in curves)
     special = [point for curve in curves for point in curve.special]
-    tolerance = max(request.accuracy, LOCATING.accuracy)
+    tolerance = max(request.accuracy, SPECIAL_POINT.accuracy)
     inaccurate = any(point.error > tolerance * abs(point.at) for point in special)
-    if any(not curve.explained for curve in curves):
+    if any(not curve.multipliers_explained for curve in curves):
         messages.append("multipliers cross the unit circle where no special point was found")
     verdicts = {
         BranchStatus.stopped: bool(failures)
-        or any(not curve.complete and not curve.full for curve in curves),
-        BranchStatus.list_full: any(curve.full for curve in curves) or count > request.special,
-        BranchStatus.special_undecided: inaccurate or any(not curve.explained for curve in curves),
+        or any(not curve.complete and not curve.list_full for curve in curves),
+        BranchStatus.list_full: any(curve.list_full for curve in curves) or count > request.special,
+        BranchStatus.special_undecided: inaccurate
+        or any(not curve.multipliers_explained for curve in curves),
         BranchStatus.search_open: found.ended_early or (request.certify and not found.proved),
     }
     status = next((status for status, holds in verdicts.items() if holds), BranchStatus.ok)

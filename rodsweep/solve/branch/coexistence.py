@@ -1,8 +1,8 @@
-"""Rows of a phase diagram with their cycles: the stable states at each value along the row.
+"""Rows of a phase diagram with cycles: the stable states of the rod at each parameter value of the row.
 
-A branch is divided at its special points. A stable cycle exists at a value that lies within a part of a
-branch whose multipliers are inside the unit circle. The ends of a part are located special points, not values
-of the row.
+The special points divide a branch into sections, and each section covers an interval of the parameter. A
+stable cycle exists at every parameter value in the interval of a section whose multipliers lie inside the
+unit circle. The ends of an interval are located special points, not parameter values of the row.
 """
 
 from dataclasses import dataclass
@@ -24,12 +24,14 @@ from .special.point import EndReason, SpecialPoint
 
 
 def _shared_status(status: ThresholdStatus) -> tuple[int, str, bool]:
-    """(value, sentence, success) of the status of a row without cycles."""
+    """(value, sentence, success) of a `ThresholdStatus`, for the status with the same name of a row with
+    cycles."""
     return int(status), status.sentence, status.succeeded
 
 
 class CoexistenceStatus(PointStatus):
-    """Outcome of a row with cycles: of the stability changes if they failed, else of the branches."""
+    """Outcome of a row with cycles. A failed search for stability changes determines the status; otherwise
+    the branches do."""
 
     ok = _shared_status(ThresholdStatus.ok)
     not_certified = _shared_status(ThresholdStatus.not_certified)
@@ -54,7 +56,11 @@ class CoexistenceStatus(PointStatus):
 
 
 class StableStates(IntEnum):
-    """Stable states. neither_known: the straight rod is unstable and no branch has a stable cycle."""
+    """Stable states of a rod at one parameter value: straight state, cycle, or both.
+
+    neither_known: the straight rod is unstable and no branch has a stable cycle. crushed: the force crushes
+    the rod.
+    """
 
     neither_known = 0
     straight = 1
@@ -66,7 +72,11 @@ class StableStates(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoexistenceRow:
-    """A row: stable states at each value, (values,), and the special points of all branches."""
+    """Outcome for a row of a phase diagram: stable states at each parameter value, (values,), and special
+    points of all branches.
+
+    row: outcome for the straight rod.
+    """
 
     row: DiagramRow
     stable_states: NDArray[np.int8]
@@ -79,13 +89,14 @@ class CoexistenceRow:
 def solve_coexistence(
     rod: Rod, request: RowRequest, special: int, workspace: NewtonWorkspace | None = None
 ) -> CoexistenceRow:
-    """A row with its cycles; a failure is a status, never an exception.
+    """Stable states along one row of a phase diagram; a failure becomes a status, never an exception.
 
-    special: maximum number of special points. workspace: as in `solve_branches`.
+    special: maximum number of stored special points. workspace: memory of Newton's matrices, as in
+    `solve_branches`.
     """
     row = solve_row(rod, request)
     branches = row_branches(rod, request, special, workspace)
-    cycles = cycles_at(request.values, branches, request.certify)
+    cycles = stable_cycles_at(request.values, branches, request.certify)
     forces = request.values if request.name == "F" else np.full(len(request.values), rod.F)
     # Without a force the elastic energy decreases until the rod is straight: there is no cycle.
     cycles[forces == 0] = 0
@@ -95,7 +106,7 @@ def solve_coexistence(
     return CoexistenceRow(
         row=row,
         stable_states=states,
-        special=special_of(branches),
+        special=special_points_of(branches),
         status=status,
         message="; ".join(filter(None, [message, _undecided(request.name, undecided)])),
         seconds=row.seconds + branches.seconds,
@@ -105,7 +116,7 @@ def solve_coexistence(
 def row_branches(
     rod: Rod, request: RowRequest, special: int, workspace: NewtonWorkspace | None = None
 ) -> BranchesOfRod:
-    """Branches of cycles from the Hopf points of a row; other arguments as in `solve_coexistence`."""
+    """All branches of cycles born at Hopf points of a row; special, workspace: as in `solve_coexistence`."""
     asked = BranchRequest(
         along=request.name,
         start=float(request.values[0]),
@@ -118,31 +129,32 @@ def row_branches(
     return solve_branches(rod, asked, workspace)
 
 
-def special_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:
-    """All special points of the branches of a row."""
+def special_points_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:
+    """Special points of all branches of a rod, in one tuple, branch after branch."""
     return tuple(point for curve in branches.curves for point in curve.special)
 
 
 def _undecided(name: str, values: Array) -> str:
-    """Message on values at which the cycles leave the stable states undecided; may be empty. values: (n,)."""
+    """Message that names the parameter values, (n,), at which the cycles leave the stable states undecided;
+    empty for n = 0."""
     if not len(values):
         return ""
-    places = counted(len(values), "place")
-    return f"the stable states are undecided at {places}, {name} = {values[0]:.9g} to {values[-1]:.9g}"
+    count = counted(len(values), "value")
+    return f"the stable states are undecided at {count} of {name}, from {values[0]:.9g} to {values[-1]:.9g}"
 
 
 def _judged(
     row: DiagramRow, branches: BranchesOfRod, special: int, undecided: Array
 ) -> tuple[CoexistenceStatus, str]:
-    """(status, message); problems of the stability changes take precedence.
+    """(status, message) of a row. Problems in the search for stability changes take precedence.
 
-    undecided: values of the parameter whose stable states the cycles leave undecided, (n,).
+    undecided: parameter values, (n,), at which the cycles leave the stable states undecided.
     """
     message = "; ".join(filter(None, [row.message, branches.message]))
     # The gravest first: without the changes of the straight rod, branches may be missing.
     if row.status is not ThresholdStatus.ok:
         return CoexistenceStatus[row.status.name], message
-    if len(special_of(branches)) > special:
+    if len(special_points_of(branches)) > special:
         return CoexistenceStatus.special_full, message
     if branches.status is BranchStatus.special_undecided:
         return CoexistenceStatus.special_undecided, message
@@ -152,37 +164,43 @@ def _judged(
 
 
 @dataclass(frozen=True, slots=True)
-class BranchStretch:
-    """Part of a branch between two neighbouring special points.
+class StabilityInterval:
+    """Interval of the parameter that a branch covers between two successive special points, and the stability
+    there.
 
-    within: range of the parameter surely covered by the part. about: range possibly covered. stable: 1 if its
-    cycles are stable, 0 if unstable, -1 if not known.
+    certain_range: interval surely covered. possible_range: interval covered at most, within the errors of the
+    special points. stable: 1 if the cycles are stable, 0 if unstable, -1 if undecided.
     """
 
-    within: tuple[float, float]
-    about: tuple[float, float]
+    certain_range: tuple[float, float]
+    possible_range: tuple[float, float]
     stable: int
 
 
-def cycles_at(values: Array, branches: BranchesOfRod, certify: bool) -> NDArray[np.int8]:
-    """Stable cycles at each value, (values,): 1 if one exists, 0 if no branch has one, -1 if unknown."""
+def stable_cycles_at(values: Array, branches: BranchesOfRod, certify: bool) -> NDArray[np.int8]:
+    """Existence of a stable cycle at each parameter value, (values,): 1 if a stable cycle exists, 0 if no
+    branch has a stable cycle, -1 if undecided.
+
+    certify: whether a 0 needs a proof that no Hopf point is missing.
+    """
     complete = branches.status in (BranchStatus.ok, BranchStatus.special_undecided)
     known = complete and (branches.proved or not certify)
     found = np.full(len(values), 0 if known else -1, dtype=np.int8)
-    stretches = [stretch for curve in branches.curves for stretch in stretches_of(curve)]
-    # No stable cycle is claimed where the stability is unknown or within the error of the end of a part.
-    for stretch in stretches:
-        if stretch.stable:
-            found[(values >= stretch.about[0]) & (values <= stretch.about[1])] = -1
-    for stretch in stretches:
-        if stretch.stable > 0:
-            found[(values > stretch.within[0]) & (values < stretch.within[1])] = 1
+    intervals = [interval for curve in branches.curves for interval in stability_intervals(curve)]
+    # No stable cycle is claimed where the stability is undecided, or within the error of an interval's end.
+    for interval in intervals:
+        if interval.stable:
+            found[(values >= interval.possible_range[0]) & (values <= interval.possible_range[1])] = -1
+    for interval in intervals:
+        if interval.stable > 0:
+            found[(values > interval.certain_range[0]) & (values < interval.certain_range[1])] = 1
     return found
 
 
-def stretches_of(curve: BranchCurve) -> list[BranchStretch]:
-    """Parts of a branch between consecutive special points."""
-    stretches = []
+def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
+    """Intervals of the parameter between successive special points of a branch, with the stability in each
+    interval."""
+    intervals = []
     for one, other in zip(curve.special[:-1], curve.special[1:], strict=True):
         signs = {point.least_outside for point in curve.points[one.after + 1 : other.after + 1]} - {-1}
         # Stability can change at special points only; cycles that disagree between two of them leave it open.
@@ -194,19 +212,22 @@ def stretches_of(curve: BranchCurve) -> list[BranchStretch]:
         low, high = sorted((one, other), key=lambda point: point.at)
         within = low.at + _closed(low) * low.error, high.at - _closed(high) * high.error
         about = low.at - low.error, high.at + high.error
-        stretches.append(BranchStretch(within, about, stable))
-    return stretches
+        intervals.append(StabilityInterval(within, about, stable))
+    return intervals
 
 
 def _closed(point: SpecialPoint) -> int:
-    """Sign of an end's error in the range surely covered: -1 at an end of the parameter's range, where the
-    branch itself has a cycle, else 1.
-    """
+    """Sign with which the error of a special point shrinks the interval surely covered: 1, or -1 at an end of
+    the parameter range, because the branch has a cycle exactly there."""
     return -1 if point.reason is EndReason.range_end else 1
 
 
 def stable_states(motion: NDArray[np.int8], cycles: NDArray[np.int8]) -> NDArray[np.int8]:
-    """Stable states, (values,), from the straight rod's classes and the stable cycles, both (values,)."""
+    """`StableStates` at each parameter value, (values,).
+
+    motion: `Motion` of the straight rod, (values,). cycles: existence of a stable cycle as in
+    `stable_cycles_at`, (values,).
+    """
     straight = (motion == Motion.monotone) | (motion == Motion.oscillatory)
     states = np.where(straight, StableStates.straight, StableStates.neither_known).astype(np.int8)
     # 1 for a straight rod plus 2 for a cycle is 3, both.

@@ -1,10 +1,12 @@
-"""Errors of a cycle of a branch at the stored value of the parameter.
+"""Error estimates of the cycles of a branch: of period, extrema and multiplier at equal parameter, and of the
+parameter.
 
-Two finer meshes, one in space and one in time, have the cycle at the same arc length, which is regular at a
-fold. The cycles on the finer meshes lie at slightly different values of the parameter; slid along the branch
-to the stored value, they give the errors of period, extrema and multiplier. The difference of the parameter
-at an equal deflection is the error of the parameter. It stays small beside a Hopf point and beside a fold,
-where all other numbers vary steeply with the parameter.
+The cycle is solved at the same arc length on two finer meshes, one finer in space and one finer in time; this
+system is regular at a fold. The three cycles have slightly different parameter values. The finer cycles are
+therefore moved along the branch to the parameter value of the rough cycle. The remaining differences are the
+errors of period, extrema and multiplier at equal parameter. The error of the parameter is the parameter
+difference of the cycles at equal deflection. This error stays small near a Hopf point and near a fold, where
+all other quantities vary steeply with the parameter.
 """
 
 from dataclasses import dataclass, replace
@@ -24,59 +26,62 @@ from ..orbit.newton import ConvergedOrbit, multiplier_change, multipliers_of
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM, path_differences
-from .bordered.condition import BorderCondition, moved
+from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.scale import Scale
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchErrorSettings:
-    """Settings of the error estimates of the cycles of a branch."""
+    """Settings for the error estimates of the cycles of a branch."""
 
-    steep_slope: float = 120.0
-    """Sensitivity |(p/y) dy/dp| of the largest y to the parameter p, above which errors at an equal p may
-    exceed the accuracy in proportion, as beside a Hopf point or a fold: p itself has an error. It is a fifth
-    above the promised 100, since slopes are taken between cycles."""
+    max_sensitivity: float = 120.0
+    """Limit of the sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p. Above this limit, as
+    near a Hopf point or a fold, errors at equal p may exceed the accuracy in proportion to the sensitivity,
+    because p has an error too. The limit is a fifth above the documented limit of 100, because a user takes
+    the sensitivity between two cycles."""
     min_deflection_share: float = 0.1
-    """Smallest derivative of the deflection along the branch, in units of the parameter's derivative, used
-    for the parameter's error at an equal deflection; where the deflection is stationary that error is
-    undefined."""
+    """Smallest derivative of the deflection by arc length, in units of the derivative of the parameter, in
+    the parameter error at equal deflection. This error is undefined where the deflection is stationary along
+    the branch."""
     interpolation_factor: float = 2.0
     """Safety factor on interpolated errors."""
-    negligible_error: float = 1e-16
-    """Smallest error; smaller differences are rounding."""
-    newton_share: float = 0.01
-    """Tolerance of Newton's method on the finer meshes, in units of the accuracy."""
-    slope_step: float = 1e-4
-    """Arc length of the difference quotient that gives the slope of the largest y."""
+    min_error: float = 1e-16
+    """Smallest error; smaller differences between meshes are rounding errors."""
+    newton_tolerance_share: float = 0.01
+    """Tolerance of Newton's method on the two finer meshes, in units of the accuracy."""
+    sensitivity_step: float = 1e-4
+    """Arc length of the difference quotient for the sensitivity of the largest tip y."""
 
 
 BRANCH_ERRORS = BranchErrorSettings()
 
 
 @dataclass(frozen=True, eq=False)
-class CyclePlace:
-    """A cycle's scale and tangent, and how fast both and the multiplier change along the branch."""
+class BranchDerivatives:
+    """Derivatives of a branch at one of its cycles: tangent, curvature and multiplier rate, in the units of a
+    scale."""
 
     scale: Scale
     tangent: Array
-    """Tangent of the branch, of unit length in the scale, (N + 1,)."""
+    """Tangent of the branch with unit arc length, (N + 1,): derivatives of orbit values and parameter
+    coordinate."""
     ahead: Array
-    """The tangent as a direction of `Scale.place`, (3,)."""
+    """The tangent in components (deflection, log period, parameter), (3,), a unit vector."""
     curvature: float
-    """Second derivative of the parameter along the branch, in the scale's units."""
+    """Second derivative of the scaled parameter coordinate by arc length."""
     multiplier_rate: float
-    """Derivative of the largest multiplier along the branch."""
+    """Derivative of the largest multiplier by arc length."""
 
     @property
     def rate(self) -> float:
-        """Derivative of the parameter along the branch, in the scale's units."""
+        """Derivative of the scaled parameter coordinate by arc length; 0 at a fold."""
         return float(self.ahead[2])
 
     def slide(self, off: float) -> float:
-        """Arc length over which the parameter changes by `off`, in the scale's units.
+        """Arc length over which the scaled parameter coordinate changes by `off`.
 
-        Beside a fold the parameter may not reach that change; the result is then twice the length to the
-        fold.
+        Near a fold, where the parameter may never change by `off`, the result is 2 sqrt(|off/curvature|), an
+        upper bound of any such length.
         """
         # Away from a fold the quadratic term changes the linear solution by an eighth at most.
         if self.rate**2 >= 4 * abs(self.curvature * off):
@@ -89,139 +94,156 @@ class CyclePlace:
 
 @dataclass(frozen=True, eq=False)
 class BranchCalibration:
-    """Errors of a mesh at a cycle of a branch.
+    """Measured errors of a mesh at a cycle of a branch.
 
-    known: at an equal parameter. parameter: relative error of the parameter at an equal deflection, in space
-    and in time, (2,). slope: |(p/y) dy/dp|.
+    at_parameter: errors at equal parameter. parameter_errors: relative errors of the parameter at equal
+    deflection, in space and in time, (2,). sensitivity: |(p/y) dy/dp| of the largest tip y to the parameter
+    p.
     """
 
-    known: Calibration
-    parameter: Array
-    slope: float
+    at_parameter: Calibration
+    parameter_errors: Array
+    sensitivity: float
 
     @property
     def mesh(self) -> OrbitMesh:
-        return self.known.mesh
+        return self.at_parameter.mesh
 
     def errors(self, accuracy: float) -> CycleErrors:
-        """Errors of the cycle at the stored value of the parameter."""
-        return self.known.errors(accuracy)
+        """Errors of the cycle at equal parameter, not smaller than a share of the accuracy."""
+        return self.at_parameter.errors(accuracy)
 
     def parameter_error(self, accuracy: float) -> float:
-        """Relative error of the parameter at an equal deflection."""
+        """Relative error of the parameter at equal deflection, with a safety factor."""
         return max(
-            CALIBRATION.safety * float(self.parameter.sum()),
-            CYCLE_ERRORS.min_claim * accuracy,
-            CYCLE_ERRORS.rounding,
+            CALIBRATION.safety_factor * float(self.parameter_errors.sum()),
+            CYCLE_ERRORS.min_error_share * accuracy,
+            CYCLE_ERRORS.rounding_error,
         )
 
     def largest(self, accuracy: float) -> float:
-        """The error that must not exceed the accuracy."""
+        """The error that is compared with the relative accuracy, reduced where the sensitivity exceeds
+        `max_sensitivity`."""
         return self._demanded.errors(accuracy).largest
 
     def planned(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh that is expected to reach the accuracy."""
+        """The cheapest mesh expected to reach a relative accuracy of the cycle."""
         return self._demanded.planned(accuracy)
 
     def planned_for_parameter(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh whose parameter at an equal deflection is expected to have the accuracy."""
+        """The cheapest mesh expected to reach a relative accuracy of the parameter at equal deflection."""
         return self._of_parameter.planned(accuracy)
 
     @cached_property
     def _demanded(self) -> Calibration:
-        """Errors that determine the mesh; the parameter's error counts like the period's."""
+        """Errors that determine the mesh, reduced as in `largest`; they include the parameter error."""
         # Where y is steep in p, errors at equal p grow with the slope although the mesh is as good as
         # elsewhere.
-        steep = max(1.0, self.slope / BRANCH_ERRORS.steep_slope)
-        parts = [self.known.space / steep, self.known.time / steep]
-        for part, own in zip(parts, self.parameter, strict=True):
+        steep = max(1.0, self.sensitivity / BRANCH_ERRORS.max_sensitivity)
+        parts = [self.at_parameter.space / steep, self.at_parameter.time / steep]
+        for part, own in zip(parts, self.parameter_errors, strict=True):
             part[PERIOD_CHANGE] = max(part[PERIOD_CHANGE], own)
-        return replace(self.known, space=parts[0], time=parts[1])
+        return replace(self.at_parameter, space=parts[0], time=parts[1])
 
     @cached_property
     def _of_parameter(self) -> Calibration:
-        """A calibration with the parameter's error in place of every error."""
+        """A calibration in which every error equals the parameter error at equal deflection."""
         numbers = [PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH]
-        parts = [self.known.space.copy(), self.known.time.copy()]
-        for part, own in zip(parts, self.parameter, strict=True):
+        parts = [self.at_parameter.space.copy(), self.at_parameter.time.copy()]
+        for part, own in zip(parts, self.parameter_errors, strict=True):
             part[numbers] = own
-        return replace(self.known, space=parts[0], time=parts[1])
+        return replace(self.at_parameter, space=parts[0], time=parts[1])
 
-    def towards(self, other: "BranchCalibration", share: float, slope: float) -> "BranchCalibration":
-        """Errors of a cycle between two cycles with measured errors on one mesh. share: fraction of the way
-        to `other`; slope: slope at the cycle.
+    def towards(self, other: "BranchCalibration", share: float, sensitivity: float) -> "BranchCalibration":
+        """Interpolated errors of a cycle that lies on the branch between two measured cycles with the same
+        mesh.
 
-        Each error is interpolated geometrically and multiplied by BRANCH_ERRORS.interpolation_factor.
+        other: errors of the second measured cycle. share: fraction of the arc length to this cycle.
+        sensitivity: |(p/y) dy/dp| at the interpolated cycle. Each error is interpolated geometrically and
+        multiplied by BRANCH_ERRORS.interpolation_factor.
         """
         mean = [
             _interpolated(one, another, share)
             for one, another in (
-                (self.known.space, other.known.space),
-                (self.known.time, other.known.time),
-                (self.parameter, other.parameter),
+                (self.at_parameter.space, other.at_parameter.space),
+                (self.at_parameter.time, other.at_parameter.time),
+                (self.parameter_errors, other.parameter_errors),
             )
         ]
-        known = replace(self.known, space=mean[0], time=mean[1], growth=np.ones(2))
-        return BranchCalibration(known, mean[2], slope)
+        known = replace(self.at_parameter, space=mean[0], time=mean[1], error_growth=np.ones(2))
+        return BranchCalibration(known, mean[2], sensitivity)
 
 
 def _interpolated(one: Array, other: Array, share: float) -> Array:
-    """Errors at a share of the way, times `interpolation_factor`, at most the larger; of any shape."""
+    """Geometric interpolation at a fraction `share` between two arrays of errors of any common shape, times
+    `interpolation_factor`, and at most the larger of both errors."""
     # Errors of a mesh change by factors along a branch, so their logarithms are interpolated.
-    logarithms = np.log(np.maximum([one, other], BRANCH_ERRORS.negligible_error))
+    logarithms = np.log(np.maximum([one, other], BRANCH_ERRORS.min_error))
     means = np.exp(logarithms[0] + share * (logarithms[1] - logarithms[0]))
     bounded: Array = np.minimum(BRANCH_ERRORS.interpolation_factor * means, np.maximum(one, other))
     return bounded
 
 
 def measured_errors(
-    found: ConvergedOrbit, place: CyclePlace, accuracy: float, before: Calibration | None
+    found: ConvergedOrbit, derivatives: BranchDerivatives, accuracy: float, before: Calibration | None
 ) -> BranchCalibration:
-    """Errors of a cycle's mesh, from two finer meshes; raises Unsolvable. before: errors of a neighbouring
-    cycle."""
+    """Errors of the mesh of the cycle `found`, measured by comparison with two finer meshes; raises
+    Unsolvable. before: calibration at a previous cycle, from which the convergence rates follow."""
     mesh = mesh_of(found.orbit)
     orbit = found.orbit
     finer, share = finer_meshes(mesh)
-    condition = BorderCondition.at(place.scale, place.ahead, orbit)
+    condition = BorderCondition.at(derivatives.scale, derivatives.ahead, orbit)
     rough = CyclePath(orbit)
     multipliers = multipliers_of(found)[0]
     parts = np.empty((2, MULTIPLIER + 2))
     for part, target in zip(parts, finer, strict=True):
-        fine = condition.on(target, found, BRANCH_ERRORS.newton_share * accuracy, COMPARISON.matrix_distance)
-        part[:] = _difference(rough, multipliers, fine, place)
+        fine = condition.on(
+            target, found, BRANCH_ERRORS.newton_tolerance_share * accuracy, COMPARISON.matrix_distance
+        )
+        part[:] = _difference(rough, multipliers, fine, derivatives)
     # The mesh finer in time removes only this share of the error in time.
     parts[1] /= share
     known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, before)
-    return BranchCalibration(known, parts[:, -1], slope_at(rough, place))
+    return BranchCalibration(known, parts[:, -1], sensitivity_of(rough, derivatives))
 
 
-def _difference(rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, place: CyclePlace) -> Array:
-    """Differences of a cycle from the same cycle on a finer mesh, (6,).
+def _difference(
+    rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, derivatives: BranchDerivatives
+) -> Array:
+    """Differences, (6,), of a cycle on a rough mesh from the same cycle on a fine mesh.
 
-    The first five, as in `Calibration.space`, are differences at the rough mesh's value of the parameter; the
-    last is the difference of the parameter at an equal deflection.
+    The first five differences, as in `Calibration.space`, hold at the parameter value of the rough cycle. The
+    last is the parameter difference at equal deflection. multipliers: nontrivial multipliers of the rough
+    cycle, (rank - 1,).
     """
     orbit = rough.orbit
-    scale = place.scale
-    deflection, _, off = scale.place(orbit) - scale.place(fine.orbit)
-    length = place.slide(off)
+    scale = derivatives.scale
+    deflection, _, off = scale.components(orbit) - scale.components(fine.orbit)
+    length = derivatives.slide(off)
     target = mesh_of(fine.orbit)
-    along = np.append(carried_change(orbit, place.tangent[:-1], target), place.tangent[-1])
-    # The two cycles differ in the parameter; the finer one is moved along the branch to the same value.
-    slid = moved(fine.orbit, scale.name, length * along)
-    change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(length * place.multiplier_rate)
-    by_deflection = abs(place.ahead[0])
-    by_parameter = abs(place.rate)
+    along = np.append(carried_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1])
+    # The two cycles differ in the parameter; the fine cycle is moved along the branch to the same value.
+    slid = moved_orbit(fine.orbit, scale.name, length * along)
+    change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(
+        length * derivatives.multiplier_rate
+    )
+    by_deflection = abs(derivatives.ahead[0])
+    by_parameter = abs(derivatives.rate)
     # Distance of the two branches across their common tangent, in (deflection, parameter).
-    apart = abs(off * place.ahead[0] - deflection * place.rate)
+    apart = abs(off * derivatives.ahead[0] - deflection * derivatives.rate)
     own = apart / max(by_deflection, BRANCH_ERRORS.min_deflection_share * by_parameter)
     return np.array([*path_differences(rough, CyclePath(slid)), change, own])
 
 
-def slope_at(path: CyclePath, place: CyclePlace) -> float:
-    """Sensitivity |(p/y) dy/dp| of the largest y to the parameter p along a branch."""
+def sensitivity_of(path: CyclePath, derivatives: BranchDerivatives) -> float:
+    """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch at the cycle
+    `path`."""
     orbit: Orbit = path.orbit
-    ahead = CyclePath(moved(orbit, place.scale.name, BRANCH_ERRORS.slope_step * place.tangent))
+    ahead = CyclePath(
+        moved_orbit(orbit, derivatives.scale.name, BRANCH_ERRORS.sensitivity_step * derivatives.tangent)
+    )
     y = path.extrema["tip_y_max"]
     other = ahead.extrema["tip_y_max"]
-    return abs((other - y) / (BRANCH_ERRORS.slope_step * y)) / max(abs(place.rate), EXPONENTS.least_divisor)
+    return abs((other - y) / (BRANCH_ERRORS.sensitivity_step * y)) / max(
+        abs(derivatives.rate), EXPONENTS.least_divisor
+    )

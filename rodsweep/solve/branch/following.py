@@ -1,4 +1,4 @@
-"""A branch of cycles, followed from a Hopf point or symmetry breaking to the end."""
+"""Continuation of one branch of cycles, from a Hopf point or a symmetry breaking to the end of the branch."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -11,64 +11,71 @@ from ...wording import counted
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable
-from .arc import ARC_STEPS, ArcPoint, arc_between, next_point, point_at
-from .beginning import HopfBirth, first_cycle, special_hopf
+from .arc import ARC_STEPS, ArcPoint, arc_length_between, cycle_at_length, next_point
+from .beginning import HopfBirth, first_cycle, hopf_as_special_point
 from .branch_curve import BranchCurve, BranchEnd
 from .range_end import cycle_at_range_end, range_end_condition
 from .settling import measurement_due
-from .special.least_stretch import stretch_at
-from .special.locating import located
+from .special.least_stretch import least_stretch_of_cycle
+from .special.locating import special_point_between
 from .special.point import EndReason, SpecialKind, SpecialPoint
 from .special.points import special_points
-from .symmetry import ENDINGS, SymmetryBreaking, beginning_without_symmetry, breaking_between, mirrored
-from .trail import Trail, end_at
-from .work import share_done
+from .symmetry import (
+    BRANCH_END,
+    SymmetryBreaking,
+    first_asymmetric_cycle,
+    reaches_symmetric_cycle,
+    symmetry_breaking_between,
+)
+from .trail import BranchRecord, end_point
+from .work import fraction_done
 
 
 @dataclass(frozen=True, slots=True)
 class BranchLimits:
-    """Limits within which branches are followed, and known points where they may end."""
+    """Limits of all branches of a rod: range, number of cycles, and special points where a branch may end."""
 
     hopfs: Sequence[HopfBirth]
-    """Hopf points of the rod."""
+    """Hopf points of the rod within the range."""
     ends: tuple[float, float]
-    """Coordinates of the parameter at which branches end."""
+    """Smallest and largest coordinate of the continuation parameter; a branch ends at either."""
     reasons: tuple[EndReason, EndReason]
-    """Why branches end at each of the two coordinates."""
+    """Reasons for the end of a branch at the smallest and at the largest coordinate."""
     accuracy: float
     max_cycles: int
-    """Maximum number of stored cycles of a branch."""
+    """Maximum number of cycles of the branch."""
     workspace: NewtonWorkspace
-    """Memory of all matrices."""
+    """Memory of Newton's matrices."""
     breakings: Sequence[SymmetryBreaking] = ()
-    """Known symmetry breakings of the rod."""
+    """Symmetry breakings found so far on the branches of the rod."""
 
 
 def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
-    """The branch from Hopf point `number` of the list; a failure is its last special point."""
+    """The branch from the Hopf point `limits.hopfs[number]`; a failure becomes its last special point."""
     hopf = limits.hopfs[number]
-    curve = BranchCurve(hopf=number)
-    curve.add(special_hopf(hopf))
+    curve = BranchCurve(start_hopf=number)
+    curve.add(hopf_as_special_point(hopf))
     return _followed(curve, limits, lambda: first_cycle(hopf, limits.accuracy, limits.workspace))
 
 
-def follow_without_symmetry(which: int, name: str, limits: BranchLimits) -> BranchCurve:
-    """The branch of asymmetric cycles along the parameter `name`, from symmetry breaking
-    `limits.breakings[which]`."""
+def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> BranchCurve:
+    """The branch of asymmetric cycles along the parameter `name` from the symmetry breaking
+    `limits.breakings[which]`; a failure becomes its last special point."""
     breaking = limits.breakings[which]
-    curve = BranchCurve(hopf=-1, breaking=breaking)
+    curve = BranchCurve(start_hopf=-1, start_breaking=breaking)
     curve.add(replace(breaking.point, message="", orbit=None))
 
     def first() -> ArcPoint:
-        return beginning_without_symmetry(breaking, name, limits.accuracy, limits.workspace)
+        return first_asymmetric_cycle(breaking, name, limits.accuracy, limits.workspace)
 
     return _followed(curve, limits, first)
 
 
 def _followed(curve: BranchCurve, limits: BranchLimits, first: Callable[[], ArcPoint]) -> BranchCurve:
-    """A branch from a special point to its end. first: gives the first cycle or raises Unsolvable."""
+    """The branch `curve` with its first special point, followed to its end. first: returns the first
+    cycle."""
     if limits.max_cycles < 1:
-        curve.end(BranchEnd(_end_beside(curve, EndReason.list_full), complete=False, full=True))
+        curve.end(BranchEnd(_end_beside(curve, EndReason.list_full), complete=False, list_full=True))
         return curve
     try:
         start = first()
@@ -79,12 +86,12 @@ def _followed(curve: BranchCurve, limits: BranchLimits, first: Callable[[], ArcP
     if outside >= 0:
         curve.end(BranchEnd(_end_beside(curve, limits.reasons[outside]), complete=True))
         return curve
-    return followed_from(curve, start, limits)
+    return follow_from_cycle(curve, start, limits)
 
 
-def followed_from(curve: BranchCurve, first: ArcPoint, limits: BranchLimits) -> BranchCurve:
-    """A branch followed to its end from a first cycle with measured errors."""
-    trail = Trail(curve, limits.accuracy, first)
+def follow_from_cycle(curve: BranchCurve, first: ArcPoint, limits: BranchLimits) -> BranchCurve:
+    """The branch `curve`, followed to its end from its first cycle `first`, which has measured errors."""
+    trail = BranchRecord(curve, limits.accuracy, first)
     going: ArcPoint | BranchEnd = first
     while isinstance(going, ArcPoint):
         report(partial(_place_on, curve, going, limits))
@@ -94,18 +101,20 @@ def followed_from(curve: BranchCurve, first: ArcPoint, limits: BranchLimits) -> 
 
 
 def _place_on(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> SolvePosition:
-    """Position of a branch's last cycle, and the fraction of the branch's work that is done."""
+    """Progress along a branch: the parameter at its last cycle `start`, and the fraction of the work done."""
     name = start.scale.name
-    # The end of the range towards which the parameter moves at present; behind a fold it is the other one.
+    # The end of the range towards which the parameter moves at present; it changes at a fold.
     aim = limits.ends[1 if start.ahead[-1] > 0 else 0]
     value = PARAMETERS[name].value(start.at)
     aim_value = PARAMETERS[name].value(aim)
     words = f"{name} = {value:.5g} on the way to {aim_value:.5g}, {counted(len(curve.points), 'cycle')}"
-    return SolvePosition(words, share_done(PARAMETERS[name].coordinate(curve.special[0].at), start.at, aim))
+    return SolvePosition(
+        words, fraction_done(PARAMETERS[name].coordinate(curve.special[0].at), start.at, aim)
+    )
 
 
 def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
-    """The end of a branch that has no cycle, at its first special point."""
+    """The end of a branch without any cycle, at the first special point of the branch."""
     born = curve.special[0]
     return replace(
         born,
@@ -118,77 +127,79 @@ def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> Spe
 
 
 def _beyond(point: ArcPoint, limits: BranchLimits) -> int:
-    """Index of the end of the range that a cycle lies beyond, -1 within the range."""
+    """Index of the end of the range beyond which a cycle lies: 0 below the range, 1 above, -1 within."""
     low, high = limits.ends
     if point.at < low:
         return 0
     return 1 if point.at > high else -1
 
 
-def _next(trail: Trail, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """The next cycle, added to the branch with the special points before it; or the end of the branch."""
+def _next(trail: BranchRecord, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
+    """The next cycle after `start`, appended to the branch after the special points between; or the end."""
     curve = trail.curve
     if len(curve.points) >= limits.max_cycles:
-        return BranchEnd(end_at(start, EndReason.list_full), complete=False, full=True)
+        return BranchEnd(end_point(start, EndReason.list_full), complete=False, list_full=True)
     try:
         end = next_point(start, limits.accuracy)
         if _passed_mirror_image(start, end, limits):
-            # Beyond the point of symmetry the branch runs back through its own mirror images.
+            # Beyond this point the branch continues through the mirror images of its cycles.
             return (_end_at_hopf if start.orbit.symmetric else _end_at_breaking)(start, end, limits)
         outside = _beyond(end, limits)
         range_end = range_end_condition(start, limits.ends[outside]) if outside >= 0 else None
         if range_end is not None:
             end = cycle_at_range_end(start, end, range_end, limits.accuracy)
         if range_end is not None and _hides_corner(start, end):
-            range_end = None  # after the cycle half way
-            end = point_at(start, arc_between(start, end) / 2, limits.accuracy)
+            range_end = None  # a cycle half way comes first
+            end = cycle_at_length(start, arc_length_between(start, end) / 2, limits.accuracy)
         # h1 = 0: the model ends here, whatever the discrete equations still solve.
-        if stretch_at(end) <= 0:
-            return BranchEnd(located(SpecialKind.left_the_model, start, end, limits.accuracy), complete=True)
+        if least_stretch_of_cycle(end) <= 0:
+            return BranchEnd(
+                special_point_between(SpecialKind.left_the_model, start, end, limits.accuracy), complete=True
+            )
         _add_special_points(curve, start, end, limits)
         trail.append(end)
         last = trail.settle(range_end) if range_end is not None or measurement_due(end) else end
     except Unsolvable as why:
         message = f"no further cycle of the branch is found: {why}"
-        return BranchEnd(end_at(start, EndReason.no_cycle_found, message), complete=False)
+        return BranchEnd(end_point(start, EndReason.no_cycle_found, message), complete=False)
     if range_end is None:
         return last
     at = getattr(last.orbit.form.rod, last.scale.name)
     return BranchEnd(
-        replace(end_at(last, limits.reasons[outside]), error=ENDINGS.range_end_error * abs(at)), complete=True
+        replace(end_point(last, limits.reasons[outside]), error=BRANCH_END.range_end_error * abs(at)),
+        complete=True,
     )
 
 
 def _add_special_points(curve: BranchCurve, start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> None:
-    """Adds the special points between the last stored cycle and the next cycle, which is not stored yet."""
+    """Appends the special points between the last cycle `start` and the next cycle `end` to a branch."""
 
-    step = partial(point_at, accuracy=limits.accuracy)
+    step = partial(cycle_at_length, accuracy=limits.accuracy)
     curve.add_found(*special_points(start, end, step, limits.accuracy))
 
 
 def _passed_mirror_image(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> bool:
-    """Whether the branch passes its own mirror image between two cycles."""
+    """Whether a branch reaches its mirror image between two cycles: at a Hopf point or a symmetric cycle."""
     if start.orbit.symmetric:
-        return turned_round(start, end)
-    return mirrored(start, end, limits.breakings, limits.accuracy)
+        return passed_hopf_point(start, end)
+    return reaches_symmetric_cycle(start, end, limits.breakings, limits.accuracy)
 
 
 def _hides_corner(start: ArcPoint, end: ArcPoint) -> bool:
-    """Whether the largest y has a corner between a cycle and the last one, too far from it to be located.
+    """Whether the largest tip y may have a corner before the last cycle `end`, too far from `end` for a
+    figure.
 
-    At a corner another maximum of y(t) becomes the largest. A figure finds it from two cycles on each side.
+    At a corner a different maximum of y(t) becomes the largest. A figure locates a corner from two cycles
+    before and two cycles after the corner.
     """
     apart = abs(end.cycle.path.time_of_largest_y - start.cycle.path.time_of_largest_y)
-    other = min(apart, 1 - apart) > ENDINGS.same_maximum
-    return other and arc_between(start, end) > ENDINGS.largest_hidden_corner
+    other = min(apart, 1 - apart) > BRANCH_END.max_peak_shift
+    return other and arc_length_between(start, end) > BRANCH_END.max_step_with_corner
 
 
-def turned_round(start: ArcPoint, end: ArcPoint) -> bool:
-    """Whether the bending moments at t = 0 have changed sign between two cycles, as they do beyond a Hopf
-    point.
-
-    The tip's y is no criterion: on a large cycle an extremum of y may pass through 0.
-    """
+def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
+    """Whether the bending moments at t = 0 have opposite signs at two cycles, because a Hopf point lies
+    between. The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
     mesh = mesh_of(end.orbit)
     layout = end.orbit.form.layout
     one = layout.field(mesh.carry(start.orbit).start, "m3")
@@ -199,36 +210,39 @@ def turned_round(start: ArcPoint, end: ArcPoint) -> bool:
 
 def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
     """The Hopf point between two cycles where the branch ends; or the first cycle, for a shorter step."""
-    shorter = arc_between(start, end) / 2
-    if start.cycle.measures.tip_y_max > ENDINGS.small_cycle:
-        if shorter < ARC_STEPS.shortest:
+    shorter = arc_length_between(start, end) / 2
+    if start.cycle.measures.tip_y_max > BRANCH_END.max_last_amplitude:
+        if shorter < ARC_STEPS.min_length:
             raise Unsolvable("the bending moments of the cycle change sign within the shortest step")
         return replace(start, length=shorter)
     # Near a Hopf point parameter and period are quadratic in the deflection.
     tangent = start.tangent
-    # Back to deflection d = 0 a parabola p = p0 + k d^2 changes by half of what its tangent says.
-    share = start.deflection / (2 * start.ahead[0] * start.scale.deflection)
+    # From d to 0 the parabola p = p0 + k d^2 changes by half as much as its tangent at d.
+    share = start.deflection / (2 * start.ahead[0] * start.scale.deflection_unit)
     at = start.at - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
-    rounding = max(ENDINGS.min_place_tolerance, limits.accuracy)
+    rounding = max(BRANCH_END.parameter_tolerance, limits.accuracy)
     for number, hopf in enumerate(limits.hopfs):
-        tolerance = ENDINGS.place_share * abs(start.at - hopf.coordinate) + rounding * abs(hopf.coordinate)
-        period_tolerance = ENDINGS.place_share * abs(start.orbit.period - hopf.period)
-        period_tolerance += ENDINGS.period_tolerance * hopf.period
+        tolerance = BRANCH_END.extrapolation_tolerance * abs(start.at - hopf.coordinate) + rounding * abs(
+            hopf.coordinate
+        )
+        period_tolerance = BRANCH_END.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
+        period_tolerance += BRANCH_END.period_tolerance * hopf.period
         if abs(at - hopf.coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
-            return BranchEnd(special_hopf(hopf), complete=True, end_hopf=number)
+            return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
     why = "the cycles shrink to zero amplitude, but no Hopf point is known there"
-    return BranchEnd(end_at(start, EndReason.no_cycle_found, why), complete=False)
+    return BranchEnd(end_point(start, EndReason.no_cycle_found, why), complete=False)
 
 
 def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """The symmetry breaking between two cycles where the branch ends; else the first, for a shorter step."""
-    which = breaking_between(start, end, limits.breakings, limits.accuracy)
+    """The end of an asymmetric branch at a symmetry breaking between two cycles; or `start` with half the
+    step length, if the cycles are still too asymmetric."""
+    which = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
     if which is None:
-        return replace(start, length=arc_between(start, end) / 2)
+        return replace(start, length=arc_length_between(start, end) / 2)
     if which >= 0:
         breaking = limits.breakings[which]
         special = replace(breaking.point, message="", orbit=None)
         return BranchEnd(special, complete=True, end_breaking=breaking)
-    why = "the cycles become symmetric at a cycle of a branch that was not followed"
-    return BranchEnd(end_at(start, EndReason.no_cycle_found, why), complete=False)
+    why = "the cycles become symmetric, but no known symmetry breaking is there"
+    return BranchEnd(end_point(start, EndReason.no_cycle_found, why), complete=False)

@@ -1,39 +1,43 @@
-"""The last cycle of a branch, at an end of the range of its parameter."""
+"""The last cycle of a branch, at an end of the parameter range."""
 
 import numpy as np
 
-from ..continuation.follower import zero_along
+from ..continuation.follower import zero_along_step
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
-from .arc import ArcPoint, cycle_ahead, tangent_at
+from .arc import ArcPoint, tangent_at, unmeasured_cycle
 from .bordered.condition import BorderCondition
-from .bordered.matrix import bordered
+from .bordered.matrix import bordered_matrix_of
 from .special.segment import BranchSegment
-from .symmetry import ENDINGS
+from .symmetry import BRANCH_END
 
 ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
-"""Direction of `Scale.place` along the parameter."""
+"""Unit vector along the parameter, (3,), in components (deflection, log period, parameter)."""
 
 
 def range_end_condition(start: ArcPoint, limit: float) -> BorderCondition:
-    """The condition for the cycle at a limit of the parameter's coordinate."""
-    return BorderCondition(start.scale, ALONG_PARAMETER, limit / start.scale.coordinate)
+    """The condition that the parameter coordinate of a cycle equals `limit`, in the scale of the cycle
+    `start`."""
+    return BorderCondition(start.scale, ALONG_PARAMETER, limit / start.scale.coordinate_unit)
 
 
 def cycle_at_range_end(
     start: ArcPoint, end: ArcPoint, range_end: BorderCondition, accuracy: float
 ) -> ArcPoint:
-    """The cycle at an end of the range, between two cycles; raises Unsolvable."""
+    """The cycle at an end of the parameter range, between the cycles `start` and `end`; raises Unsolvable.
+
+    range_end: condition that the cycle fulfils.
+    """
     scale = start.scale
     segment = BranchSegment(start, end)
 
     def beyond(length: float) -> float:
-        # On the predicted cubic, without solving a cycle: the condition itself is solved for once below.
+        # On the predicted cubic; the only cycle is solved below, with the exact condition.
         return -range_end.residual(segment.predicted(length))
 
     ends = beyond(0.0), beyond(segment.length)
-    length = zero_along(beyond, ends, segment.length, 0.0, ENDINGS.range_end_bracket)
+    length = zero_along_step(beyond, ends, segment.length, 0.0, BRANCH_END.range_end_tolerance)
     tolerance = newton_tolerance(accuracy)
     predicted = segment.predicted(length)
     found = range_end.solved(predicted, tolerance, start.workspace, matrix_distance(accuracy))
-    tangent = tangent_at(found.orbit, scale, start.ahead, bordered(found))
-    return cycle_ahead(start, found, tangent, length, length, accuracy)
+    tangent = tangent_at(found.orbit, scale, start.ahead, bordered_matrix_of(found))
+    return unmeasured_cycle(start, found, tangent, length, length, accuracy)

@@ -1,6 +1,6 @@
-"""Measurement of the errors of the cycles of a branch, and choice of the mesh from these errors.
+"""Choice of the mesh for the cycles of a branch, from measured errors.
 
-Errors are measured at every third cycle or so (`errors`) and interpolated at the cycles between.
+Errors are measured at about every third cycle (`errors`) and interpolated at the cycles between.
 """
 
 from collections.abc import Sequence
@@ -11,139 +11,156 @@ from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance, with_
 from ..orbit.newton import ConvergedOrbit, multipliers_of
 from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_of
 from ..point import Unsolvable
-from .arc import ARC_STEPS, ArcPoint, cycle_place, tangent_at
+from .arc import ARC_STEPS, ArcPoint, branch_derivatives, tangent_at
 from .bordered.condition import BorderCondition
-from .bordered.matrix import bordered
+from .bordered.matrix import bordered_matrix_of
 from .bordered.scale import Scale
-from .errors import BranchCalibration, measured_errors, slope_at
+from .errors import BranchCalibration, measured_errors, sensitivity_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SettlingSettings:
-    """Settings for the choice of the meshes of a branch, and of the cycles at which errors are measured."""
+class BranchMeshSettings:
+    """Settings for the choice of meshes on a branch, and of the cycles whose errors are measured."""
 
     max_meshes: int = 8
     """Maximum number of meshes tried for one cycle."""
-    cheaper_cost: float = 0.5
-    """A cheaper mesh is taken if its cost is below this fraction of the present cost."""
-    planned_share: float = 0.5
-    """Fraction of the accuracy for which a mesh is planned, so that the mesh serves the next cycles too."""
+    max_cheaper_cost: float = 0.5
+    """Largest cost, in units of the cost of the present mesh, of a cheaper mesh that replaces the present
+    mesh."""
+    planned_error: float = 0.5
+    """Error for which a mesh is planned, in units of the accuracy. It is below 1 so that the mesh suffices
+    for the next cycles too."""
     min_rate_share: float = 0.7
-    """Smallest rate of the parameter along the branch, in units of the slower rate at the two measured
-    cycles, for interpolated errors: beside a fold the rate is smaller, and the measured errors are no
-    bound."""
+    """Smallest derivative of the parameter by arc length at a cycle with interpolated errors, in units of the
+    smaller derivative at the two measured cycles. Near a fold the derivative is smaller, and the measured
+    errors are no bound."""
     max_tail_growth: float = 2.0
-    """Largest growth of the estimated errors since either measured cycle for interpolated errors."""
+    """Growth of the errors since both measured cycles, estimated by the coefficient tails, above which errors
+    are measured instead of interpolated."""
     max_unmeasured: int = 3
-    """Errors are measured at least at every third cycle."""
+    """Maximum number of steps between two cycles with measured errors."""
     remeasure_growth: float = 4.0
-    """Errors are measured anew once the coefficient tails suggest growth by this factor."""
+    """Growth of the errors since the last measurement, estimated by the coefficient tails, above which the
+    errors are measured again."""
 
 
-SETTLING = SettlingSettings()
+BRANCH_MESH = BranchMeshSettings()
 
 
-def first_point(found: ConvergedOrbit, scale: Scale, side: Array, born: float, accuracy: float) -> ArcPoint:
-    """The first cycle of a branch with its errors, on a finer mesh if necessary; raises Unsolvable.
+def first_measured_cycle(
+    found: ConvergedOrbit, scale: Scale, side: Array, born: float, accuracy: float
+) -> ArcPoint:
+    """The first cycle of a branch, with measured errors within the accuracy, on a finer mesh if necessary;
+    raises Unsolvable.
 
-    side: direction in which the branch goes on, (3,). born: distance from the point of birth, in the scale;
-    parameter and multipliers are quadratic in this distance.
+    side: direction of the branch in components (deflection, log period, parameter), (3,). born: arc length
+    from the special point where the branch starts; parameter and multipliers are quadratic in this length.
     """
-    place = cycle_place(found, scale, tangent_at(found.orbit, scale, side, bordered(found)))
+    derivatives = branch_derivatives(
+        found, scale, tangent_at(found.orbit, scale, side, bordered_matrix_of(found))
+    )
     multipliers = multipliers_of(found)[0]
     lost = abs(multipliers[0] - 1) if len(multipliers) else 0.0
-    # From the Hopf point, where rate and lost multiplier vanish: one is linear in the deflection, the other
-    # quadratic.
-    place = replace(place, curvature=place.rate / born, multiplier_rate=2 * lost / born)
-    calibration = measured_errors(found, place, accuracy, None)
-    cycle = with_calibrated_errors(calibration.known, found, accuracy)
-    return refined(
-        ArcPoint(cycle=cycle, place=place, length=ARC_STEPS.first, calibration=calibration), accuracy
+    # At the Hopf point the parameter's rate is 0 and a second multiplier is 1. From there the rate is linear
+    # and the multiplier quadratic in the deflection.
+    derivatives = replace(derivatives, curvature=derivatives.rate / born, multiplier_rate=2 * lost / born)
+    calibration = measured_errors(found, derivatives, accuracy, None)
+    cycle = with_calibrated_errors(calibration.at_parameter, found, accuracy)
+    return on_sufficient_mesh(
+        ArcPoint(
+            cycle=cycle, derivatives=derivatives, length=ARC_STEPS.first_length, calibration=calibration
+        ),
+        accuracy,
     )
 
 
 def measurement_due(point: ArcPoint) -> bool:
-    """Whether the errors of a cycle must be measured."""
-    growth = float(point.calibration.known.on_branch(point.orbit).growth.max())
-    return point.unmeasured >= SETTLING.max_unmeasured or growth > SETTLING.remeasure_growth
+    """Whether the errors of a cycle must be measured, because the last measured cycle is too far away."""
+    growth = float(point.calibration.at_parameter.on_branch(point.orbit).error_growth.max())
+    return point.unmeasured >= BRANCH_MESH.max_unmeasured or growth > BRANCH_MESH.remeasure_growth
 
 
-def measured(point: ArcPoint, accuracy: float) -> ArcPoint:
-    """The cycle with errors measured at it; raises Unsolvable."""
-    before = point.calibration.known
-    return with_calibration(point, measured_errors(point.cycle.fine, point.place, accuracy, before), accuracy)
+def with_measured_errors(point: ArcPoint, accuracy: float) -> ArcPoint:
+    """The same cycle with its errors measured on two finer meshes; raises Unsolvable."""
+    before = point.calibration.at_parameter
+    return with_calibration(
+        point, measured_errors(point.cycle.converged, point.derivatives, accuracy, before), accuracy
+    )
 
 
 def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: float) -> ArcPoint:
-    """The cycle with errors from a calibration."""
-    cycle = with_calibrated_errors(calibration.known, point.cycle.fine, accuracy)
+    """The same cycle with the errors of a calibration that holds at this cycle."""
+    cycle = with_calibrated_errors(calibration.at_parameter, point.cycle.converged, accuracy)
     return replace(point, cycle=cycle, calibration=calibration, unmeasured=0, arc_since_measured=0.0)
 
 
-def refined(point: ArcPoint, accuracy: float, condition: BorderCondition | None = None) -> ArcPoint:
-    """The cycle with measured errors within the accuracy, on the cheapest mesh found; raises Unsolvable
-    without one.
+def on_sufficient_mesh(
+    point: ArcPoint, accuracy: float, condition: BorderCondition | None = None
+) -> ArcPoint:
+    """The same cycle with measured errors within the accuracy, on a mesh chosen for this accuracy; raises
+    Unsolvable if no allowed mesh suffices.
 
-    condition: holds on every mesh; by default the arc length along the branch is kept. A much cheaper mesh
-    replaces a mesh that is too fine.
+    A sufficient mesh is replaced only by a much cheaper mesh. condition: equation that identifies the cycle
+    on every mesh; by default its arc length.
     """
     condition = condition or point.condition(0.0)
     finest = False
-    for _ in range(SETTLING.max_meshes):
+    for _ in range(BRANCH_MESH.max_meshes):
         if point.unmeasured:
-            point = measured(point, accuracy)
+            point = with_measured_errors(point, accuracy)
         known = point.calibration
         enough = known.largest(accuracy) <= accuracy
-        planned = known.planned(SETTLING.planned_share * accuracy)
-        # A mesh that is good enough is left only for a much cheaper one, and never once it was too coarse
-        # before.
-        if enough and (finest or planned.cost > SETTLING.cheaper_cost * known.mesh.cost):
+        planned = known.planned(BRANCH_MESH.planned_error * accuracy)
+        # A sufficient mesh is replaced only by a much cheaper mesh, and never after an insufficient mesh.
+        if enough and (finest or planned.cost > BRANCH_MESH.max_cheaper_cost * known.mesh.cost):
             return point
         if not enough:
             finest = True
             planned = finer_mesh(known.mesh, planned)
         if not planned.allowed:
             break
-        point = on_mesh(point, planned, condition, accuracy)
+        point = solved_on_mesh(point, planned, condition, accuracy)
     raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
 
 
-def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accuracy: float) -> ArcPoint:
-    """The cycle on another mesh, without measured errors; raises Unsolvable."""
-    found = condition.on(mesh, point.cycle.fine, newton_tolerance(accuracy), matrix_distance(accuracy))
-    tangent = tangent_at(found.orbit, point.scale, point.ahead, bordered(found))
-    known = point.place
-    place = replace(
-        cycle_place(found, point.scale, tangent),
+def solved_on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accuracy: float) -> ArcPoint:
+    """The same cycle solved on another mesh, without measured errors; raises Unsolvable. condition: equation
+    that identifies the cycle."""
+    found = condition.on(mesh, point.cycle.converged, newton_tolerance(accuracy), matrix_distance(accuracy))
+    tangent = tangent_at(found.orbit, point.scale, point.ahead, bordered_matrix_of(found))
+    known = point.derivatives
+    derivatives = replace(
+        branch_derivatives(found, point.scale, tangent),
         curvature=known.curvature,
         multiplier_rate=known.multiplier_rate,
     )
     return replace(
         point,
-        cycle=with_calibrated_errors(point.calibration.known, found, accuracy),
-        place=place,
+        cycle=with_calibrated_errors(point.calibration.at_parameter, found, accuracy),
+        derivatives=derivatives,
         unmeasured=1,
     )
 
 
-def settled(
+def with_errors_in_accuracy(
     last: ArcPoint, points: Sequence[ArcPoint], accuracy: float, condition: BorderCondition | None
 ) -> list[ArcPoint]:
-    """The cycles after a measured one, all with errors within the accuracy; raises Unsolvable.
+    """The cycles `points`, which follow the measured cycle `last`, all with errors within the accuracy;
+    raises Unsolvable.
 
-    condition: holds for the last cycle on every mesh; by default its arc length is kept. Errors are measured
-    at the last cycle and interpolated between; a cycle that is too inaccurate is solved again on the mesh of
-    the last cycle.
+    Errors are measured at the last of `points` and interpolated at the others. A cycle that is too inaccurate
+    is solved again on the mesh of the last of `points`. condition: equation that identifies the last of
+    `points` on every mesh; by default its arc length.
     """
     *between, end = points
     whole = end.arc_since_measured
-    end = measured(end, accuracy)
+    end = with_measured_errors(end, accuracy)
     known = [
         _with_errors_between(last, point, end, point.arc_since_measured / whole, accuracy)
         for point in between
     ]
-    # Only after the errors between were interpolated, since those belong to the old mesh.
-    end = refined(end, accuracy, condition)
+    # Only after the interpolation, because the interpolated errors belong to the old mesh.
+    end = on_sufficient_mesh(end, accuracy, condition)
     again = [
         point if point.calibration.largest(accuracy) <= accuracy else _on_mesh_of(end, point, accuracy)
         for point in known
@@ -152,25 +169,32 @@ def settled(
 
 
 def _on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
-    """A cycle solved on the mesh of a later cycle, with errors of that cycle; raises Unsolvable."""
-    solved = on_mesh(point, mesh_of(end.orbit), point.condition(0.0), accuracy)
-    # With the errors of the end, on whose mesh the cycle now is.
+    """The cycle `point` solved again on the mesh of the later cycle `end`, with errors calibrated there;
+    raises Unsolvable."""
+    solved = solved_on_mesh(point, mesh_of(end.orbit), point.condition(0.0), accuracy)
+    # With share 1 the errors are those of `end`, on whose mesh the cycle now is.
     solved = _with_errors_between(end, solved, end, 1.0, accuracy)
-    return refined(solved, accuracy)
+    return on_sufficient_mesh(solved, accuracy)
 
 
 def _with_errors_between(
     last: ArcPoint, point: ArcPoint, end: ArcPoint, share: float, accuracy: float
 ) -> ArcPoint:
-    """A cycle at a share of the way between two on the same mesh, with interpolated errors.
+    """The cycle `point` with errors interpolated between the measured cycles `last` and `end`, all on the
+    same mesh; raises Unsolvable.
 
-    Its errors are measured instead if its coefficient tails are larger, or if the parameter changes more
-    slowly, as beside a fold: the errors at the ends are then no bound. Raises Unsolvable.
+    share: fraction of the arc length from `last` to `end`. The errors of `point` are measured instead if its
+    coefficient tails are larger, or if the parameter changes more slowly, as near a fold: the errors at
+    `last` and `end` are then no bound.
     """
     ends = (last, end)
-    slow = abs(point.rises) < SETTLING.min_rate_share * min(abs(one.rises) for one in ends)
-    grown = min(one.calibration.known.on_branch(point.orbit).growth.max() for one in ends)
-    if slow or float(grown) > SETTLING.max_tail_growth:
-        return measured(point, accuracy)
-    known = last.calibration.towards(end.calibration, share, slope_at(point.cycle.path, point.place))
+    slow = abs(point.parameter_rate) < BRANCH_MESH.min_rate_share * min(
+        abs(one.parameter_rate) for one in ends
+    )
+    grown = min(one.calibration.at_parameter.on_branch(point.orbit).error_growth.max() for one in ends)
+    if slow or float(grown) > BRANCH_MESH.max_tail_growth:
+        return with_measured_errors(point, accuracy)
+    known = last.calibration.towards(
+        end.calibration, share, sensitivity_of(point.cycle.path, point.derivatives)
+    )
     return with_calibration(point, known, accuracy)

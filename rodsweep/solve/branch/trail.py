@@ -1,4 +1,5 @@
-"""Cycles of a branch in the order of the steps; errors are measured at some and interpolated between."""
+"""Record of the cycles of a branch during the continuation; errors are measured at some cycles and
+interpolated at the others."""
 
 from dataclasses import replace
 from math import nan
@@ -9,12 +10,13 @@ from ..point import Unsolvable
 from .arc import ArcPoint
 from .bordered.condition import BorderCondition
 from .branch_curve import BranchCurve, BranchEnd, BranchPoint
-from .settling import settled
+from .settling import with_errors_in_accuracy
 from .special.point import EndReason, SpecialKind, SpecialPoint
 
 
-def end_at(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialPoint:
-    """The end of a branch at a cycle; the error of the parameter is still nan."""
+def end_point(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialPoint:
+    """The special point for the end of a branch at its last cycle `point`, with errors NaN, which the caller
+    replaces."""
     measures = point.cycle.measures
     at = getattr(point.orbit.form.rod, point.scale.name)
     return SpecialPoint(
@@ -28,12 +30,13 @@ def end_at(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialPoin
     )
 
 
-class Trail:
-    """Cycles of a branch in the order of the steps. A cycle waits until errors are measured at it or beyond
-    it."""
+class BranchRecord:
+    """Record of the cycles of a branch during the continuation. The errors of a cycle are unknown until
+    errors are measured at this cycle or at a later cycle."""
 
     def __init__(self, curve: BranchCurve, accuracy: float, first: ArcPoint) -> None:
-        """first: the first cycle, with measured errors."""
+        """curve: the branch, to which cycles are appended. accuracy: relative accuracy. first: the first
+        cycle, with measured errors."""
         self.curve = curve
         self.accuracy = accuracy
         self._measured = first
@@ -41,32 +44,33 @@ class Trail:
         curve.points.append(BranchPoint.of(first, accuracy))
 
     def append(self, point: ArcPoint) -> None:
-        """Appends a cycle whose errors are not measured yet."""
+        """Appends a cycle without measured errors."""
         self._waiting.append(point)
         self.curve.points.append(BranchPoint.of(point, self.accuracy))
 
     def settle(self, condition: BorderCondition | None = None) -> ArcPoint:
-        """Gives errors to the waiting cycles and returns the last cycle. Raises Unsolvable.
+        """Measures or interpolates the errors of all cycles appended since the last measurement, and returns
+        the last cycle; raises Unsolvable.
 
-        condition: holds for the last cycle on every mesh; by default its arc length along the branch is kept.
+        condition: equation that identifies the last cycle on every mesh; by default its arc length.
         """
         if self._waiting:
-            points = settled(self._measured, self._waiting, self.accuracy, condition)
+            points = with_errors_in_accuracy(self._measured, self._waiting, self.accuracy, condition)
             self.curve.judge([BranchPoint.of(point, self.accuracy) for point in points])
             self._measured = points[-1]
             self._waiting = []
         return self._measured
 
     def end(self, end: BranchEnd) -> None:
-        """Ends the branch. If the errors of the waiting cycles cannot be measured, the branch ends before
-        these."""
+        """Ends the branch. If the errors of the last cycles cannot be measured, these cycles are removed and
+        the branch ends at the last measured cycle."""
         curve = self.curve
         try:
             self.settle()
         except Unsolvable as why:
             curve.cut(len(self._waiting))
             message = f"the errors of the cycles beyond cannot be measured: {why}"
-            special = end_at(self._measured, EndReason.no_cycle_found, message)
+            special = end_point(self._measured, EndReason.no_cycle_found, message)
             end = replace(end, special=special, complete=False)
         special = end.special
         last = curve.points[-1]

@@ -1,1 +1,2 @@
-"""Continuation of all curves of solutions: step, step length, ends of a curve."""
+"""Numerical continuation: step length and ends of a curve of solutions, and the search for all curves of a
+plane."""

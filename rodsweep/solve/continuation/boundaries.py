@@ -1,8 +1,8 @@
-"""Curves through the points of a plane's rows: each curve is traced once, and every point is then found on a
-curve.
+"""Search for all curves through the seed points on the rows of a parameter plane; each curve is traced only
+once.
 
-Knows neither the kind of the curves nor who traces them. If the result of a unit of work is lacking, the
-search reports the unit, and is run again with more results.
+The search knows neither the kind of the curves nor the process that traces them. If the result of a unit of
+work is missing, the search stops and names the unit. The caller then repeats the search with more results.
 """
 
 import math
@@ -14,19 +14,19 @@ Curve = TypeVar("Curve")
 
 
 class BoundaryProblem(Protocol[Curve]):
-    """Interface to the curves through numbered points of rows, used by the search."""
+    """Interface of `boundary_search` to the curves through numbered seed points."""
 
     def next_seed(self, left: Sequence[int]) -> int:
-        """Index of the point, among the points on no curve, from which the next curve starts."""
+        """Index of the seed point, chosen from the indices `left`, from which the next curve is traced."""
 
     def missing_units(self, seed: int) -> list[int]:
-        """Units of work with results still needed for the curve from a point."""
+        """Units of work whose results are missing for the curve through a seed point."""
 
     def curve(self, seed: int) -> Curve | None:
-        """The curve from a point; None if not found."""
+        """The curve through a seed point; None if the curve cannot be traced."""
 
     def distance(self, curve: Curve, seed: int) -> float:
-        """Distance of a point from a curve, in units of the rows' length."""
+        """Distance of a seed point from a curve, in units of the length of a row."""
 
     def same(self, one: Curve, other: Curve) -> bool:
         """Whether two curves are identical."""
@@ -34,10 +34,10 @@ class BoundaryProblem(Protocol[Curve]):
 
 @dataclass(frozen=True, slots=True)
 class Boundaries(Generic[Curve]):
-    """All curves of a plane. agreement: largest distance of a point from its curve, in units of the rows'
-    length.
+    """All curves through the seed points of a plane. agreement: largest distance of a seed point from its
+    curve, in units of the length of a row.
 
-    untraced: number of points through which no curve could be followed.
+    untraced: number of seed points through which no curve could be traced.
     """
 
     curves: tuple[Curve, ...]
@@ -47,38 +47,39 @@ class Boundaries(Generic[Curve]):
 
 @dataclass(slots=True)
 class BoundarySearch(Generic[Curve]):
-    """The curves through numbered points, as far as known.
+    """State of the search for curves through numbered seed points.
 
-    agree: distance within which a point lies on a curve. distances: distance of each point from the nearest
-    curve. needed: units of work with results that the search lacks. left: further points that lie on no curve
-    so far.
+    tolerance: largest distance from a curve of a seed point on it. distances: distance of each seed point
+    from the nearest curve so far. missing_units: units of work whose missing results stopped the search.
+    open_seeds: other seed points that lie on no curve so far.
     """
 
-    agree: float
+    tolerance: float
     distances: dict[int, float]
     curves: list[Curve] = field(default_factory=list)
-    needed: list[int] = field(default_factory=list)
-    left: list[int] = field(default_factory=list)
+    missing_units: list[int] = field(default_factory=list)
+    open_seeds: list[int] = field(default_factory=list)
 
     @property
     def boundaries(self) -> Boundaries[Curve]:
-        """The curves, once no unit is needed."""
-        found = [distance for distance in self.distances.values() if distance <= self.agree]
+        """All curves; valid once `missing_units` is empty."""
+        found = [distance for distance in self.distances.values() if distance <= self.tolerance]
         return Boundaries(tuple(self.curves), max(found, default=0.0), len(self.distances) - len(found))
 
 
 def boundary_search(
     problem: BoundaryProblem[Curve], seeds: Iterable[int], agree: float
 ) -> BoundarySearch[Curve]:
-    """Traces curves until every point lies on a curve or was tried, or until a result is lacking."""
+    """Traces curves until every seed point lies on a curve or was tried, or until a result of a unit is
+    missing."""
     search: BoundarySearch[Curve] = BoundarySearch(agree, dict.fromkeys(seeds, math.inf))
     tried: set[int] = set()
     while left := [i for i, off in search.distances.items() if off > agree and i not in tried]:
         seed = problem.next_seed(left)
-        search.needed = problem.missing_units(seed)
-        if search.needed:
-            # Other units may run meanwhile: points that this curve may turn out to contain, too.
-            search.left = [i for i in left if i != seed]
+        search.missing_units = problem.missing_units(seed)
+        if search.missing_units:
+            # Idle processes may trace from these seeds meanwhile; some may prove to lie on the missing curve.
+            search.open_seeds = [i for i in left if i != seed]
             break
         tried.add(seed)
         curve = problem.curve(seed)

@@ -1,10 +1,10 @@
-"""Continuation of one curve of solutions: the loop that all curves share.
+"""Numerical continuation of one curve of solutions: the loop shared by all kinds of curves.
 
-The problem of the curve predicts and corrects a solution at a step length ahead. The follower chooses the
-length from the prediction error and the turn of the curve, repeats a failed step with half its length, and
-ends the curve where a margin becomes zero, where the curve closes, or where no step succeeds.
+A `CurveProblem` predicts and corrects the solution one step ahead. `follow_curve` chooses the step length
+from the prediction error and from the angle between successive steps, and halves the length of a failed step.
+The curve ends where a margin becomes zero, where the curve closes, or where no step succeeds.
 
-Knows nothing of rods, meshes, eigenvalues or cycles. Reference: Keller 1977; Govaerts 2000, ch. 2.
+This module knows no rods, meshes, eigenvalues or cycles. Reference: Keller 1977; Govaerts 2000, ch. 2.
 """
 
 from collections.abc import Callable, Sequence
@@ -23,85 +23,94 @@ Solution = TypeVar("Solution")
 
 
 class StepResult(NamedTuple, Generic[Solution]):
-    """A solution at one step ahead.
+    """The solution one step ahead on a curve.
 
-    off: relative distance from the prediction. cosine: cosine of the angle by which the curve has turned.
+    prediction_error: relative distance of the solution from its prediction. cosine: cosine of the angle by
+    which the curve turns in the step.
     """
 
     solution: Solution
-    off: float
+    prediction_error: float
     cosine: float
 
 
 class CurveProblem(Protocol[Solution]):
-    """Interface to a curve of solutions, used by the follower."""
+    """Interface of `follow_curve` to a curve of solutions; `behind`: solutions so far, in order along the
+    curve."""
 
     def step(self, behind: Sequence[Solution], length: float) -> StepResult[Solution]:
-        """The solution at a length ahead of `behind[-1]`; raises Unsolvable if no solution is near."""
+        """The solution one step of the given length ahead of `behind[-1]`; raises Unsolvable if Newton's
+        method fails."""
 
     def margins(self, solution: Solution) -> Array:
-        """Numbers that are positive as long as the curve continues, (margins,)."""
+        """Signed distances, (margins,), of a solution from the limits of the curve; a limit is passed where
+        one is negative."""
 
-    def landed(self, behind: Sequence[Solution], outer: Solution, margin: int) -> Solution | None:
+    def located_zero(self, behind: Sequence[Solution], outer: Solution, margin: int) -> Solution | None:
         """The solution between `behind[-1]` and `outer` at which a margin is 0; None if not found."""
 
     def closes(self, behind: Sequence[Solution], there: Solution) -> bool:
-        """Whether the first solution of the curve lies between its last solution and the next."""
+        """Whether the first solution of the curve lies on the step from `behind[-1]` to the next solution
+        `there`."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepControl:
-    """Control of the step lengths along a curve. Raises ValueError unless steps may grow."""
+    """Step length control along a curve. Raises ValueError unless `max_ratio` exceeds 1."""
 
-    first: float
+    first_length: float
     """First step length."""
-    longest: float
+    max_length: float
     """Longest step length."""
-    shortest: float
-    """Shortest step length: the curve ends if a step fails whose half would be shorter."""
-    aim: float = inf
-    """Prediction error for which the next step is chosen."""
-    far: float = inf
-    """Prediction error beyond which the solution may belong to another curve."""
-    order: int = 1
-    """Order of the prediction, whose error grows as length**order; limited by the number of solutions
-    behind."""
-    turn: float = inf
-    """Angle in radians for which the next step is chosen."""
-    sharpest: float
-    """Largest angle of a step."""
-    growth: float
-    """Largest ratio of successive lengths."""
-    shrinkage: float = 0.5
-    """Smallest ratio of successive lengths."""
-    most: int = 5000
-    """Maximum number of solutions; no curve has more."""
+    min_length: float
+    """Shortest step length: the curve ends if a step fails and half its length would be below this limit."""
+    target_error: float = inf
+    """Prediction error at which the length of the next step aims."""
+    max_error: float = inf
+    """Largest prediction error of an accepted step; beyond it the solution may belong to another curve."""
+    prediction_order: int = 1
+    """Order of the prediction: the prediction error grows as length**order. With fewer solutions so far, the
+    number of solutions is the order."""
+    target_angle: float = inf
+    """Angle in radians between successive steps at which the length of the next step aims."""
+    max_angle: float
+    """Largest angle in radians between successive steps; a step with a larger angle fails."""
+    max_ratio: float
+    """Largest ratio of a step length to the previous step length."""
+    min_ratio: float = 0.5
+    """Smallest ratio of a step length to the length of the previous, accepted step."""
+    max_solutions: int = 5000
+    """Maximum number of solutions on a curve; the curve ends there."""
     min_measured: float = 1e-9
-    """Smallest prediction error, or angle, distinguished from 0."""
+    """Smallest prediction error, and smallest angle in radians, used in the choice of a step length: it
+    avoids a division by 0."""
 
     def __post_init__(self) -> None:
-        if not self.growth > 1:
-            raise ValueError(f"growth = {self.growth} must be above 1, so that steps can grow")
+        if not self.max_ratio > 1:
+            raise ValueError(f"max_ratio = {self.max_ratio} must be above 1, so that steps can grow")
 
     def accepted(self, there: StepResult[Solution]) -> StepResult[Solution]:
         """The next solution; raises Unsolvable if the solution may lie on another curve."""
-        if not there.off <= self.far:
+        if not there.prediction_error <= self.max_error:
             raise Unsolvable("the corrected solution is too far from its predictor")
-        if not _angle(there.cosine) <= self.sharpest:
+        if not _angle(there.cosine) <= self.max_angle:
             raise Unsolvable("the tangent of the curve turns by too large an angle in one step")
         return there
 
     def next_length(self, length: float, there: StepResult[Solution], solutions: int) -> float:
-        """Length of the step after an accepted step, for a curve with a number of solutions."""
+        """Length of the next step, after an accepted step of a given length; `solutions`: number of solutions
+        so far."""
         # The error of a prediction through m solutions grows with the m-th power of the step.
-        by_distance = (self.aim / max(there.off, self.min_measured)) ** (1 / min(self.order, solutions))
-        by_turn = self.turn / max(_angle(there.cosine), self.min_measured)
-        factor = min(max(min(by_distance, by_turn), self.shrinkage), self.growth)
-        return min(self.longest, length * factor)
+        by_distance = (self.target_error / max(there.prediction_error, self.min_measured)) ** (
+            1 / min(self.prediction_order, solutions)
+        )
+        by_turn = self.target_angle / max(_angle(there.cosine), self.min_measured)
+        factor = min(max(min(by_distance, by_turn), self.min_ratio), self.max_ratio)
+        return min(self.max_length, length * factor)
 
 
 def _angle(cosine: float) -> float:
-    """Angle in radians of a cosine, which may exceed 1 by rounding."""
+    """Angle in radians of a cosine; a cosine beyond 1 by rounding counts as 1."""
     return acos(min(1.0, max(-1.0, cosine)))
 
 
@@ -116,10 +125,10 @@ class CurveStop(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Curve(Generic[Solution]):
-    """Solutions in order from the start, and the reason for the end of the curve.
+    """Solutions in order from the start of the curve, and the reason for the end of the curve.
 
-    margin: index of the margin that is negative beyond the end, -1 for none; the last solution is its zero,
-    if found.
+    margin: index of the margin that becomes negative at the end, or -1. If the zero of the margin was
+    located, the last solution is at the zero.
     """
 
     solutions: list[Solution]
@@ -130,44 +139,46 @@ class Curve(Generic[Solution]):
 def advance(
     step: Callable[[float], StepResult[Solution]], length: float, control: StepControl
 ) -> tuple[StepResult[Solution], float]:
-    """(the next solution of a curve, the length of the step); the given length is halved after every failure.
+    """(the next solution of a curve, the length of the successful step); `length` is halved after every
+    failure.
 
-    step: returns the solution at a length ahead, or raises an error of FAILURES. `advance` raises the last
-    error if no step succeeds.
+    step: returns the solution one step of a given length ahead, or raises an error of FAILURES. `advance`
+    raises the last error if no step succeeds.
     """
-    length = min(length, control.longest)
+    length = min(length, control.max_length)
     while True:
         try:
             return control.accepted(step(length)), length
         except FAILURES:
-            if length / 2 < control.shortest:
+            if length / 2 < control.min_length:
                 raise
             length /= 2
 
 
-def follow(
+def follow_curve(
     problem: CurveProblem[Solution],
     start: Solution,
     control: StepControl,
     report: Callable[[Sequence[Solution]], None],
 ) -> Curve[Solution]:
-    """The curve ahead of a solution; the problem knows the direction. report: called before every step."""
+    """The curve from the solution `start` in the direction that the problem chooses. report: function that is
+    called with all solutions before every step."""
     solutions = [start]
-    length = control.first
+    length = control.first_length
     margins = problem.margins(start)
-    while len(solutions) < control.most:
+    while len(solutions) < control.max_solutions:
         report(solutions)
         try:
             there, length = advance(partial(problem.step, solutions), length, control)
         except FAILURES:
             return Curve(solutions, CurveStop.lost)
         ahead = problem.margins(there.solution)
-        outside = crossed(margins, ahead)
+        outside = first_crossed_margin(margins, ahead)
         if outside >= 0:
-            last = problem.landed(solutions, there.solution, outside)
+            last = problem.located_zero(solutions, there.solution, outside)
             return Curve(solutions if last is None else [*solutions, last], CurveStop.margin, outside)
         if problem.closes(solutions, there.solution):
-            # The start itself, not a point close to it, closes the curve exactly.
+            # The start itself, not a solution next to it, closes the curve exactly.
             return Curve([*solutions, start], CurveStop.closed)
         solutions.append(there.solution)
         margins = ahead
@@ -175,10 +186,12 @@ def follow(
     return Curve(solutions, CurveStop.full)
 
 
-def crossed(before: Array, after: Array) -> int:
-    """Index of the margin, of (margins,), that is first to fall below 0 along a straight step; -1 for
-    none."""
-    # A margin that is negative already, but rises, is being entered from outside.
+def first_crossed_margin(before: Array, after: Array) -> int:
+    """Index of the margin that is first to become negative along a step; -1 if no margin becomes negative.
+
+    before, after: margins at both ends of the step, (margins,), interpolated linearly.
+    """
+    # A negative margin that rises is no end: the curve comes in from beyond this limit.
     falls = (after < 0) & (after < before)
     # Linear interpolation gives the fraction of the step at which each falling margin is 0.
     share = np.where(falls, before / np.where(falls, before - after, 1.0), inf)
@@ -186,13 +199,14 @@ def crossed(before: Array, after: Array) -> int:
     return first if share[first] < inf else -1
 
 
-def zero_along(
+def zero_along_step(
     value: Callable[[float], float], ends: tuple[float, float], length: float, enough: float, relative: float
 ) -> float:
-    """Zero of a function along a step, by Brent's method; raises Unsolvable without a change of sign.
+    """Length at which a function along a step is 0, by Brent's method; raises Unsolvable without a change of
+    sign.
 
-    value: at a length. ends: values at 0 and at the full length, which are not computed again. enough:
-    modulus below which a value counts as zero. relative: last bracket in units of the length.
+    value: the function of the length. ends: known values at length 0 and at the full `length`. enough:
+    modulus up to which a value counts as 0. relative: tolerance of the result, in units of `length`.
     """
     from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 

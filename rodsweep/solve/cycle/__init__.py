@@ -1,1 +1,2 @@
-"""The limit cycle of one rod: start, Newton's method, refinement and measurement."""
+"""The limit cycle of one rod: start of Newton's method, mesh refinement, error estimates, Floquet
+multipliers."""

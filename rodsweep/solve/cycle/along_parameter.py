@@ -1,7 +1,8 @@
-"""Cycles along one parameter: a polynomial predicts the next cycle, Newton's method corrects the prediction.
+"""Natural continuation of cycles along one parameter: a polynomial predicts the next cycle, Newton's method
+corrects.
 
-The polynomial interpolates normalised values and slopes of the last cycles. A step that is too long for
-Newton's method is divided.
+The polynomial interpolates normalised values and parameter derivatives of the last cycles. A step that is too
+long for Newton's method is divided.
 """
 
 from dataclasses import dataclass, replace
@@ -30,61 +31,76 @@ from ..point import Unsolvable
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PredictionSettings:
-    """Settings for the prediction of cycles along one parameter."""
+    """Settings for the polynomial prediction of cycles along one parameter."""
 
-    max_distance: float = 0.3
-    """Largest relative distance of a cycle from its prediction: a farther cycle may lie on another branch."""
-    tangent_distance: float = 1e-2
-    """Largest relative distance between an orbit and a matrix whose tangent is accurate enough for a step."""
+    max_prediction_distance: float = 0.3
+    """Largest relative distance of a cycle from its prediction; a cycle farther away may lie on another
+    branch."""
+    max_tangent_distance: float = 1e-2
+    """Largest relative distance of an orbit from the orbit whose matrix gives its tangent; the tangent is
+    then accurate enough for the next step."""
     max_earlier_orbits: int = 4
-    """Maximum number of earlier orbits in the prediction."""
-    orbits_without_slope: int = 3
-    """Number of orbits from which the prediction is more accurate without the slope of an earlier orbit."""
+    """Maximum number of earlier orbits whose values enter the predicting polynomial."""
+    orbits_without_second_tangent: int = 3
+    """Number of earlier orbits from which the prediction is more accurate without the tangent of an earlier
+    orbit."""
 
 
 PREDICTION = PredictionSettings()
 
 
 PARAMETER_STEPS = StepControl(
-    first=0.5, longest=1.0, shortest=2.0**-6, aim=0.15, order=3, sharpest=inf, growth=3.0, most=100
+    first_length=0.5,
+    max_length=1.0,
+    min_length=2.0**-6,
+    target_error=0.15,
+    prediction_order=3,
+    max_angle=inf,
+    max_ratio=3.0,
+    max_solutions=100,
 )
-"""Step lengths as shares of the divided parameter change. Newton's method takes two matrices for a prediction
-error of `aim`. `near_prediction` rejects cycles far from the prediction; `far` is infinite."""
+"""Control of the steps into which a parameter change is divided; a step length is a fraction of this change.
+Newton's method takes two matrices for a prediction error of `target_error`. `max_error` is infinite, because
+`orbit_near_prediction` already rejects cycles far from the prediction."""
 
 
 @dataclass(frozen=True, eq=False)
 class CyclePredictor:
-    """An orbit, and the data of the polynomial that predicts other orbits on its branch.
+    """Polynomial in one parameter that predicts other orbits on the branch of a solved orbit, by Hermite
+    interpolation.
 
-    places: parameter coordinate of each datum relative to the orbit's, (m,); the first is the orbit's own, 0.
-    orders: 0 for an orbit's value, 1 for an orbit's slope, (m,); data: values and slopes as `normalised`, (m,
-    N + 1).
+    The data are normalised values and parameter derivatives of orbits, (m, N + 1). offsets: abscissa of each
+    datum, the difference of its parameter coordinate from the solved orbit's, (m,). orders: 0 for values, 1
+    for a derivative, (m,). The first datum is the derivative at the solved orbit.
     """
 
     orbit: Orbit
-    places: Array
+    offsets: Array
     orders: Array
     data: Array
 
     @property
     def tangent(self) -> Array:
-        """Slope of the normalised values at the orbit, (N + 1,)."""
+        """Parameter derivative of the normalised values at the solved orbit, (N + 1,)."""
         return self.data[0]
 
     @cached_property
     def values(self) -> Array:
-        """The orbit's normalised values, (N + 1,)."""
+        """Normalised values of the solved orbit, (N + 1,)."""
         return normalised(self.orbit)
 
     def weights(self, step: float) -> Array:
-        """Weights of the data in the change predicted over a step, (m,); see `polynomial_weights`."""
-        weights: Array = polynomial_weights(self.places, self.orders, step)
+        """Weights, (m,), of the data in the predicted change over a step of the parameter coordinate; see
+        `polynomial_weights`."""
+        weights: Array = polynomial_weights(self.offsets, self.orders, step)
         return weights
 
     def at(self, form: StressForm, name: str) -> Orbit:
-        """The predicted orbit of the rod in `form`, on this orbit's mesh; the mesh of `form` is ignored.
+        """The predicted orbit of the rod in `form`, on the mesh of the solved orbit; the mesh of `form` is
+        ignored.
 
-        name: the parameter. Raises Unsolvable if the predicted squared size is not positive.
+        name: the varied parameter. Raises Unsolvable if the predicted squared size of the orbit is not
+        positive.
         """
         step = form.rod.coordinate(name) - self.orbit.form.rod.coordinate(name)
         values = with_weighted_data(self.values, self.data, self.orders, self.weights(step))
@@ -96,7 +112,7 @@ class CyclePredictor:
         return replace(self.orbit, form=target, values=values_of(values, reflected(self.orbit)))
 
     def on(self, target: OrbitMesh) -> "CyclePredictor":
-        """The predictor, carried to another mesh."""
+        """The same predictor with the solved orbit and all data carried to another mesh."""
         if target == mesh_of(self.orbit):
             return self
         data = [np.append(carried_change(self.orbit, row[:-1], target), row[-1]) for row in self.data]
@@ -104,17 +120,18 @@ class CyclePredictor:
 
 
 def carried_change(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
-    """A change of an orbit's values, (N,), carried to a target mesh, (N of the target,); a linear map."""
+    """A change of orbit values, (N,), carried to a target mesh by a linear map, (N of the target,)."""
     return target.carry(replace(orbit, values=change)).values
 
 
 def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: str) -> CyclePredictor:
-    """The predictor at an orbit that was solved with its tangent. before: predictor at the previous orbit.
+    """The predictor at the orbit `found`, which was solved with its tangent. before: predictor at the
+    previous orbit. name: the varied parameter. Raises ValueError if the orbit has no tangent.
 
-    A tangent has the relative error of its orbit's prediction, a value far less. From
-    PREDICTION.orbits_without_slope values on, a further slope therefore makes the prediction worse. From mesh
-    to mesh the states differ by far more than period and largest y, their slopes less: after a change of mesh
-    only slopes enter. Raises ValueError if the orbit has no tangent.
+    A tangent has the relative error of its orbit's prediction; the values of an orbit are far more accurate.
+    With PREDICTION.orbits_without_second_tangent or more values, a second tangent makes the prediction worse.
+    States on different meshes differ by far more than period and largest y, tangents differ less. After a
+    change of mesh only tangents enter.
     """
     orbit = found.orbit
     if found.matrix.tangent is None:
@@ -128,71 +145,76 @@ def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: s
     if last is not before:
         return CyclePredictor(orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last.tangent]))
     older = np.flatnonzero(before.orders == 0)[: PREDICTION.max_earlier_orbits - 1]
-    places = [0.0, -step, *(before.places[older] - step)]
-    # Places move by the step, because the polynomial is centred at the newest orbit.
+    places = [0.0, -step, *(before.offsets[older] - step)]
+    # All abscissas shift by the step, because the newest orbit is at 0.
     data = [tangent, before.values, *before.data[older]]
     orders = [1.0] + [0.0] * (1 + len(older))
-    if 1 + len(older) < PREDICTION.orbits_without_slope:
+    if 1 + len(older) < PREDICTION.orbits_without_second_tangent:
         places.append(-step)
         data.append(before.tangent)
         orders.append(1.0)
     return CyclePredictor(orbit, np.array(places), np.array(orders), np.array(data))
 
 
-def relative_distance(one: StressForm, other: StressForm, name: str) -> float:
-    """Difference of two rods' coordinates of a parameter, in units of the larger modulus."""
+def relative_parameter_difference(one: StressForm, other: StressForm, name: str) -> float:
+    """Difference between the parameter coordinates of two rods, in units of the larger modulus. name: the
+    parameter."""
     a = one.rod.coordinate(name)
     b = other.rod.coordinate(name)
     return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0
 
 
-def near_prediction(
+def orbit_near_prediction(
     predicted: Orbit, tolerance: float, workspace: NewtonWorkspace, name: str
 ) -> ConvergedOrbit:
-    """The orbit near a prediction; raises Unsolvable if they differ by more than PREDICTION.max_distance."""
+    """The orbit near a prediction, by Newton's method; raises Unsolvable if its relative distance from the
+    prediction exceeds PREDICTION.max_prediction_distance."""
     found = newton(predicted, tolerance, workspace, name)
-    if _distance(predicted, found) > PREDICTION.max_distance:
+    if _distance(predicted, found) > PREDICTION.max_prediction_distance:
         raise Unsolvable("the cycle is too far from its predictor")
     return found
 
 
 def _distance(predicted: Orbit, found: ConvergedOrbit) -> float:
-    """Relative distance of an orbit from its prediction."""
+    """Relative distance of a solved orbit from its prediction."""
     return relative_change(predicted, found.orbit.values - predicted.values)
 
 
 def orbit_in_steps(
     start: CyclePredictor, form: StressForm, name: str, tolerance: float, workspace: NewtonWorkspace
 ) -> ConvergedOrbit:
-    """The orbit of a distant rod, in steps that Newton's method can follow; raises Unsolvable.
+    """The orbit of the rod in `form`, followed from the orbit of `start` in several steps of the parameter
+    `name`; raises Unsolvable.
 
-    form: the rod. name: varied parameter. workspace: memory of the matrices.
+    tolerance: relative tolerance of Newton's method. workspace: memory of Newton's matrices.
     """
     first = start.orbit.form.rod.coordinate(name)
     last = form.rod.coordinate(name)
     share = 0.0
-    length = PARAMETER_STEPS.first
+    length = PARAMETER_STEPS.first_length
     predictor = start
 
     def step(length: float) -> StepResult[ConvergedOrbit]:
         at = share + length
         between = form if at >= 1.0 else form.with_coordinate(name, first + at * (last - first))
         predicted = predictor.at(between, name)
-        found = near_prediction(predicted, tolerance, workspace, name)
+        found = orbit_near_prediction(predicted, tolerance, workspace, name)
         return StepResult(found, _distance(predicted, found), 1.0)
 
-    for _ in range(PARAMETER_STEPS.most):
+    for _ in range(PARAMETER_STEPS.max_solutions):
         try:
             ahead, length = advance(step, min(length, 1.0 - share), PARAMETER_STEPS)
         except Unsolvable as why:
             raise Unsolvable(
-                "the branch of cycles cannot be followed to this parameter value: it ends or turns back"
+                "the branch of cycles cannot be followed: the branch ends or has a fold"
             ) from why
         share += length
         if share >= 1.0:
             return ahead.solution
         predictor = predictor_from(
-            at_orbit(ahead.solution, PREDICTION.tangent_distance, name), predictor, name
+            at_orbit(ahead.solution, PREDICTION.max_tangent_distance, name), predictor, name
         )
-        length = PARAMETER_STEPS.next_length(length, ahead, PARAMETER_STEPS.order)
-    raise Unsolvable(f"the branch of cycles was not followed to its end in {PARAMETER_STEPS.most} steps")
+        length = PARAMETER_STEPS.next_length(length, ahead, PARAMETER_STEPS.prediction_order)
+    raise Unsolvable(
+        f"the branch of cycles was not followed to its end in {PARAMETER_STEPS.max_solutions} steps"
+    )

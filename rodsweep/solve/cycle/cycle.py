@@ -1,4 +1,4 @@
-"""Request and outcome of one point of the task limit_cycle."""
+"""Request and outcome of the task limit_cycle for one rod."""
 
 from dataclasses import dataclass, replace
 from math import nan
@@ -16,9 +16,10 @@ from .second_state import SecondState
 
 @dataclass(frozen=True, slots=True)
 class MotionShapes:
-    """The beginning of a motion: shapes (x, y), (2, frames, nodes), at times `step` apart, in tau2.
+    """Shapes of the rod at equidistant times from the start of a motion, for an animation.
 
-    is_whole: whether it goes on until the outcome of the motion is known.
+    shapes: x, y in L, (2, frames, nodes). step: time between two shapes, in tau2. is_whole: whether the
+    shapes cover the motion until its outcome is known.
     """
 
     step: float
@@ -28,43 +29,46 @@ class MotionShapes:
 
 @dataclass(frozen=True, slots=True)
 class CycleRequest:
-    """Request for the cycle of a rod."""
+    """Request of the task limit_cycle, the same for every rod of a sweep: accuracy, start of the search,
+    quantities to store."""
 
     accuracy: float
-    """Relative accuracy of period and extrema."""
+    """Relative accuracy of the period and of the largest y of the tip."""
     amplitude: float
-    """Tip's y of the start in the leading mode, in L."""
+    """Tip's y, in L, of a motion that starts in the leading mode."""
     harmonics: int
-    """Number of harmonics of the tip's y to store."""
+    """Number of stored harmonics of the tip's y."""
     samples: int
-    """Times per period at which the tip and the energy are stored, 0 for none."""
+    """Number of times per period at which the tip and the energy are stored; 0 for none."""
     shapes: int
-    """Shapes per period, 0 for none."""
+    """Number of stored shapes of the rod per period; 0 for none."""
     nodes: int
-    """Lobatto nodes of each shape."""
+    """Number of Lobatto nodes of each stored shape."""
     most_periods: int
-    """Maximum number of returns of the tip."""
+    """Maximum number of returns of the tip, after which the integration of the motion ends."""
     start: str = "mode"
     """Start of the search: "mode" for the leading mode; "neighbour" for the neighbour's cycle, or the leading
     mode without a neighbour; "hopf" for the branch from the Hopf point."""
     transient: int = 0
-    """Number of times at which the tip's path from the start is stored, 0 for none. For a stored path the
-    motion is always integrated, and without jumps."""
+    """Number of times at which the tip's path from the start is stored; 0 for none. A motion with a stored
+    path is always integrated, and its state is never scaled."""
     tip: tuple[float, float] | None = None
     frames: int = 0
 
     @property
     def is_traced(self) -> bool:
-        """Whether the motion from the start is stored, and so always integrated."""
+        """Whether the motion from the start is stored, as a path or as shapes, and therefore always
+        integrated."""
         return self.transient > 0 or self.frames > 0
 
 
 @dataclass(frozen=True, kw_only=True)
 class Cycle:
-    """Outcome for one rod, with the numbers of its cycle; NaN or None where a number is not known.
+    """Outcome of the task limit_cycle for one rod, with the quantities of its cycle; NaN or None for an
+    unknown quantity.
 
-    On a torus only the multipliers are known; they belong to the unstable cycle inside the torus. In stored
-    arrays time starts where the tip's y rises through its mean.
+    On a torus only the multipliers are known, of the unstable cycle inside the torus. Time series over a
+    period start where the tip's y rises through its mean.
     """
 
     status: PointStatus
@@ -75,11 +79,12 @@ class Cycle:
     linear_frequency: float = nan
     """Frequency of the leading mode of the straight rod, in 1/tau2."""
     periods: int = 0
-    """Returns of the tip in the integrated motion."""
+    """Number of returns of the tip in the integrated motion; 0 if no motion was integrated."""
     second_state: int = SecondState.not_known
-    """A `SecondState`: whether another stable state is known."""
+    """A `SecondState`: knowledge about a second stable state of the rod."""
     subcritical_F: float = nan
-    """Force of the Hopf point that makes a second state possible."""
+    """Force, in k3/L^2, of the subcritical Hopf point that makes a second stable state possible; NaN if none
+    is known."""
     elements: int = 0
     order: int = 0
     measures: Measures = Measures()
@@ -87,31 +92,33 @@ class Cycle:
     multiplier: float = nan
     """Modulus of the largest nontrivial Floquet multiplier."""
     multipliers: Complex | None = None
-    """The largest multipliers, complex, (MULTIPLIER_LIST.number,)."""
+    """The largest nontrivial Floquet multipliers by descending modulus, (MULTIPLIER_LIST.length,)."""
     trivial_multiplier_error: float = nan
-    """Distance of the trivial multiplier from 1."""
+    """Modulus of the difference between the computed trivial multiplier and 1."""
     tip: Array | None = None
-    """x, y, theta of the tip at equidistant times, (3, samples)."""
+    """x, y (in L) and theta of the tip at equidistant times over a period, (3, samples)."""
     energy: Array | None = None
-    """Energy U in k3/L, injected and dissipated power, at equidistant times, (3, samples)."""
+    """Elastic energy U in k3/L, injected and dissipated power, at equidistant times over a period,
+    (3, samples)."""
     shape: Array | None = None
-    """x, y, theta at equidistant times, (3, shapes, nodes)."""
+    """x, y (in L) and theta of the rod at equidistant times over a period, (3, shapes, nodes)."""
     transient: Array | None = None
     """Time in tau2 and x, y, theta of the tip, from the start to the end of the integration, (4, transient);
     None if no motion was integrated."""
     motion: MotionShapes | None = None
-    """Shapes from the start, if requested."""
+    """Shapes of the rod from the start of the motion, if requested."""
     neighbour: Neighbour | None = None
-    """Data from which the next point of a chain starts."""
+    """Data of this cycle from which the next rod of a chain starts; None outside a chain."""
 
 
-def measured(
+def with_measures(
     cycle: Cycle, request: CycleRequest, path: CyclePath, measures: Measures, errors: CycleErrors
 ) -> Cycle:
-    """The outcome with the numbers of a cycle, and the requested parts of the path."""
+    """The outcome `cycle` with the measures, errors and requested time series of a solved cycle with the tip
+    path `path`."""
     mesh = path.orbit.form.mesh
     # Unresolved harmonics are smaller than the cycle's error, so 0 is correct within that error.
-    amplitudes = padded(measures.harmonic_amplitude, request.harmonics, 0.0)
+    amplitudes = padded_or_cut(measures.harmonic_amplitude, request.harmonics, 0.0)
     return replace(
         cycle,
         elements=mesh.elements,
@@ -124,8 +131,8 @@ def measured(
     )
 
 
-def padded(values: Array | Complex, count: int, filler: complex) -> Any:
-    """The first values of (m,), (count,), with a filler in the places beyond m."""
+def padded_or_cut(values: Array | Complex, count: int, filler: complex) -> Any:
+    """The first `count` of m values, (count,), filled up with `filler` if m is smaller than `count`."""
     first = np.full(count, filler, values.dtype)
     first[: len(values)] = values[:count]
     return first

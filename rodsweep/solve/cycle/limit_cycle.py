@@ -1,11 +1,12 @@
 """The limit cycle of one rod (paper, Sec. VII): task `limit_cycle` with `method: collocation`.
 
-The rod starts from its leading eigenmode or from a neighbour's cycle. A motion from the eigenmode is
-integrated until it approaches a cycle (`transient`). Near a Hopf point the normal form predicts where the
-motion settles (`small_motion`), and a neighbour's cycle predicts the cycle of this rod (`neighbour`).
-Newton's method then solves for the periodic orbit on meshes chosen for the requested accuracy (`accuracy`).
-Only the Floquet multipliers decide whether the orbit is a stable cycle: near a Hopf point, where motions
-decay slowly, two successive peaks of the motion may agree although no cycle exists.
+The search starts from the leading eigenmode or from the cycle of a neighbour, the previous rod of a chain.
+The motion from the eigenmode is integrated until it approaches a cycle (`transient`). Near a Hopf point the
+normal form predicts the final cycle instead (`small_motion`), and the cycle of a neighbour predicts the cycle
+of this rod (`neighbour`). Newton's method then solves for the periodic orbit on meshes chosen for the
+requested accuracy (`accuracy`). Only the Floquet multipliers decide whether the orbit is a stable cycle: near
+a Hopf point, where motions decay slowly, two successive peaks of the motion may agree although no cycle
+exists.
 """
 
 from contextlib import suppress
@@ -22,9 +23,9 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import Unsolvable, solved
 from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.refinement import refined_cycle
-from .cycle import Cycle, CycleRequest, MotionShapes, measured, padded
+from .cycle import Cycle, CycleRequest, MotionShapes, padded_or_cut, with_measures
 from .hopf_start import hopf_point_below, orbit_from_hopf
-from .neighbour import Neighbour, followed_cycle
+from .neighbour import Neighbour, cycle_from_neighbour
 from .second_state import second_state
 from .small_motion import reason_for_decay, small_cycle
 from .status import CycleStatus
@@ -41,17 +42,18 @@ __all__ = ["Cycle", "CycleRequest", "CycleStatus", "Neighbour", "solve_cycle"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MultiplierListSettings:
-    """Floquet multipliers of a cycle that are stored."""
+    """Settings for the list of stored Floquet multipliers of a cycle."""
 
-    number: int = 6
+    length: int = 6
     """Number of stored multipliers: the length of their list in a file."""
     min_modulus: float = 1e-6
-    """Smallest modulus of a stored multiplier; a perturbation with a smaller one is over after a period."""
+    """Smallest modulus of a stored multiplier; a perturbation with a smaller multiplier has decayed after one
+    period."""
 
 
 MULTIPLIER_LIST = MultiplierListSettings()
 NO_MULTIPLIER = complex(nan, nan)
-"""Stored for multipliers below `MULTIPLIER_LIST.min_modulus`."""
+"""Value in the stored list for multipliers with moduli below `MULTIPLIER_LIST.min_modulus`."""
 
 
 def solve_cycle(
@@ -61,11 +63,11 @@ def solve_cycle(
     along: str | None = None,
     workspace: NewtonWorkspace | None = None,
 ) -> Cycle:
-    """The cycle that the rod reaches from its leading mode, or from a neighbour's cycle.
+    """The cycle that a rod reaches from its leading mode, or from a neighbour's cycle; a failure becomes a
+    status, never an exception.
 
-    start: `Cycle.neighbour` of the previous point of a chain. along: name of the parameter that varies along
-    the chain. workspace: memory of Newton's matrices, shared by many rods; None makes a new workspace. A
-    failure becomes a status; no exception is raised.
+    start: `Cycle.neighbour` of the previous rod of a chain. along: name of the parameter that varies along
+    the chain. workspace: memory of Newton's matrices, shared by many rods; None makes a new workspace.
     """
     memory = workspace or NewtonWorkspace()
 
@@ -95,9 +97,9 @@ def _solve(
         return _from_hopf(_form_of_motion(rod), request, straight, stability, workspace)
     found = None
     if neighbour is not None and along is not None:
-        form = StressForm(rod, neighbour.branch.orbit.form.mesh)
+        form = StressForm(rod, neighbour.predictor.orbit.form.mesh)
         with suppress(Unsolvable):
-            found = followed_cycle(neighbour, form, along, request.accuracy, workspace)
+            found = cycle_from_neighbour(neighbour, form, along, request.accuracy, workspace)
     elif neighbour is None and not request.is_traced:
         found = small_cycle(_form_of_motion(rod), w, request, along, workspace)
     if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
@@ -114,21 +116,22 @@ def _solve(
     if decays:
         return replace(cycle, message=decays)
     cycle = replace(cycle, status=end.status, message=end.message)
-    if end.found is None:
-        return cycle if end.around is None else _with_multipliers(cycle, end.around)
-    cycle = _with_numbers(cycle, end.found, request)
-    return _with_chain_state(cycle, end.found, None, along, request.accuracy, stability)
+    if end.cycle is None:
+        return cycle if end.unstable_cycle is None else _with_multipliers(cycle, end.unstable_cycle)
+    cycle = _with_numbers(cycle, end.cycle, request)
+    return _with_chain_state(cycle, end.cycle, None, along, request.accuracy, stability)
 
 
 def _form_of_motion(rod: Rod) -> StressForm:
-    """The rod on the first mesh of its motion."""
+    """Discretization of a rod on the first mesh of its integrated motion."""
     return StressForm(rod, motion_mesh(rod, MOTION_MESH.accuracy))
 
 
 def _after_motion(
     straight: Cycle, transient: Transient, end: TransientOutcome, request: CycleRequest
 ) -> Cycle:
-    """The outcome with the number of returns of the motion, the mesh, and the stored part of the motion."""
+    """The outcome `straight` with the mesh, the number of returns and the requested path or shapes of an
+    integrated motion."""
     trace = transient.trace
     return replace(
         straight,
@@ -141,7 +144,7 @@ def _after_motion(
 
 
 def _motion(transient: Transient, trace: ShapeTrace, request: CycleRequest) -> MotionShapes:
-    """The beginning of the motion as the request stores it."""
+    """Shapes from the start of an integrated motion, as the request stores them."""
     returns = [time for time, _ in transient.past]
     return trace.motion(returns, transient.mode.period, request.frames, request.nodes)
 
@@ -154,7 +157,8 @@ def _with_chain_state(
     accuracy: float,
     stability: StraightRod,
 ) -> Cycle:
-    """The cycle with the data from which the next point of a chain starts; unchanged outside a chain."""
+    """The outcome `cycle` with the data from which the next rod of a chain starts; unchanged if `along` is
+    None, outside a chain."""
     if along is None:
         return cycle
     eigenvalues = eigenvalues_to_follow(found.orbit.form.rod, stability)
@@ -162,14 +166,15 @@ def _with_chain_state(
 
 
 def _checked_by_spectrum(cycle: Cycle, stability: StraightRod) -> Cycle:
-    """The cycle, with the status `straight` withdrawn unless the spectrum proves the straight rod stable."""
+    """The outcome `cycle`; a status `straight` becomes `not_settled` unless the spectrum proves the straight
+    rod stable."""
     if cycle.status != CycleStatus.straight or stability.stable:
         return cycle
     return replace(cycle, status=CycleStatus.not_settled, message=stability.doubt)
 
 
 def _with_second_state(rod: Rod, cycle: Cycle, stability: StraightRod) -> Cycle:
-    """The cycle with the second stable state of the rod, as far as it is known."""
+    """The outcome `cycle` with the knowledge about a second stable state of the rod."""
     state, F, why = second_state(rod, cycle.status, stability.stable)
     message = "; ".join(filter(None, (cycle.message, why)))
     return replace(cycle, second_state=int(state), subcritical_F=F, message=message)
@@ -182,9 +187,10 @@ def _from_hopf(
     stability: StraightRod,
     workspace: NewtonWorkspace,
 ) -> Cycle:
-    """The cycle on the branch from the Hopf point below the rod's force.
+    """The outcome for the cycle on the branch from the Hopf point below the force of the rod.
 
-    straight: outcome if no Hopf point lies below the force.
+    straight: outcome to which the cycle's quantities are added, and returned with a status if no Hopf point
+    lies below the force.
     """
     try:
         hopf = hopf_point_below(form.rod)
@@ -201,27 +207,30 @@ def _from_hopf(
 def _from_motion(
     transient: Transient, request: CycleRequest, neighbour: Neighbour | None
 ) -> TransientOutcome:
-    """Outcome of the motion from the leading mode, a bent state, or a state of the neighbour's cycle."""
+    """Outcome of a motion integrated from the requested tip position, from the leading mode, or from a state
+    of the neighbour's cycle."""
     beam = transient.beam
     if request.tip is not None:
         start = held_by_tip(beam, *request.tip)
     elif neighbour is None:
         start = request.amplitude * transient.mode.z.real
     else:
-        orbit = neighbour.branch.orbit
+        orbit = neighbour.predictor.orbit
         start = beam.state_of_stresses(orbit.form.stresses_on(beam.mesh, orbit.start))
     return classify_quasiperiodic(transient.follow(start), transient)
 
 
 def _with_numbers(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> Cycle:
-    """The outcome with the measures, errors and multipliers of its cycle."""
-    cycle = measured(cycle, request, found.path, found.measures, found.errors)
+    """The outcome `cycle` with the measures, errors, time series and multipliers of the solved cycle
+    `found`."""
+    cycle = with_measures(cycle, request, found.path, found.measures, found.errors)
     return _with_multipliers(cycle, found)
 
 
 def _with_multipliers(cycle: Cycle, found: RefinedCycle) -> Cycle:
-    """The outcome with the stored multipliers of a cycle and their error."""
-    mu = padded(found.multipliers, MULTIPLIER_LIST.number, NO_MULTIPLIER)
+    """The outcome `cycle` with the stored multipliers of the solved cycle `found`, and the error of the
+    multipliers."""
+    mu = padded_or_cut(found.multipliers, MULTIPLIER_LIST.length, NO_MULTIPLIER)
     mu[np.abs(mu) < MULTIPLIER_LIST.min_modulus] = NO_MULTIPLIER
     return replace(
         cycle,

@@ -1,10 +1,10 @@
 """The limit cycle of one rod by time integration alone: task `limit_cycle` with `method: integration`.
 
-ARKIMEX integrates the motion until it repeats. Neither collocation nor D takes part in it; D only gives the
-leading eigenvalue of the straight rod beside it. No Floquet multiplier is computed; a motion that settles
-shows that the cycle is stable in the plane. Period and extrema are measured on two settled motions, the
-second on a finer mesh with a smaller tolerance; their difference is the error estimate. Near a Hopf point a
-motion may not settle within the allowed periods.
+ARKIMEX integrates the motion until the motion repeats. Collocation is not used; D gives only the stored
+leading eigenvalue of the straight rod. No Floquet multiplier is computed; a motion that settles shows that
+the cycle is stable in the plane. Period and extrema are measured on two settled motions, the second on a
+finer mesh with a smaller tolerance; their difference is the error estimate. Near a Hopf point a motion may
+not settle within the allowed periods.
 """
 
 from collections import deque
@@ -30,18 +30,18 @@ from ..orbit.symmetry import NO_SYMMETRY
 from ..point import solved
 from .accuracy.cycle_errors import CycleErrors
 from .accuracy.integration_errors import errors_of_pair
-from .cycle import Cycle, CycleRequest, measured
+from .cycle import Cycle, CycleRequest, with_measures
 from .marching_settings import MARCHING
 from .status import MarchedStatus
 from .straight_rod import straight_rod
-from .transient.from_motion import stressed
-from .transient.motion_mesh import motion_mesh, near_rod
+from .transient.from_motion import form_states
+from .transient.motion_mesh import integrable_rod, motion_mesh
 from .transient.returns import (
     RETURNS,
-    angle_weights,
     early_end,
     repetition,
     section_crossings,
+    tip_angle_row,
     until_returns,
     why_not_settled,
 )
@@ -49,9 +49,8 @@ from .transient.returns import (
 
 @dataclass(frozen=True, eq=False)
 class _SettledMotion:
-    """A settled motion. z: its state, (unknowns,). turns: returns of the tip per period. step: last time
-    step.
-    """
+    """A motion settled on a cycle. z: state, (unknowns,). turns: returns of the tip per period. step: in
+    tau2."""
 
     z: Array
     turns: int
@@ -59,16 +58,16 @@ class _SettledMotion:
 
 
 class _NoCycle(Exception):
-    """The motion has an outcome that is not a cycle."""
+    """The motion does not end on a cycle. status, message: outcome of the motion."""
 
-    def __init__(self, status: MarchedStatus, why: str) -> None:
-        super().__init__(why)
+    def __init__(self, status: MarchedStatus, message: str) -> None:
+        super().__init__(message)
         self.status = status
-        self.why = why
+        self.message = message
 
 
 def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
-    """The cycle that the rod reaches from its leading mode; a failure becomes a status."""
+    """The cycle that a rod reaches from its leading mode by time integration; a failure becomes a status."""
 
     def failed(cause: str) -> Cycle:
         forget_integrators()  # after an error inside PETSc its objects are unusable
@@ -78,12 +77,12 @@ def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
 
 
 class _MarchedMotion:
-    """The motion of one rod, on successively finer meshes."""
+    """Integration of the motion of one rod until it settles, on successively finer meshes."""
 
     def __init__(self, rod: Rod, request: CycleRequest) -> None:
         self.request = request
         self.limit = rod
-        self.rod = near_rod(rod)
+        self.rod = integrable_rod(rod)
         self.mesh = motion_mesh(rod, request.accuracy)
         self.scheme = TimeScheme("arkimex", "5", tolerance=MARCHING.local_tolerance * request.accuracy)
         self.beam = self._beam()
@@ -91,7 +90,7 @@ class _MarchedMotion:
         self.waited = 0
 
     def cycle(self) -> Cycle:
-        """The outcome: a cycle with errors, or a different end of the motion."""
+        """The outcome for the rod: a cycle with errors, or another end of the motion."""
         w = straight_rod(self.limit).w  # exact; the mesh's own eigenvalue has errors up to 1e-3
         straight = Cycle(status=MarchedStatus.straight, linear_growth_rate=w.real, linear_frequency=w.imag)
         try:
@@ -99,7 +98,7 @@ class _MarchedMotion:
             settled = self._settled(z)
             path = self._path(settled)
             in_limit = self.rod != self.limit
-            enough = self.request.accuracy * (MARCHING.pair_share_in_limit if in_limit else 1.0)
+            enough = self.request.accuracy * (MARCHING.pair_error_share_in_limit if in_limit else 1.0)
             for _ in range(MARCHING.max_comparisons):
                 settled = self._refined(settled)
                 before = path
@@ -110,26 +109,27 @@ class _MarchedMotion:
             if in_limit:
                 errors = self._limit_errors(settled, path, errors)
         except _NoCycle as end:
-            return replace(straight, status=end.status, message=end.why, periods=self.waited)
+            return replace(straight, status=end.status, message=end.message, periods=self.waited)
         return self._measured(straight, path, errors)
 
     def _beam(self) -> Beam:
         return Beam(self.rod, self.mesh)
 
     def _refined(self, settled: _SettledMotion) -> _SettledMotion:
-        """The settled motion on a finer mesh with a smaller tolerance, started from the settled state."""
+        """A settled motion, continued until settled on a finer mesh with a smaller tolerance."""
         before = self.beam
-        self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MARCHING.more_orders)
+        self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MARCHING.order_increase)
         self.scheme = replace(self.scheme, tolerance=MARCHING.tolerance_ratio * self.scheme.tolerance)
         self.beam = self._beam()
         z = self.beam.state_of_stresses(before.stresses_on(self.beam.mesh, settled.z))
         return self._settled(relaxed(self.beam, z, self.mode.period))
 
     def _settled(self, z: Array) -> _SettledMotion:
-        """The settled motion that starts from z, (unknowns,); raises _NoCycle."""
+        """The motion from the state z, (unknowns,), integrated until it settles on a cycle; raises
+        _NoCycle."""
         past: deque[Array] = deque(maxlen=RETURNS.max_returns_per_period + 1)
-        row = angle_weights(self.beam)
-        step = self.mode.period / MARCHING.first_steps
+        row = tip_angle_row(self.beam)
+        step = self.mode.period / MARCHING.first_steps_per_period
         last = nan
         rate = 0.0
         most = self.request.most_periods
@@ -137,7 +137,7 @@ class _MarchedMotion:
             report(lambda: SolvePosition(f"{self.waited} of at most {most} returns of the tip"))
             run = self._run(
                 z,
-                MARCHING.longest_wait * MARCHING.returns_per_test * self.mode.period,
+                MARCHING.max_run_duration * MARCHING.returns_per_test * self.mode.period,
                 step,
                 until_returns(row, z, MARCHING.returns_per_test),
             )
@@ -153,13 +153,13 @@ class _MarchedMotion:
                 continue
             turns, distance = repetition(list(past))
             noise = MARCHING.return_noise * self.scheme.tolerance
-            # Within the noise the quotient of two distances says nothing about the contraction per return.
+            # Below the noise the quotient of two distances is not the contraction rate per return.
             if last > noise:
                 rate = min(max(distance, noise) / last, 1.0) ** (turns / MARCHING.returns_per_test)
             elif isnan(last):
                 rate = 0.0 if distance <= noise else 1.0
             last = distance
-            # A geometric sequence of distances has distance/(1 - rate) left to its limit.
+            # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
             if distance <= MARCHING.settled_distance * self.request.accuracy * (1 - rate):
                 return _SettledMotion(z, turns, step)
         raise _NoCycle(MarchedStatus.not_settled, why_not_settled(self.waited, len(past), last))
@@ -167,22 +167,19 @@ class _MarchedMotion:
     def _run(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
     ) -> Trajectory:
-        """A complete run, by default with the scheme of the motion; raises _NoCycle if the run fails or
-        leaves the model.
-        """
+        """The motion from the state z, (unknowns,), integrated up to a duration or a limit; raises _NoCycle.
+        scheme: None for `self.scheme`."""
         run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
         if end := early_end(self.beam, run, self.waited):
             status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed
-            raise _NoCycle(status, end.why)
+            raise _NoCycle(status, end.message)
         return run
 
     def _crossings(self, run: Trajectory) -> tuple[Array, Array]:
-        """Times, (k,), and states, (k, unknowns), at which theta of the tip rises through 0 on a run.
-
-        Each crossing is integrated to from the step before: a cubic between two steps is less accurate.
-        """
+        """(times, (k,), states, (k, unknowns)) at which the tip's theta rises through 0 on a run. The motion
+        is integrated to each crossing, because a cubic between two time steps is less accurate."""
         times = section_crossings(self.beam, run)[0]
-        row = angle_weights(self.beam)
+        row = tip_angle_row(self.beam)
         states = np.empty((len(times), self.beam.unknowns))
         for i, rough in enumerate(times):
             before = int(np.searchsorted(run.times, rough, side="right")) - 1
@@ -198,12 +195,12 @@ class _MarchedMotion:
         return times, states
 
     def _path(self, settled: _SettledMotion) -> CyclePath:
-        """One period of the settled motion; raises _NoCycle."""
+        """The cycle of a settled motion: one more integration over a period; raises _NoCycle."""
         returns = settled.turns + 2
-        limit = until_returns(angle_weights(self.beam), settled.z, returns)
-        scheme = replace(self.scheme, tolerance=min(self.scheme.tolerance, MARCHING.measured_tolerance))
+        limit = until_returns(tip_angle_row(self.beam), settled.z, returns)
+        scheme = replace(self.scheme, tolerance=min(self.scheme.tolerance, MARCHING.max_measured_tolerance))
         run = self._run(
-            settled.z, MARCHING.longest_wait * returns * self.mode.period, settled.step, limit, scheme
+            settled.z, MARCHING.max_run_duration * returns * self.mode.period, settled.step, limit, scheme
         )
         times = self._crossings(run)[0]
         if len(times) <= settled.turns:
@@ -216,11 +213,13 @@ class _MarchedMotion:
         )
         form = StressForm(self.rod, self.beam.mesh)
         return CyclePath(
-            Orbit.of(form, NO_SYMMETRY, period, stressed(self.beam, form, states), MARCHING.measured_stages)
+            Orbit.of(
+                form, NO_SYMMETRY, period, form_states(self.beam, form, states), MARCHING.measured_stages
+            )
         )
 
     def _limit_errors(self, settled: _SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
-        """The errors plus the effect of integrating a rod near the limit, not in it; raises _NoCycle."""
+        """The errors plus the error of integrating a rod near a limit, not in the limit; raises _NoCycle."""
         known = path.orbit.form.rod
         limit = self.limit
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
@@ -238,12 +237,14 @@ class _MarchedMotion:
         )
 
     def _measured(self, straight: Cycle, path: CyclePath, errors: CycleErrors) -> Cycle:
-        """The outcome with the cycle's numbers."""
+        """The outcome `straight` with status, measures and errors of a settled cycle."""
         enough = errors.largest <= self.request.accuracy
         cycle = replace(
             straight,
             status=MarchedStatus.cycle if enough else MarchedStatus.not_settled,
-            message="" if enough else f"the cycle's errors are up to {errors.largest:.1e}",
+            message=""
+            if enough
+            else f"the cycle's errors, up to {errors.largest:.1e}, exceed the requested accuracy",
             periods=self.waited,
         )
-        return measured(cycle, self.request, path, measures_of(path), errors)
+        return with_measures(cycle, self.request, path, measures_of(path), errors)

@@ -1,9 +1,11 @@
-"""Chain of cycles over the points of a sweep: each cycle predicts that of the next point, its neighbour.
+"""Chain of cycles over the rods of a sweep: the cycle of each rod predicts the cycle of the next rod, its
+neighbour.
 
-The prediction is a polynomial through a cycle, the tangent along the axis, and earlier cycles. A single
-elimination after the prediction usually gives the next cycle with the multipliers. A step too long for
-Newton's method is divided, on a coarser mesh. Mesh and calibrated errors pass along the chain as well.
-Everything follows from the neighbour alone, so that an interrupted chain resumes with the same content.
+The prediction is a polynomial through a cycle, its tangent along the varied parameter, and earlier cycles.
+After the prediction, a single matrix factorisation usually gives the next cycle with its multipliers. A step
+too long for Newton's method is divided, on a coarser mesh. Mesh and calibrated errors pass along the chain as
+well. A cycle depends only on the data of its neighbour, so that an interrupted chain resumes with the same
+results.
 """
 
 from dataclasses import dataclass, field
@@ -28,42 +30,45 @@ from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.refinement import calibrated_cycle, matrix_distance, newton_tolerance, with_calibrated_errors
 from .along_parameter import (
     CyclePredictor,
-    near_prediction,
     orbit_in_steps,
+    orbit_near_prediction,
     predictor_from,
-    relative_distance,
+    relative_parameter_difference,
 )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NeighbourSettings:
-    """Settings for the meshes of the cycles of a chain."""
+    """Settings for the choice of the next mesh in a chain of cycles."""
 
-    kept_mesh_error: float = 0.9
-    """Largest error of a cycle, as a share of the accuracy, with which the next cycle keeps the mesh."""
-    new_mesh_cost: float = 0.8
-    """Largest cost of a mesh that replaces the present mesh, in units of the present cost."""
-    calibrated_mesh_cost: float = 0.5
-    """`new_mesh_cost` if the new mesh loses a valid calibration, which costs as much as three cycles."""
+    max_error_of_same_mesh: float = 0.9
+    """Largest error of a cycle, in units of the accuracy, after which the next cycle is solved on the same
+    mesh."""
+    max_new_mesh_cost: float = 0.8
+    """Largest cost of a mesh that replaces a sufficient mesh, in units of the cost of the sufficient mesh."""
+    max_new_mesh_cost_when_calibrated: float = 0.5
+    """The same limit if the calibration of the sufficient mesh is still valid: a new calibration costs as
+    much as three cycles."""
 
 
 NEIGHBOUR = NeighbourSettings()
 
 
 UNKNOWN_EIGENVALUES: Complex = np.array([complex(nan, nan)])
-"""Eigenvalues where they are not known."""
+"""Value of `Neighbour.eigenvalues` if the eigenvalues are not known."""
 Arrays = dict[str, Array]
 
 
 @dataclass(frozen=True, eq=False)
 class Neighbour:
-    """Data from which the next point of a chain starts: predictor of the cycle, and mesh.
+    """Data of a solved cycle from which the next rod of a chain starts.
 
-    calibration: errors of the mesh, perhaps outdated. eigenvalues: eigenvalues of the straight rod in 1/tau2
-    with Im >= 0, (n,), the leading one first; NaN if not known.
+    predictor: polynomial for the next cycle. next_mesh: mesh for the next cycle. calibration: measured errors
+    of a mesh, perhaps outdated. eigenvalues: eigenvalues of the straight rod in 1/tau2 with Im >= 0, (n,),
+    the leading eigenvalue first; NaN if not known.
     """
 
-    branch: CyclePredictor
+    predictor: CyclePredictor
     next_mesh: OrbitMesh
     calibration: Calibration
     eigenvalues: Complex = field(default_factory=UNKNOWN_EIGENVALUES.copy)
@@ -77,13 +82,15 @@ class Neighbour:
         accuracy: float,
         eigenvalues: Complex = UNKNOWN_EIGENVALUES,
     ) -> "Neighbour":
-        """Data of a cycle that was solved with its tangent. before: data of the previous point."""
-        branch = predictor_from(found.fine, before.branch if before else None, name)
+        """Data of the cycle `found`, which was solved with its tangent. before: data of the previous rod of
+        the chain. name: varied parameter."""
+        branch = predictor_from(found.converged, before.predictor if before else None, name)
         return cls(branch, *_next_mesh(found, before, name, accuracy), eigenvalues)
 
     def arrays(self) -> Arrays:
-        """All data as named arrays: orbit (N,), data (m, N + 1), places and orders (m,), and numbers."""
-        branch = self.branch
+        """All data as named arrays, for a checkpoint: orbit (N,), data (m, N + 1), places and orders (m,),
+        eigenvalues (n,), meshes, rod and calibration."""
+        branch = self.predictor
         orbit = branch.orbit
         return {
             "rod": np.array(list(orbit.form.rod.values.values())),
@@ -92,7 +99,7 @@ class Neighbour:
             "symmetric": np.array(orbit.symmetric),
             "mesh": mesh_of(orbit).numbers,
             "orbit": orbit.values,
-            "places": branch.places,
+            "places": branch.offsets,
             "orders": branch.orders,
             "data": branch.data,
             "next_mesh": self.next_mesh.numbers,
@@ -101,7 +108,7 @@ class Neighbour:
 
     @classmethod
     def from_arrays(cls, arrays: Arrays) -> "Neighbour":
-        """The neighbour from stored `arrays`, with the shapes given there."""
+        """The neighbour from its named arrays, as `Neighbour.arrays` makes them."""
         mesh = OrbitMesh.from_numbers(arrays["mesh"])
         next_mesh = OrbitMesh.from_numbers(arrays["next_mesh"])
         parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))
@@ -116,12 +123,13 @@ class Neighbour:
 def _next_mesh(
     found: RefinedCycle, before: "Neighbour | None", name: str, accuracy: float
 ) -> tuple[OrbitMesh, Calibration]:
-    """The mesh for the next cycle, and its calibration, outdated if the mesh has to be measured."""
+    """(mesh for the next cycle of a chain, calibration, which is outdated if the errors must be measured
+    again)."""
     present = mesh_of(found.orbit)
     known = found.calibration
-    fits = found.errors.largest <= NEIGHBOUR.kept_mesh_error * accuracy
+    fits = found.errors.largest <= NEIGHBOUR.max_error_of_same_mesh * accuracy
     if known.reach and not fits:
-        # Extrapolated errors that are too large are measured on this mesh before another mesh is planned.
+        # Scaled errors that are too large are measured on this mesh before another mesh is planned.
         return present, known.outdated
     share = inf if not fits else _share_of_cost(found, before, name)
     planned = known.planned(accuracy) if share else present
@@ -131,32 +139,36 @@ def _next_mesh(
 
 
 def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -> float:
-    """Largest cost of a replacing mesh in units of the present mesh's cost; 0 to keep the present mesh."""
+    """Largest cost of a mesh that replaces a sufficient mesh, in units of the cost of the sufficient mesh; 0
+    to keep it."""
     if before is None:
-        # An orbit's tails chose the first mesh of a chain, not measured errors.
-        return NEIGHBOUR.new_mesh_cost
+        # Coefficient tails, not measured errors, determined the first mesh of a chain.
+        return NEIGHBOUR.max_new_mesh_cost
     if not found.calibration.reach:
-        return NEIGHBOUR.calibrated_mesh_cost
-    step = relative_distance(before.branch.orbit.form, found.orbit.form, name)
+        return NEIGHBOUR.max_new_mesh_cost_when_calibrated
+    step = relative_parameter_difference(before.predictor.orbit.form, found.orbit.form, name)
     # A mesh whose errors must be measured anyway may as well be another one.
-    return 0.0 if found.calibration.lasts(step) else NEIGHBOUR.new_mesh_cost
+    return 0.0 if found.calibration.lasts(step) else NEIGHBOUR.max_new_mesh_cost
 
 
-def followed_cycle(
+def cycle_from_neighbour(
     neighbour: Neighbour, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> RefinedCycle:
-    """The cycle of a rod that differs from the neighbour's in one parameter; raises Unsolvable.
+    """The cycle of a rod that differs from the neighbour's rod in the parameter `name` only; raises
+    Unsolvable.
 
-    form: the rod, on any mesh. name: the parameter. workspace: memory of the matrices.
+    form: the rod, on any mesh. workspace: memory of Newton's matrices.
     """
-    if form.rod.build != neighbour.branch.orbit.form.rod.build:
+    if form.rod.build != neighbour.predictor.orbit.form.rod.build:
         raise Unsolvable("the neighbouring rod has another law or another profile along its length")
-    if form.omega_unknown != neighbour.branch.orbit.form.omega_unknown:
+    if form.omega_unknown != neighbour.predictor.orbit.form.omega_unknown:
         raise Unsolvable(
-            "the neighbour has other unknowns: Omega is an unknown only at small rotational drag"
+            "the rods have different unknowns: Omega is an unknown only at small rotational drag"
         )
     found = _converged(neighbour, form, name, accuracy, workspace)
-    known = neighbour.calibration.at(found.orbit, relative_distance(neighbour.branch.orbit.form, form, name))
+    known = neighbour.calibration.at(
+        found.orbit, relative_parameter_difference(neighbour.predictor.orbit.form, form, name)
+    )
     if known.holds:
         cycle = with_calibrated_errors(known, found, accuracy)
         if cycle.errors.largest <= accuracy:
@@ -167,13 +179,16 @@ def followed_cycle(
 def _converged(
     neighbour: Neighbour, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> ConvergedOrbit:
-    """The cycle on the neighbour's `next_mesh`, with a matrix for the tangent and the multipliers."""
+    """The cycle of the rod in `form` on the neighbour's `next_mesh`, with a matrix for tangent and
+    multipliers; raises Unsolvable."""
     tolerance = newton_tolerance(accuracy)
     target = neighbour.next_mesh
     try:
-        found = near_prediction(neighbour.branch.on(target).at(form, name), tolerance, workspace, name)
+        found = orbit_near_prediction(
+            neighbour.predictor.on(target).at(form, name), tolerance, workspace, name
+        )
     except Unsolvable:
-        # Steps on a coarser mesh lead to the cycle; only the last correction is made on the wanted mesh.
-        start = orbit_in_steps(neighbour.branch.on(target.coarser), form, name, tolerance, workspace)
+        # The steps are made on a coarser mesh; only the last correction is made on `next_mesh`.
+        start = orbit_in_steps(neighbour.predictor.on(target.coarser), form, name, tolerance, workspace)
         found = newton(target.carry(start.orbit), tolerance, workspace, name)
     return at_orbit(found, matrix_distance(accuracy), name)

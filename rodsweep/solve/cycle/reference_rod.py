@@ -1,4 +1,4 @@
-"""A rod whose cycle is known: it warms up the solver and checks the environment."""
+"""A reference rod with a known cycle, which warms up the solver and checks the PETSc options."""
 
 from dataclasses import replace
 
@@ -10,22 +10,23 @@ from .cycle import CycleRequest
 from .limit_cycle import solve_cycle
 from .status import CycleStatus
 
-KNOWN_PERIOD = 0.04204870
-"""Period in tau2 of the rod F, k1, k2, gamma3, gamma1 = 40, 1e4, 1e2, 1e-2, 1, confirmed by an independent
-displacement-form code."""
+REFERENCE_PERIOD = 0.04204870
+"""Period, in tau2, of the cycle of the reference rod F, k1, k2, gamma3, gamma1 = 40, 1e4, 1e2, 1e-2, 1; an
+independent displacement-form code confirms all digits."""
 
 
 def warm_up() -> None:
-    """Loads compiled code and fills caches, so that the first point takes no extra time.
+    """Loads compiled code and fills caches by solving the reference rod, so that the first point takes no
+    extra time.
 
-    Raises EnvironmentIncomplete if PETSc options with the prefix cycle_ spoil the cycle of a reference rod.
+    Raises EnvironmentIncomplete if the period is wrong and PETSc options with the prefix cycle_ are set.
     """
     rod = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
     request = CycleRequest(1e-3, 0.1, 1, 4, 1, 4, 50)
     cycle = solve_cycle(rod, request, None, "F")
     if cycle.neighbour is not None:
         solve_cycle(replace(rod, F=1.01 * rod.F), request, cycle.neighbour, "F")
-    deviation = abs(cycle.measures.period / KNOWN_PERIOD - 1)
+    deviation = abs(cycle.measures.period / REFERENCE_PERIOD - 1)
     reproduced = cycle.status == CycleStatus.cycle and deviation < request.accuracy
     given = options(CYCLE_PREFIX)
     if given and not reproduced:

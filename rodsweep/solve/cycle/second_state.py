@@ -1,7 +1,8 @@
-"""Second stable state of a rod, besides the state in which its point ended.
+"""Second stable state of a rod, besides the final state of its motion.
 
-If the straight rod is stable and the point ended elsewhere, the rod has two stable states. If the point ended
-at the straight rod, a nearby subcritical Hopf point makes a second state possible, but does not prove it.
+If the straight rod is stable and the final state is a different state, the rod has two stable states. If the
+final state is the straight rod, a nearby subcritical Hopf point makes a second state possible, but does not
+prove it.
 """
 
 from enum import IntEnum
@@ -15,7 +16,7 @@ from .status import CycleStatus
 
 
 class SecondState(IntEnum):
-    """Knowledge about a second stable state; the result file stores the value."""
+    """Knowledge about a second stable state of a rod; the result file stores the value."""
 
     not_known = -1
     none_known = 0
@@ -24,9 +25,10 @@ class SecondState(IntEnum):
 
 
 def second_state(rod: Rod, status: PointStatus, stable: bool | None) -> tuple[SecondState, float, str]:
-    """(second state, force of the subcritical Hopf point or NaN, a sentence) of a point.
+    """(second stable state of a rod, force of the subcritical Hopf point or NaN, message or "").
 
-    status: outcome of the point. stable: whether the straight rod is stable; None if this is not known.
+    status: outcome of the motion or search for a cycle. stable: whether the straight rod is stable; None if
+    this is not known.
     """
     if status == CycleStatus.failed or stable is None:
         return SecondState.not_known, nan, ""

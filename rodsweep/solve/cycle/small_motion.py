@@ -1,8 +1,9 @@
-"""Outcome of a small motion about the straight rod, from the normal form of its leading mode.
+"""Outcome of a small motion about the straight rod, from the normal form of the leading mode, without
+integration.
 
-No motion is integrated. Near a supercritical Hopf point the motion grows or decays to the small cycle there.
-Where the cubic part of its growth rate is small compared with the linear part, the motion decays to the
-straight rod.
+Near a supercritical Hopf point the motion converges to the small cycle there. If the leading mode decays, and
+the cubic term of its growth rate is small compared with the linear term, the motion decays to the straight
+rod.
 """
 
 from dataclasses import dataclass
@@ -22,10 +23,11 @@ from .transient.transient_settings import TRANSIENT
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SmallMotionSettings:
-    """Settings for motions beside a Hopf point."""
+    """Settings for small motions near a Hopf point."""
 
-    weak_bending: float = 0.02
-    """Cubic part of the growth rate, in units of the linear part, below which the linear part decides."""
+    max_cubic_growth_ratio: float = 0.02
+    """Cubic term of the growth rate, in units of the linear term, below which the linear term determines the
+    outcome of a motion."""
 
 
 SMALL_MOTION = SmallMotionSettings()
@@ -34,29 +36,34 @@ SMALL_MOTION = SmallMotionSettings()
 def small_cycle(
     form: StressForm, w: complex, request: CycleRequest, along: str | None, workspace: NewtonWorkspace
 ) -> RefinedCycle | None:
-    """The stable small cycle near a Hopf point at which the start settles; None if no such cycle is known.
+    """The stable small cycle near a Hopf point to which the motion from the requested start converges; None
+    if the normal form predicts none.
 
-    w: the leading eigenvalue of the straight rod. along: parameter of the cycle's tangent. workspace: memory
-    of Newton's matrices.
+    form: the rod. w: leading eigenvalue of the straight rod. along: parameter of the cycle's tangent.
+    workspace: memory of Newton's matrices.
     """
     try:
         found = refined_cycle(small_orbit(form, w, request.amplitude), request.accuracy, workspace, along)
     except Unsolvable:
         return None
     settled = found.verdict(request.accuracy)[0] == CycleStatus.cycle
-    return found if settled and 1 - found.largest_multiplier >= TRANSIENT.neutral_distance else None
+    return found if settled and 1 - found.largest_multiplier >= TRANSIENT.min_unit_distance else None
 
 
 def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
-    """The reason why a small motion in the leading mode decays; empty if only an integration can decide."""
+    """Message why a motion that starts in the leading mode decays to the straight rod; "" if only an
+    integration can decide.
+
+    w: leading eigenvalue. amplitude: tip's y at the start, in L.
+    """
     if not (w.real < 0 < w.imag):
         return ""
     try:
-        normal = accurate_normal_form(rod, w, SMALL_MOTION.weak_bending)
+        normal = accurate_normal_form(rod, w, SMALL_MOTION.max_cubic_growth_ratio)
     except Unsolvable:
         return ""
     # d|z|/dt = (Re w + Re c |z|^2) |z|: while the cubic part is small, the motion can only decay.
     share = abs(normal.c.real) * amplitude**2 / -w.real
-    if share >= SMALL_MOTION.weak_bending:
+    if share >= SMALL_MOTION.max_cubic_growth_ratio:
         return ""
-    return f"decays: at this amplitude the cubic part of the growth rate is {share:.0e} of the linear part"
+    return f"decays: at this amplitude the cubic term of the growth rate is {share:.0e} of the linear term"

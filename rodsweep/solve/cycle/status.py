@@ -1,10 +1,11 @@
-"""Outcomes of a search for a limit cycle, each with the sentence that the user reads."""
+"""Status words of the task limit_cycle, each with the sentence that the user reads."""
 
 from ..status import PointStatus
 
 
 class CycleStatus(PointStatus):
-    """Outcome of a point of the task limit_cycle; a success where the final state of the rod is known."""
+    """Status of a point of the task limit_cycle with `method: collocation`; a success if the final state of
+    the rod is known."""
 
     cycle = (
         0,
@@ -40,7 +41,7 @@ class CycleStatus(PointStatus):
 
 
 class MarchedStatus(PointStatus):
-    """Outcome of a point of the task limit_cycle with `method: integration`."""
+    """Status of a point of the task limit_cycle with `method: integration`."""
 
     cycle = (
         0,

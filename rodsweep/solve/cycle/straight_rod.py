@@ -1,7 +1,8 @@
-"""Stability of the straight rod by its spectrum, which overrules any motion on a mesh.
+"""Stability of the straight rod by its exact spectrum, which takes precedence over the motion on a mesh.
 
-Near a Hopf point, the mesh of a motion shifts the Hopf point slightly, as does the replacement of a rod in a
-limit by a rod near the limit. The exact leading eigenvalue decides, within the error estimate.
+The mesh of a motion displaces a Hopf point slightly, and so does the integration of a rod near a limit
+instead of the rod in the limit. Near a Hopf point the sign of the exact leading growth rate therefore
+decides, unless the sign is within the error estimate.
 """
 
 from dataclasses import dataclass, field
@@ -18,58 +19,64 @@ from ..spectrum.search import SpectrumRequest, solve_spectrum
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StraightRodSettings:
-    """Settings for the stability of the straight rod."""
+    """Settings for the stability of the straight rod by its leading eigenvalue."""
 
-    errors_from_axis: float = 4.0
-    """Distance from the imaginary axis, in units of the eigenvalue's error estimate, beyond which the sign of
-    the growth rate is certain. The spectrum uses the same criterion."""
+    min_axis_distance_in_errors: float = 4.0
+    """Distance of the leading eigenvalue from the imaginary axis, in units of its error estimate, beyond
+    which the sign of the growth rate is certain. The task spectrum has the same criterion."""
     accuracy: float = 1e-9
     """Relative accuracy of the leading eigenvalue."""
-    modes_of_chain: int = 6
-    """Number of eigenvalues of an arm from which a chain starts: enough to prove, near most Hopf points, by a
-    few values of D that no further one leads; a count takes three times as long."""
+    chain_eigenvalues: int = 6
+    """Number of eigenvalues of an arm from which a chain of rods starts. Near most Hopf points, with so many
+    eigenvalues, a few values of D prove that no other eigenvalue is the leading one; an eigenvalue count
+    takes three times as long."""
 
 
 STRAIGHT_ROD = StraightRodSettings()
 
 
-NONE_FOLLOWED: Complex = np.empty(0, complex)
+NO_EIGENVALUES: Complex = np.empty(0, complex)
 
 
 @dataclass(frozen=True, slots=True)
 class StraightRod:
-    """Leading eigenvalue w in 1/tau2, Im w >= 0, and the error estimate; both NaN if not known.
+    """Leading eigenvalue w of the straight rod in 1/tau2, with Im w >= 0 and its error estimate; both NaN if
+    not known.
 
     message: the reason for NaN. followed: eigenvalues that were followed from a similar rod, (n,), the
-    leading one first; empty after a search.
+    leading eigenvalue first; empty if the eigenvalue was found by a search.
     """
 
     w: complex
     error: float
     message: str = ""
-    followed: Complex = field(default_factory=NONE_FOLLOWED.copy, compare=False)
+    followed: Complex = field(default_factory=NO_EIGENVALUES.copy, compare=False)
 
     @property
     def stable(self) -> bool | None:
-        """Whether all small motions decay; None if the error leaves this open."""
-        margin = max(STRAIGHT_ROD.errors_from_axis * self.error, ROOTS.axis_tolerance * abs(self.w))
+        """Whether all small motions about the straight rod decay; None if the growth rate is 0 within its
+        error or unknown."""
+        margin = max(
+            STRAIGHT_ROD.min_axis_distance_in_errors * self.error, ROOTS.axis_tolerance * abs(self.w)
+        )
         # A NaN satisfies no comparison, so an unknown eigenvalue gives None.
         return self.w.real < 0 if abs(self.w.real) > margin else None
 
     def growth_rate(self, otherwise: float) -> float:
-        """Growth rate of the leading mode, 1/tau2: 0 if its sign is open, `otherwise` if the rate is
-        unknown."""
+        """Growth rate of the leading mode, in 1/tau2: 0 if its sign is undecided, `otherwise` if the
+        eigenvalue is unknown."""
         if isnan(self.error):
             return otherwise
         return 0.0 if self.stable is None else self.w.real
 
     @property
     def doubt(self) -> str:
-        """The reason why a rod whose motion decays may not stay straight; empty for a stable straight rod."""
+        """Message why the straight rod is not proved stable, for a rod whose motion on a mesh decays; "" for
+        a stable straight rod."""
         if self.stable:
             return ""
         if isnan(self.error):
-            return f"whether the straight rod is stable is not known: {self.message}"
+            return f"the stability of the straight rod is not known: {self.message}"
         rate = f"the straight rod's growth rate is {self.w.real:.2g} +- {self.error:.0e}"
         if self.stable is None:
             return f"{rate}, so whether it stays straight is not decided"
@@ -77,10 +84,10 @@ class StraightRod:
 
 
 def straight_rod(rod: Rod, near: Complex | None = None, certify: bool = True) -> StraightRod:
-    """The leading eigenvalue of a rod with its error.
+    """The leading eigenvalue of a rod with its error estimate.
 
-    near: eigenvalues of a similar rod, (n,), the leading one first, followed to this rod if possible.
-    certify: whether the eigenvalue is proved to be the leading one.
+    near: eigenvalues of a similar rod, (n,), the leading eigenvalue first, which are followed to this rod if
+    possible. certify: whether to prove that the eigenvalue is the leading one.
     """
     request = SpectrumRequest(1, STRAIGHT_ROD.accuracy, certify)
     leader = None if near is None else follow_leading_eigenvalue(rod, near, request.accuracy)
@@ -94,11 +101,12 @@ def straight_rod(rod: Rod, near: Complex | None = None, certify: bool = True) ->
 
 
 def eigenvalues_to_follow(rod: Rod, found: StraightRod) -> Complex:
-    """Eigenvalues, (n,), the leading one first, from which those of a similar rod can be followed."""
+    """Eigenvalues of a rod, (n,), the leading eigenvalue first, from which the eigenvalues of a similar rod
+    can be followed."""
     if len(found.followed):
         return found.followed
     if not rod.uniform:
-        request = SpectrumRequest(STRAIGHT_ROD.modes_of_chain, STRAIGHT_ROD.accuracy, True)
+        request = SpectrumRequest(STRAIGHT_ROD.chain_eigenvalues, STRAIGHT_ROD.accuracy, True)
         w = solve_spectrum(rod, request).eigenvalues
         if np.isfinite(w).all():
             return w[w.imag >= 0]

@@ -18,7 +18,7 @@ from ...determinant.boundary import Boundary
 from ...determinant.parameter_plane import Plane, PlaneAxis
 from ...model.rod import Rod
 from ...watch import SolvePosition, report
-from ..continuation.follower import CurveStop, StepResult, follow
+from ..continuation.follower import CurveStop, StepResult, follow_curve
 from ..point import FAILURES, Unsolvable
 from .bautin_settings import BAUTIN, BAUTIN_STEPS
 from .generalised import GENERALISED_HOPF, GeneralisedHopfPoint, HopfCurve
@@ -149,8 +149,10 @@ class BautinSpace:
         """Distances of a point from both ends of the three ranges, (6,), negative on an end."""
         return np.ravel([place.v[:3], 1 - place.v[:3]], order="F") - BAUTIN.on_edge
 
-    def landed(self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int) -> _CurvePoint | None:
-        """Point of the curve on the end of a range: `outer`, because `step` never goes beyond the end."""
+    def located_zero(
+        self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int
+    ) -> _CurvePoint | None:
+        """The outer point itself: `_within` has already shortened the step to end on the edge."""
         return outer
 
     def closes(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
@@ -174,7 +176,7 @@ class BautinSpace:
                 break
             slope = (here.share - last) / (s - before)
             step = -here.share / slope
-            if not abs(s + step) < BAUTIN_STEPS.longest:
+            if not abs(s + step) < BAUTIN_STEPS.max_length:
                 break
             along = here.coefficients.landau_error / abs(slope)
             if abs(step) <= max(BAUTIN.tolerance, along):
@@ -215,10 +217,10 @@ def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> 
 
 
 def _followed(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
-    """(points from `start` towards `space.side`, why the curve ends), with requested third values."""
-    if not 0 < start.v[2] + space.side * BAUTIN_STEPS.shortest < 1:
+    """Points from the start to `space.side`, requested third values included, and why the curve ends."""
+    if not 0 < start.v[2] + space.side * BAUTIN_STEPS.min_length < 1:
         return [start], BautinEnd.range_end
-    curve = follow(space, start, BAUTIN_STEPS, _report)
+    curve = follow_curve(space, start, BAUTIN_STEPS, _report)
     places = curve.solutions[:1]
     for here, there in pairwise(curve.solutions):
         try:

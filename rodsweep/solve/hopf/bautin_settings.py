@@ -6,7 +6,13 @@ from math import inf
 from ..continuation.follower import StepControl
 
 BAUTIN_STEPS = StepControl(
-    first=0.01, longest=0.1, shortest=1e-4, far=0.2, sharpest=inf, growth=1.5, most=2000
+    first_length=0.01,
+    max_length=0.1,
+    min_length=1e-4,
+    max_error=0.2,
+    max_angle=inf,
+    max_ratio=1.5,
+    max_solutions=2000,
 )
 """Step length control along a curve. Lengths are in units of the parameters' ranges, the prediction error in
 units of the step."""

@@ -86,22 +86,19 @@ class DiagramCurves:
         return SpecialBoundaries(*plane.axes, special)
 
     def solve(self, units: "SpecialBoundaries", unit: int) -> dict[str, np.ndarray]:
-        """Half a curve of cycles, the unit of work `unit`; arrays have the shapes of `TracedHalf`."""
+        """Result of a unit, arrays with the shapes of `TracedHalfCurve`."""
         return units.solve(unit, self._special_points, self.workspace)
 
     def empty_result(self) -> dict[str, np.ndarray]:
-        """Result of a unit of work without a curve: arrays of shape (0, ...)."""
-        from ...solve.branch.special.cycle_curves import TracedHalf
+        """Result of a unit without a curve: arrays of shape (0, ...)."""
+        from ...solve.branch.special.cycle_curves import TracedHalfCurve
 
-        return TracedHalf(None).arrays()
+        return TracedHalfCurve(None).arrays()
 
     def variables(
         self, view: View, units: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
     ) -> list[Filled]:
-        """All curves as variables of the file.
-
-        view: the result file with all rows. results: arrays of every unit of work, shapes as in `TracedHalf`.
-        """
+        """All curves as variables of the file. results: of all units, shapes as in `TracedHalfCurve`."""
         plane = self.plane
         if plane is None:
             return []
@@ -174,12 +171,14 @@ class DiagramCurves:
         return replace(found, untraced=found.untraced + int(cut[np.isfinite(rows)].clip(min=0).sum()))
 
     def _special_points(self, number: int) -> "tuple[SpecialPoint, ...]":
-        """Special points of the branches of a row, from memory or solved again; number: index of the row."""
-        from ...solve.branch.coexistence import row_branches, special_of
+        """Special points of the branches of a row, kept or solved again."""
+        from ...solve.branch.coexistence import row_branches, special_points_of
 
         if number not in self.special:
             request = self.task.row_request()
-            return special_of(row_branches(self.task.rod(number), request, MAX_CYCLE_SPECIAL, self.workspace))
+            return special_points_of(
+                row_branches(self.task.rod(number), request, MAX_CYCLE_SPECIAL, self.workspace)
+            )
         return self.special[number]
 
     def _criticality(self, plane: "Plane", found: "Boundaries[BoundaryCurve]") -> "list[CurveCriticality]":

@@ -26,7 +26,7 @@ from ...results.layouts.variables import Filled, Variable, listed, recorded
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
     from ...solve.branch.coexistence import CoexistenceRow
-    from ...solve.branch.special.boundaries import RowSpecial
+    from ...solve.branch.special.boundaries import RowSpecialPoint
     from ...solve.branch.special.cycle_curves import CycleCurve
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
     from ...solve.continuation.boundaries import Boundaries
@@ -142,18 +142,15 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     return values | {"seconds": result.seconds, "status": int(result.status)}
 
 
-def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
-    """Folds and torus points stored in the file, of all rows with a finite value.
-
-    line: parameter that varies along the rows. rows: value of every row, (rows,).
-    """
-    from ...solve.branch.special.boundaries import FOLLOWED_KINDS, RowSpecial
+def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecialPoint]":
+    """Folds and torus points of all finite rows in the file. rows: value of every row, (rows,)."""
+    from ...solve.branch.special.boundaries import FOLLOWED_KINDS, RowSpecialPoint
     from ...solve.branch.special.point import SpecialKind
 
     names = (f"cycle_special_{name}" for name in ("kind", line, "period", "tip_y_max"))
     kinds, at, period, height = map(view.by_point, names)
     return [
-        RowSpecial(
+        RowSpecialPoint(
             number=int(i),
             row=float(rows[i]),
             kind=SpecialKind(int(kinds[i, j])),
@@ -182,11 +179,9 @@ def with_hopf_ends(
     criticalities: "Sequence[CurveCriticality]",
     unstored: int,
 ) -> "Boundaries[CycleCurve]":
-    """Curves of cycles whose ends at generalised Hopf points are replaced by the more accurate points that
-    were located on Hopf curves. unstored: number of special points without a curve.
-    """
-    from ...solve.branch.special.cycle_curves import ending_at
+    """Curves whose ends at generalised Hopf points are replaced by the points located on Hopf curves."""
+    from ...solve.branch.special.cycle_curves import with_located_ends
 
     known = [point for curve in criticalities for point in curve.points]
-    curves = tuple(ending_at(curve, plane, known) for curve in found.curves)
+    curves = tuple(with_located_ends(curve, plane, known) for curve in found.curves)
     return replace(found, curves=curves, untraced=found.untraced + unstored)

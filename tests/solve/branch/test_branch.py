@@ -19,8 +19,8 @@ from rodsweep.solve.branch.bordered import matrix
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.branches import BranchRequest, BranchStatus, solve_branches
 from rodsweep.solve.branch.following import BranchLimits, follow_branch
-from rodsweep.solve.branch.special.augmented.functions import crossing_pair
-from rodsweep.solve.branch.special.curves import CurveLimits
+from rodsweep.solve.branch.special.augmented.functions import pair_nearest_unit_circle
+from rodsweep.solve.branch.special.curves import SpecialCurveProblem
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
@@ -77,7 +77,7 @@ def test_branch_from_the_first_hopf_point_of_fig_2c_arrives_at_its_restabilizati
     assert last.period == pytest.approx(2 * np.pi / 3367.28095760, rel=1e-11)
     assert 199.16 < fold.at < 199.1602
     assert fold.error < 1e-9 * fold.at
-    unstable = [point.unstable for point in curve.points]
+    unstable = [point.unstable_count for point in curve.points]
     turn = fold.after + 1
     assert unstable == [0] * turn + [1] * (len(unstable) - turn)
     assert all(point.at_error <= 1e-7 for point in curve.points)
@@ -158,7 +158,7 @@ def test_branch_without_a_fold():
     assert found.status == BranchStatus.ok
     assert kinds(curve) == ["hopf", "end"]
     assert np.all(np.diff([point.at for point in curve.points]) > 0)
-    assert {point.unstable for point in curve.points} == {0}
+    assert {point.unstable_count for point in curve.points} == {0}
 
 
 def test_branch_that_leaves_the_model_ends_where_h1_is_0():
@@ -179,7 +179,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
     torus = only(curve, SpecialKind.torus)
     assert torus.error < 1e-9 * torus.at
     after = torus.after + 1
-    assert [point.unstable for point in curve.points[after - 1 : after + 1]] == [0, 2]
+    assert [point.unstable_count for point in curve.points[after - 1 : after + 1]] == [0, 2]
     request = CycleRequest(1e-6, 0.01, 8, 0, 0, 0, 400, "hopf")
     for side, status in ((-1, CycleStatus.cycle), (1, CycleStatus.unstable)):
         F = torus.at * (1 + side * 2e-4)
@@ -188,7 +188,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
         assert abs(cycle.multipliers[0].imag) > 0.5
         assert 1e-4 < side * (cycle.multiplier - 1) < 2e-3
         assert cycle.measures.tip_y_max == pytest.approx(torus.tip_y_max, rel=2e-3)
-    points, end = CurveLimits(
+    points, end = SpecialCurveProblem(
         SpecialKind.torus, PlaneAxis("F", 150.0, 220.0), PlaneAxis("k2", 97.0, 103.0), NewtonWorkspace(), -1.0
     ).followed(torus, 100.0)
     assert end is CurveEnd.edge
@@ -196,7 +196,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
     for point in points:
         assert point.error <= 1e-7 * point.at
         # By the eigenvalues of a matrix of its own, where the curve has the eigenvector of one near by.
-        pair = crossing_pair(BorderedMatrix(point.orbit, point.scale, NewtonWorkspace()))
+        pair = pair_nearest_unit_circle(BorderedMatrix(point.orbit, point.scale, NewtonWorkspace()))
         assert abs(pair) == pytest.approx(1.0, abs=1e-7)
 
 
@@ -257,7 +257,7 @@ def test_branch_that_cannot_be_followed_says_where_and_why(monkeypatch):
     said = "no further cycle of the branch is found: there is no cycle near on the branch at F = "
     assert f"branch 1: {said}{first.points[-1].at:.9g}; branch 2: {said}" in found.message
     assert first.points[-1].at > 75
-    assert second.hopf == 1  # the other end is tried by itself
+    assert second.start_hopf == 1  # the other end is tried by itself
 
 
 def test_list_that_is_full_says_so():
@@ -312,7 +312,7 @@ def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkey
     """The sixth Hopf point of a rod that is soft in shear; the mesh's own one lies beyond."""
     smallest = begun.BEGINNING.first_amplitudes[-1]
     monkeypatch.setattr(begun, "BEGINNING", replace(begun.BEGINNING, first_amplitudes=(smallest,)))
-    monkeypatch.setattr(begun, "first_point", lambda first, *others: first.orbit)
+    monkeypatch.setattr(begun, "first_measured_cycle", lambda first, *others: first.orbit)
     path = Path(Rod(F=159.0, k1=1597.4434592561727, k2=19.205853519589944, gamma3=2.45e-8, gamma1=0.72), "F")
     (crossing,) = pair_crossings(path, 159.0, 161.0, False).crossings
     orbit = first_cycle(hopf_point(path, crossing), 2.0785686460875202e-05, NewtonWorkspace())

@@ -15,10 +15,10 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.arc import next_point, point_at
+from rodsweep.solve.branch.arc import cycle_at_length, next_point
 from rodsweep.solve.branch.beginning import first_cycle, hopf_point
 from rodsweep.solve.branch.range_end import cycle_at_range_end, range_end_condition
-from rodsweep.solve.branch.settling import measurement_due, refined
+from rodsweep.solve.branch.settling import measurement_due, on_sufficient_mesh
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.branch.special.points import special_points
 from rodsweep.solve.changes.along_path import pair_crossings
@@ -72,13 +72,15 @@ def branch_of_this(rod, kind, F):
     here, special = first_cycle(hopf_point(Path(straight, "F"), crossing), ACCURACY, NewtonWorkspace()), None
     while True:
         there = next_point(here, ACCURACY)
-        for point in special_points(here, there, partial(point_at, accuracy=ACCURACY), ACCURACY)[0]:
+        for point in special_points(here, there, partial(cycle_at_length, accuracy=ACCURACY), ACCURACY)[0]:
             if point.kind == kind:
                 special = point
         if special is not None and (there.at - F) * (here.at - F) <= 0:
             edge = range_end_condition(here, F)
-            return special, refined(cycle_at_range_end(here, there, edge, ACCURACY), ACCURACY, edge)
-        here = refined(there, ACCURACY) if measurement_due(there) else there
+            return special, on_sufficient_mesh(
+                cycle_at_range_end(here, there, edge, ACCURACY), ACCURACY, edge
+            )
+        here = on_sufficient_mesh(there, ACCURACY) if measurement_due(there) else there
 
 
 def test_auto_has_the_same_fold_and_the_same_unstable_cycle_beyond(auto, tmp_path):

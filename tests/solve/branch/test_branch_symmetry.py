@@ -19,19 +19,19 @@ from rodsweep.solve.branch.branch_curve import BranchCurve
 from rodsweep.solve.branch.branches import BranchesOfRod, BranchStatus
 from rodsweep.solve.branch.following import (
     BranchLimits,
+    follow_asymmetric_branch,
     follow_branch,
-    follow_without_symmetry,
-    followed_from,
+    follow_from_cycle,
 )
-from rodsweep.solve.branch.settling import refined
+from rodsweep.solve.branch.settling import on_sufficient_mesh
 from rodsweep.solve.branch.special import locating
-from rodsweep.solve.branch.special.point import LOCATING, EndReason, SpecialKind
-from rodsweep.solve.branch.special.points import changes_between
+from rodsweep.solve.branch.special.point import SPECIAL_POINT, EndReason, SpecialKind
+from rodsweep.solve.branch.special.points import special_kinds_between
 from rodsweep.solve.branch.symmetry import (
     asymmetry,
-    beginning_without_symmetry,
-    breakings_of,
-    over_whole_period,
+    extended_to_whole_period,
+    first_asymmetric_cycle,
+    symmetry_breakings_in,
 )
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.orbit.matrix.right_sides import equations
@@ -49,7 +49,7 @@ def limits():
     path = Path(straight, "F")
     hopf = hopf_point(path, pair_crossings(path, 0.0, 5.0).crossings[0])
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(locating, "LOCATING", replace(LOCATING, accuracy=1e-5))
+        patch.setattr(locating, "SPECIAL_POINT", replace(SPECIAL_POINT, accuracy=1e-5))
         yield BranchLimits([hopf], (0.0, STOP), (EndReason.range_end,) * 2, ROUGH, 500, NewtonWorkspace())
 
 
@@ -61,13 +61,13 @@ def symmetric(limits):
 @pytest.fixture(scope="module")
 def known(limits, symmetric):
     """The limits with the one symmetry breaking."""
-    (breaking,) = breakings_of([symmetric.special])
+    (breaking,) = symmetry_breakings_in([symmetric.special])
     return following.replace(limits, breakings=[breaking])
 
 
 @pytest.fixture(scope="module")
 def asymmetric(known):
-    return follow_without_symmetry(0, "F", known)
+    return follow_asymmetric_branch(0, "F", known)
 
 
 def kinds(curve):
@@ -88,11 +88,11 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     assert end.at == pytest.approx(STOP, rel=1e-14)
     assert end.reason == EndReason.range_end
     turn = symmetric.special[1].after + 1
-    assert {point.unstable for point in symmetric.points[:turn]} - {-1} == {0}
-    assert {point.unstable for point in symmetric.points[turn:]} - {-1} == {1}
+    assert {point.unstable_count for point in symmetric.points[:turn]} - {-1} == {0}
+    assert {point.unstable_count for point in symmetric.points[turn:]} - {-1} == {1}
     turn = fold.after + 1
-    assert {point.unstable for point in asymmetric.points[:turn]} - {-1} == {1}
-    assert {point.unstable for point in asymmetric.points[turn:]} - {-1} == {0}
+    assert {point.unstable_count for point in asymmetric.points[:turn]} - {-1} == {1}
+    assert {point.unstable_count for point in asymmetric.points[turn:]} - {-1} == {0}
 
 
 def test_asymmetry_grows_with_the_square_root_of_the_distance(symmetric, asymmetric):
@@ -109,7 +109,7 @@ def test_asymmetry_grows_with_the_square_root_of_the_distance(symmetric, asymmet
 
 def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(known):
     """SciPy's LSODA, over a period, from a cycle on the unstable part."""
-    here = beginning_without_symmetry(known.breakings[0], "F", ROUGH, known.workspace)
+    here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     orbit = next_point(here, ROUGH).orbit
     p, nodes = orbit.semidiscrete, orbit.form.mesh.nodes
     V, G, F = np.empty((3, nodes + 1)), np.empty((3, nodes + 1)), np.empty(orbit.form.unknowns)
@@ -130,15 +130,15 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
 
 def turned_back(here):
     """A cycle of a branch that is followed to its other side."""
-    place = replace(here.place, tangent=-here.tangent, ahead=-here.ahead)
-    return replace(here, place=place, before=None)
+    derivatives = replace(here.derivatives, tangent=-here.tangent, ahead=-here.ahead)
+    return replace(here, derivatives=derivatives, before=None)
 
 
 def test_followed_back_the_branch_ends_where_it_was_born(known):
-    here = beginning_without_symmetry(known.breakings[0], "F", ROUGH, known.workspace)
+    here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     for _ in range(2):
         here = next_point(here, ROUGH)
-    curve = followed_from(BranchCurve(hopf=-1), turned_back(refined(here, ROUGH)), known)
+    curve = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(on_sufficient_mesh(here, ROUGH)), known)
     assert curve.complete
     assert curve.end_breaking is known.breakings[0]
     assert kinds(curve) == ["symmetry_breaking"]
@@ -146,7 +146,7 @@ def test_followed_back_the_branch_ends_where_it_was_born(known):
 
 def test_a_symmetric_orbit_over_its_whole_period_is_the_same_motion(known):
     orbit = known.breakings[0].point.orbit
-    whole = over_whole_period(orbit)
+    whole = extended_to_whole_period(orbit)
     assert not whole.symmetric
     times = np.linspace(0, 1, 21)
     assert np.abs(whole.at(times / 2) - orbit.at(times)).max() < 1e-4 * np.abs(orbit.points).max()
@@ -154,8 +154,8 @@ def test_a_symmetric_orbit_over_its_whole_period_is_the_same_motion(known):
 
 
 def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):
-    here = beginning_without_symmetry(known.breakings[0], "F", ROUGH, known.workspace)
-    curve = followed_from(BranchCurve(hopf=-1), turned_back(here), replace(known, breakings=[]))
+    here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
+    curve = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(here), replace(known, breakings=[]))
     assert not curve.complete
     assert curve.special[-1].reason == EndReason.no_cycle_found
     assert "a branch that was not followed" in curve.special[-1].message
@@ -171,7 +171,7 @@ def test_a_multiplier_that_passes_minus_one_is_told_by_the_symmetry(has, kind):
         )
         for h in (-0.9, -1.1)
     )
-    assert changes_between(here, there) == ([SpecialKind[kind]], True)
+    assert special_kinds_between(here, there) == ([SpecialKind[kind]], True)
 
 
 def test_the_file_says_which_branches_meet(symmetric, asymmetric):

@@ -23,7 +23,7 @@ from rodsweep.solve.branch.bordered.scale import Scale
 from rodsweep.solve.branch.branches import BranchStatus
 from rodsweep.solve.branch.coexistence import CoexistenceStatus, StableStates, solve_coexistence
 from rodsweep.solve.branch.special.augmented.functions import FoldFunction
-from rodsweep.solve.branch.special.curves import CurveLimits
+from rodsweep.solve.branch.special.curves import SpecialCurveProblem
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.changes.diagram.rows import RowRequest
@@ -105,7 +105,7 @@ def test_states_that_multipliers_on_the_circle_leave_undecided_have_a_status(mon
     def on_the_circle(rod, asked, workspace):
         branches = real(rod, asked, workspace)
         (curve,) = branches.curves
-        curve.points[:] = [replace(point, unstable=-1, multiplier=1.0) for point in curve.points]
+        curve.points[:] = [replace(point, unstable_count=-1, multiplier=1.0) for point in curve.points]
         return branches
 
     monkeypatch.setattr(coexistence, "solve_branches", on_the_circle)
@@ -116,7 +116,7 @@ def test_states_that_multipliers_on_the_circle_leave_undecided_have_a_status(mon
         StableStates.undecided,
     ]
     assert row.status == CoexistenceStatus.special_undecided
-    assert "undecided at 2 places, F = 60 to 70" in row.message
+    assert "undecided at 2 values of F, from 60 to 70" in row.message
 
 
 def test_a_list_of_special_points_that_is_full_is_told():
@@ -131,7 +131,9 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     plane = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0)
     halves = []
     for side in (1.0, -1.0):
-        points, end = CurveLimits(SpecialKind.fold, *plane, NewtonWorkspace(), side).followed(fold, 149.9)
+        points, end = SpecialCurveProblem(SpecialKind.fold, *plane, NewtonWorkspace(), side).followed(
+            fold, 149.9
+        )
         halves.append(HalfCurve(tuple(map(CurvePoint.of, points)), end))
     curve = CycleCurve.joined(SpecialKind.fold, *halves)
     assert curve.ends == (CurveEnd.hopf, CurveEnd.edge)

@@ -11,13 +11,21 @@ from rodsweep.solve.continuation.follower import (
     CurveStop,
     StepControl,
     StepResult,
-    crossed,
-    follow,
-    zero_along,
+    first_crossed_margin,
+    follow_curve,
+    zero_along_step,
 )
 from rodsweep.solve.point import Unsolvable
 
-STEPS = StepControl(first=0.01, longest=0.2, shortest=1e-6, turn=0.1, sharpest=0.3, growth=2.0, most=500)
+STEPS = StepControl(
+    first_length=0.01,
+    max_length=0.2,
+    min_length=1e-6,
+    target_angle=0.1,
+    max_angle=0.3,
+    max_ratio=2.0,
+    max_solutions=500,
+)
 
 
 @dataclass(frozen=True)
@@ -60,10 +68,12 @@ class Ellipse:
     def margins(self, point):
         return np.array([point[0] - self.least])
 
-    def landed(self, behind, outer, margin):
+    def located_zero(self, behind, outer, margin):
         length = float((outer - behind[-1]) @ self.tangent(behind[-1]))
         ends = self.margins(behind[-1])[0], self.margins(outer)[0]
-        at = zero_along(lambda s: self.margins(self.step(behind, s).solution)[0], ends, length, 1e-13, 1e-14)
+        at = zero_along_step(
+            lambda s: self.margins(self.step(behind, s).solution)[0], ends, length, 1e-13, 1e-14
+        )
         return self.step(behind, at).solution
 
     def closes(self, behind, there):
@@ -74,7 +84,7 @@ class Ellipse:
 
 
 def followed(curve, control=STEPS, start=0.0):
-    return follow(curve, curve.at(start), control, lambda points: None)
+    return follow_curve(curve, curve.at(start), control, lambda points: None)
 
 
 @given(st.floats(0.3, 3.0), st.floats(0.3, 3.0), st.floats(-3.0, 3.0))
@@ -103,8 +113,12 @@ def test_a_curve_that_is_lost_ends_at_its_last_solution_beside_the_gap():
 
 
 def test_a_curve_has_no_more_solutions_than_are_kept():
-    found = followed(Ellipse(1.0, 1.0), StepControl(first=0.01, longest=0.01, shortest=1e-6, sharpest=0.3,
-                                                    growth=2.0, most=7))  # fmt: skip
+    found = followed(
+        Ellipse(1.0, 1.0),
+        StepControl(
+            first_length=0.01, max_length=0.01, min_length=1e-6, max_angle=0.3, max_ratio=2.0, max_solutions=7
+        ),
+    )
     assert (found.end, len(found.solutions)) == (CurveStop.full, 7)
 
 
@@ -112,8 +126,16 @@ def test_steps_are_as_long_as_turns_and_predictions_allow():
     """On a circle the turn is the length of arc; the prediction of a tangent is off by its square, halved."""
     by_turn = [np.hypot(*np.diff(followed(Ellipse(1.0, 1.0)).solutions, axis=0)[i]) for i in range(10, 20)]
     assert by_turn == pytest.approx([0.1] * 10, rel=1e-2)
-    control = StepControl(first=0.01, longest=1.0, shortest=1e-6, aim=5e-3, order=2, sharpest=1.0, growth=2.0,
-                          most=500)  # fmt: skip
+    control = StepControl(
+        first_length=0.01,
+        max_length=1.0,
+        min_length=1e-6,
+        target_error=5e-3,
+        prediction_order=2,
+        max_angle=1.0,
+        max_ratio=2.0,
+        max_solutions=500,
+    )
     by_distance = np.diff(followed(Ellipse(1.0, 1.0), control).solutions, axis=0)[10:20]
     assert np.hypot(*by_distance.T) == pytest.approx([0.1] * 10, rel=1e-2)
 
@@ -122,14 +144,14 @@ def test_a_turn_of_0_or_180_degrees_is_one_whatever_rounding_makes_of_its_cosine
     above = np.nextafter(1.0, 2.0)
     straight, back = (StepResult(None, 0.0, cosine) for cosine in (above, -above))
     assert STEPS.accepted(straight) is straight
-    assert STEPS.next_length(0.01, straight, 5) == 0.01 * STEPS.growth
+    assert STEPS.next_length(0.01, straight, 5) == 0.01 * STEPS.max_ratio
     with pytest.raises(Unsolvable, match="too large an angle"):
         STEPS.accepted(back)
 
 
 def test_every_step_is_reported_with_the_solutions_before_it():
     heard = []
-    found = follow(
+    found = follow_curve(
         Ellipse(1.0, 1.0, least=0.0), np.array([1.0, 0.0]), STEPS, lambda points: heard.append(list(points))
     )
     assert found.end is CurveStop.margin
@@ -151,7 +173,7 @@ def test_every_step_is_reported_with_the_solutions_before_it():
 )
 def test_the_margin_that_is_passed_first_ends_a_curve(before, after, which):
     """One that is negative at the start ends it only when it falls further."""
-    assert crossed(np.array(before), np.array(after)) == which
+    assert first_crossed_margin(np.array(before), np.array(after)) == which
 
 
 def test_a_zero_along_a_step_needs_two_signs_and_no_value_at_the_ends():
@@ -161,21 +183,21 @@ def test_a_zero_along_a_step_needs_two_signs_and_no_value_at_the_ends():
         asked.append(x)
         return x**3 - 0.2
 
-    assert zero_along(cube, (-0.2, 0.8), 1.0, 1e-14, 1e-14) == pytest.approx(0.2 ** (1 / 3), abs=1e-13)
+    assert zero_along_step(cube, (-0.2, 0.8), 1.0, 1e-14, 1e-14) == pytest.approx(0.2 ** (1 / 3), abs=1e-13)
     assert not {0.0, 1.0} & set(asked)
     with pytest.raises(Unsolvable, match="change of sign"):
-        zero_along(cube, (0.1, 0.8), 1.0, 1e-14, 1e-14)
+        zero_along_step(cube, (0.1, 0.8), 1.0, 1e-14, 1e-14)
 
 
 @given(st.floats(-6.0, 3.0), st.floats(0.01, 0.99), st.floats(-12.0, -2.0))
 def test_a_zero_along_a_step_of_any_length_is_as_accurate_as_asked_for(decades, share, digits):
     length, relative = 10.0**decades, 10.0**digits
     ends = -(share**3), 1 - share**3
-    found = zero_along(lambda x: (x / length) ** 3 - share**3, ends, length, 0.0, relative)
+    found = zero_along_step(lambda x: (x / length) ** 3 - share**3, ends, length, 0.0, relative)
     assert abs(found - share * length) <= 2 * relative * length
 
 
 def test_steps_that_never_grow_are_refused():
     """They would end a curve by the number of its solutions, however far its end is."""
-    with pytest.raises(ValueError, match="growth"):
-        StepControl(first=0.1, longest=1.0, shortest=1e-6, sharpest=0.3, growth=1.0)
+    with pytest.raises(ValueError, match="max_ratio"):
+        StepControl(first_length=0.1, max_length=1.0, min_length=1e-6, max_angle=0.3, max_ratio=1.0)

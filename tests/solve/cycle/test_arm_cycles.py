@@ -168,7 +168,7 @@ def test_cycles_are_those_of_strains_marched_in_time(law, taper, values):
     rod = Rod(**values, taper=taper, build=build)
     found = solve_cycle(rod, request(1e-8), None, "F")
     assert found.status.name == "cycle"
-    orbit = found.neighbour.branch.orbit
+    orbit = found.neighbour.predictor.orbit
 
     def radius(u):
         return 1 - (1 - taper) * u
@@ -203,7 +203,7 @@ def test_cycles_of_rubber_segments_are_those_of_displacements_marched_in_time(se
     rod = Rod(**values, build=build)
     found = solve_cycle(rod, request(1e-8), None, "F")
     assert found.status.name == "cycle"
-    orbit = found.neighbour.branch.orbit
+    orbit = found.neighbour.predictor.orbit
     stiffness, drag = (rod.k1, rod.k2, 1.0), (rod.gamma1, 1.0, rod.gamma3)
     outer = [np.multiply(own, f) for own, f in ((stiffness, factors[:3]), (drag, factors[3:]))]
     segments = Segments(
@@ -359,8 +359,8 @@ def test_a_neighbour_is_restored_with_its_build():
     rod = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.9, build=Build(profile=STEP))
     neighbour = solve_cycle(rod, request(1e-5), None, "F").neighbour
     again = Neighbour.from_arrays(neighbour.arrays())
-    assert again.branch.orbit.form.rod == rod
-    assert again.branch.orbit.form.mesh == neighbour.branch.orbit.form.mesh
+    assert again.predictor.orbit.form.rod == rod
+    assert again.predictor.orbit.form.mesh == neighbour.predictor.orbit.form.mesh
     assert again.next_mesh == neighbour.next_mesh
     beside = replace(rod, F=51.0)
     ends = [solve_cycle(beside, request(1e-5), each, "F").measures.period for each in (neighbour, again)]

@@ -10,7 +10,7 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.accuracy.calibration_settings import CALIBRATION
 from rodsweep.solve.cycle.accuracy.coarser_meshes import CoarserMeshes
-from rodsweep.solve.cycle.accuracy.refinement import refine
+from rodsweep.solve.cycle.accuracy.refinement import refined_at_period
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -57,7 +57,7 @@ def test_finer_meshes_differ_by_no_more_than_is_stated(near):
         finer = replace(FINE, **{field: 2 * getattr(FINE, field)})
         true = path_differences(CyclePath(found), CyclePath(newton(finer.carry(found), 1e-12, MEMORY).orbit))
         for which in (PERIOD_CHANGE, LARGEST_Y, WHOLE_PATH):
-            assert true[which] <= CALIBRATION.safety * parts[which] + 1e-12
+            assert true[which] <= CALIBRATION.safety_factor * parts[which] + 1e-12
 
 
 def test_coarser_meshes_predict_those_that_are_a_little_finer(near):
@@ -80,18 +80,18 @@ def test_what_coarser_meshes_do_not_predict_is_measured_by_finer_ones(near, why,
         raise Unsolvable(why)
 
     monkeypatch.setattr(CoarserMeshes, "predicted", spoilt)
-    alone, first = refine(near, ACCURACY, MEMORY), refine(near, ACCURACY, MEMORY, "F")
+    alone, first = refined_at_period(near, ACCURACY, MEMORY), refined_at_period(near, ACCURACY, MEMORY, "F")
     assert np.array_equal(alone.orbit.values, first.orbit.values)
     assert alone.errors == first.errors
 
 
 def test_a_cycle_alone_and_one_that_starts_a_chain_are_the_same(near):
-    alone, first = refine(near, ACCURACY, MEMORY), refine(near, ACCURACY, MEMORY, "F")
+    alone, first = refined_at_period(near, ACCURACY, MEMORY), refined_at_period(near, ACCURACY, MEMORY, "F")
     assert alone.orbit.period == pytest.approx(first.orbit.period, rel=2 * ACCURACY)
-    assert alone.fine.matrix.tangent is None and first.fine.matrix.tangent is not None
+    assert alone.converged.matrix.tangent is None and first.converged.matrix.tangent is not None
     apart = alone.errors.multiplier_error + first.errors.multiplier_error
     assert abs(alone.largest_multiplier - first.largest_multiplier) <= apart
-    assert alone.errors.largest <= ACCURACY and alone.fine.distance <= ACCURACY
+    assert alone.errors.largest <= ACCURACY and alone.converged.distance <= ACCURACY
 
 
 def test_the_period_of_neighbouring_orders_that_agree_by_luck_is_not_believed():
@@ -99,7 +99,7 @@ def test_the_period_of_neighbouring_orders_that_agree_by_luck_is_not_believed():
     accuracy = 1e-4
     rod = Rod(F=40.20452, k1=float("inf"), k2=149.6991, gamma3=0.0, gamma1=0.2582922, taper=0.5194033)
     start = orbit_from_hopf(StressForm(rod, coarse_mesh(rod)), hopf_point_below(rod), MEMORY)
-    found = refine(start, accuracy, MEMORY)
+    found = refined_at_period(start, accuracy, MEMORY)
     own = mesh_of(found.orbit)
     finer = replace(own, order=own.order + 8, intervals=2 * own.intervals)
     exact = newton(finer.carry(found.orbit), 1e-10, MEMORY).orbit

@@ -52,9 +52,9 @@ def test_polynomials_with_as_many_terms_are_predicted_exactly(places, orders):
 
 
 def test_a_chain_goes_on_by_the_cycles_behind(chain):
-    last = chain[-1].branch
+    last = chain[-1].predictor
     assert np.count_nonzero(last.orders == 0) == PREDICTION.max_earlier_orbits
-    assert last.places[0] == 0 and np.all(last.places[1:] > 0)  # it went downwards
+    assert last.offsets[0] == 0 and np.all(last.offsets[1:] > 0)  # it went downwards
 
 
 def test_a_chain_goes_on_from_a_checkpoint_with_the_same_bits(chain, tmp_path):
@@ -63,7 +63,7 @@ def test_a_chain_goes_on_from_a_checkpoint_with_the_same_bits(chain, tmp_path):
     for place in (0, 1, -1):
         kept.write(0, 0, chain[place])
         _, again = kept.read(0)
-        rod = replace(ROD, F=STEP * chain[place].branch.orbit.form.rod.F)
+        rod = replace(ROD, F=STEP * chain[place].predictor.orbit.form.rod.F)
         there, other = (solve_cycle(rod, REQUEST, start, "F") for start in (chain[place], again))
         assert there.status == CycleStatus.cycle
         arrays, others = there.neighbour.arrays(), other.neighbour.arrays()
@@ -74,7 +74,7 @@ def test_a_chain_goes_on_from_a_checkpoint_with_the_same_bits(chain, tmp_path):
 
 def test_next_to_a_hopf_point_cycles_are_predicted_though_they_go_as_a_root(chain):
     """The amplitude's slope is infinite at the Hopf point; in the square of the size it is smooth there."""
-    last = chain[-1].branch
+    last = chain[-1].predictor
     form = last.orbit.form
     for F, most in ((STEP * form.rod.F, 3e-7), (1.05 * HOPF, 1e-4), (1.01 * HOPF, 1e-2)):
         predicted = last.at(replace(form, rod=replace(form.rod, F=F)), "F")

@@ -38,8 +38,8 @@ def test_a_rod_below_flutter_comes_to_rest_and_the_motion_ends_there():
     found = released(replace(FLUTTER, F=20.0), 0.7, 0.5)
     deflection = np.abs(found.motion.shapes[1])
     assert found.status == CycleStatus.straight
-    assert deflection[-1].max() < 2 * SHAPE_TRACE.at_rest
-    assert deflection[-20:].max() > SHAPE_TRACE.at_rest
+    assert deflection[-1].max() < 2 * SHAPE_TRACE.max_rest_deflection
+    assert deflection[-20:].max() > SHAPE_TRACE.max_rest_deflection
 
 
 def test_of_two_stable_states_the_place_decides():

@@ -12,7 +12,7 @@ from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.transient import transient
-from rodsweep.solve.cycle.transient.returns import angle_weights
+from rodsweep.solve.cycle.transient.returns import tip_angle_row
 from rodsweep.solve.cycle.transient.torus import TORUS_TEST, modulation_of
 from rodsweep.solve.motion.leading_mode import leading_mode
 from rodsweep.solve.point import Unsolvable
@@ -68,7 +68,7 @@ def test_a_motion_that_spirals_into_a_stable_cycle_is_no_torus(monkeypatch):
 def test_another_integrator_on_another_mesh_is_on_the_same_torus():
     """SciPy's LSODA; the states where theta of the tip rises through 0, by its dense output."""
     beam = Beam(rod_of(207.0, *SOFT[:3], gamma1=SOFT[3]), mesh(1, 21))
-    z, row = 0.1 * leading_mode(beam).z.real, angle_weights(beam)
+    z, row = 0.1 * leading_mode(beam).z.real, tip_angle_row(beam)
     run = LSODA(
         lambda _, z: beam.rate(z), 0.0, z, np.inf, rtol=1e-7, atol=1e-7 * np.abs(z).max(),
         jac=lambda _, z: beam.jacobian(z),
@@ -85,7 +85,7 @@ def test_another_integrator_on_another_mesh_is_on_the_same_torus():
             returns.append(beam.layout.field(state(low), "m3"))
     found = modulation_of(np.array(returns[133:]), abs(np.angle(rod(207.0, 400).multipliers[0])))
     assert found.angle == pytest.approx(ROTATION, abs=1e-3)
-    assert found.error < TORUS_TEST.max_prediction_error / 5
+    assert found.prediction_error < TORUS_TEST.max_prediction_error / 5
 
 
 # --- returns that are made up -----------------------------------------------------------------------------
@@ -100,19 +100,19 @@ def closed_curve(phases):
 def test_rotation_on_a_closed_curve_is_found():
     found = modulation_of(closed_curve(ANGLE * NUMBERS), ANGLE + 0.1)
     assert found.angle == pytest.approx(ANGLE, abs=1e-6)
-    assert found.error < 1e-3
+    assert found.prediction_error < 1e-3
 
 
 @pytest.mark.parametrize("rate", [3e-3, -3e-3])
 def test_growing_and_decaying_modulations_are_not_predicted(rate):
     returns = 5 + (closed_curve(ANGLE * NUMBERS) - 5) * np.exp(rate * NUMBERS)[:, None]
-    assert modulation_of(returns, ANGLE).error > TORUS_TEST.max_prediction_error
+    assert modulation_of(returns, ANGLE).prediction_error > TORUS_TEST.max_prediction_error
 
 
 def test_irregular_returns_are_not_predicted():
     noise = np.random.default_rng(1).normal(size=len(NUMBERS))
     irregular = closed_curve(ANGLE * NUMBERS + np.cumsum(0.3 * noise))
-    assert modulation_of(irregular, ANGLE).error > TORUS_TEST.max_prediction_error
+    assert modulation_of(irregular, ANGLE).prediction_error > TORUS_TEST.max_prediction_error
 
 
 @pytest.mark.parametrize("turns, after", [(1, 2), (1, 3), (1, 4), (2, 9), (3, 11), (6, 13), (2, 15)])

@@ -1,1 +1,2 @@
-"""Cycles of a branch, solved together with the parameter: units, bordered matrix, closing condition."""
+"""Newton's method for a cycle and its parameter together: units of arc length, bordered matrix, closing
+condition."""

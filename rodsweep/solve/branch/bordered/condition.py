@@ -1,7 +1,7 @@
-"""Newton's method for a cycle together with a parameter; a condition on the branch closes the system.
+"""Newton's method for a cycle with the parameter as a further unknown; one more equation closes the system.
 
-The parameter does not distinguish cycles beside a fold. The condition prescribes a linear combination of the
-three numbers of `scale`.
+Near a fold two cycles have the same parameter, so the parameter cannot be prescribed. The closing equation
+prescribes a linear combination of deflection, logarithm of the period, and parameter (`scale`).
 """
 
 from dataclasses import dataclass, replace
@@ -21,9 +21,8 @@ from .scale import Scale
 
 @dataclass(frozen=True, eq=False)
 class BorderCondition:
-    """Equation that closes the bordered system: the component of `Scale.place` along a border, (3,), has a
-    prescribed value.
-    """
+    """Equation that closes the bordered system of an orbit: `border` . `scale.components(orbit)` = `value`;
+    border: (3,)."""
 
     scale: Scale
     border: Array
@@ -31,20 +30,22 @@ class BorderCondition:
 
     @classmethod
     def at(cls, scale: Scale, border: Array, orbit: Orbit, length: float = 0.0) -> "BorderCondition":
-        """The condition that the component along `border`, (3,), is larger by `length` than for an orbit."""
-        return cls(scale, border, float(border @ scale.place(orbit)) + length)
+        """The condition that an orbit lies farther along `border`, (3,), than the given orbit, by an arc
+        length `length`."""
+        return cls(scale, border, float(border @ scale.components(orbit)) + length)
 
     def residual(self, orbit: Orbit) -> float:
-        """Prescribed value of the component along the border, minus its value at an orbit."""
-        return self.value - float(self.border @ self.scale.place(orbit))
+        """Residual of the condition at an orbit: `value` minus `border` . `scale.components(orbit)`."""
+        return self.value - float(self.border @ self.scale.components(orbit))
 
     def solved(
         self, orbit: Orbit, tolerance: float, workspace: NewtonWorkspace, distance: float = np.inf
     ) -> ConvergedOrbit:
-        """The cycle near an orbit; raises Unsolvable.
+        """The cycle near an orbit that fulfils the condition, by Newton's method; raises Unsolvable.
 
-        tolerance: relative error of the orbit. workspace: memory of the matrices. distance: largest relative
-        distance of the matrix from the cycle, an error of its multipliers and tangent.
+        tolerance: relative error of the cycle. workspace: memory of Newton's matrices. distance: largest
+        relative distance between the cycle and the orbit at which its matrix was assembled, which is the
+        error of multipliers and tangent.
         """
         matrix = BorderedMatrix(orbit, self.scale, workspace)
         off = 0.0
@@ -52,13 +53,13 @@ class BorderCondition:
         step = matrix.step(self.border, self.residual(orbit))
         for _ in range(ORBIT_NEWTON.max_iterations):
             report()
-            change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
+            change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
             if not change <= ORBIT_NEWTON.longest_step:
                 raise Unsolvable("Newton's method finds no cycle of the branch near its starting point")
-            orbit = moved(orbit, self.scale.name, step)
+            orbit = moved_orbit(orbit, self.scale.name, step)
             off = off + change
-            rate = change / last if off > change else np.inf  # known from the second step with one matrix on
-            # The next step would be smaller by the contraction; it is predicted instead of made.
+            rate = change / last if off > change else np.inf  # no rate at the first step with a matrix
+            # The next step would have the length change * rate; a negligible step is not made.
             settled = change * min(rate, 1.0) <= tolerance and rate <= ORBIT_NEWTON.new_matrix_ratio
             if (settled or change <= tolerance) and off <= distance:
                 return ConvergedOrbit(orbit, matrix, off)
@@ -75,12 +76,14 @@ class BorderCondition:
     def on(
         self, mesh: OrbitMesh, found: ConvergedOrbit, tolerance: float, distance: float = np.inf
     ) -> ConvergedOrbit:
-        """A known cycle solved on another mesh; raises Unsolvable. Other arguments as in `solved`."""
+        """The cycle `found` solved again on another mesh under this condition; raises Unsolvable. Other
+        arguments as in `solved`."""
         return self.solved(mesh.carry(found.orbit), tolerance, found.workspace, distance)
 
 
-def moved(orbit: Orbit, name: str, change: Array) -> Orbit:
-    """An orbit after a change of its values and the parameter's coordinate, (N + 1,); raises Unsolvable."""
+def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:
+    """An orbit plus a change, (N + 1,), of its values and of the coordinate of the parameter `name`; raises
+    Unsolvable if no such rod or period exists."""
     try:
         form = orbit.form.with_coordinate(name, orbit.form.rod.coordinate(name) + float(change[-1]))
     except (ValueError, ZeroDivisionError) as error:

@@ -1,4 +1,5 @@
-"""Newton's matrix for a cycle together with a parameter: one more column for the parameter, one more row."""
+"""Newton's matrix for a cycle with the parameter as a further unknown: one more column, and one more row, the
+border."""
 
 from functools import cached_property
 
@@ -25,9 +26,10 @@ from .scale import Scale, deflection_row
 
 
 class BorderedMatrix:
-    """Newton's matrix at an orbit with the parameter as a further unknown; the caller gives the last row.
+    """Newton's matrix at an orbit with the parameter as a further unknown; methods that solve take the last
+    row as `border`.
 
-    Steps, (N + 1,), are an orbit's values and the parameter's coordinate. Solving raises RuntimeError once
+    A step, (N + 1,), changes the orbit values and the parameter coordinate. Solving raises RuntimeError once
     another matrix was assembled in the same workspace; the multipliers stay valid.
     """
 
@@ -66,11 +68,13 @@ class BorderedMatrix:
         self._right = self._jump(orbit, self._columns[:, :, 1:2], ends[1:2])
 
     def step(self, border: Array, length: float) -> Array:
-        """Newton's step under the condition that `border` . place, (3,), grows by a length, (N + 1,)."""
+        """Newton's step at the orbit, (N + 1,), with the condition that the component along `border`, (3,),
+        in `Scale` grows by `length`."""
         return self.solved(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
 
     def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
-        """`step` at a neighbouring orbit, of any nearby parameter, by the factors of this matrix."""
+        """Approximate Newton's step, (N + 1,), at a neighbouring orbit with a similar parameter, by the
+        factors of this matrix; border, length: as in `step`."""
         factors = self._memory.factors
         p = self.orbit.semidiscrete
         columns, ends = reduced_residuals(orbit.points, orbit.duration, orbit.semidiscrete, p, factors)
@@ -78,15 +82,19 @@ class BorderedMatrix:
         return self.solved(border, right, columns[:, :, 0], 1.0)
 
     def direction(self, border: Array) -> Array:
-        """Tangent, (N + 1,), of unit length in `Scale.place`, on the side of a border, (3,)."""
+        """Tangent of the branch, (N + 1,), with unit arc length; it makes an acute angle with `border`,
+        (3,)."""
         # The null vector of all rows but the last, normalised by the border: residuals do not enter.
         right = np.append(np.zeros(len(self._right)), 1.0)
         change = self.solved(border, right, self._columns[:, :, 1], 0.0)
         return change / np.linalg.norm(self.scale.moved(self.orbit, change))
 
     def residual_variations(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
-        """Derivatives of residuals along variations, (m, N + 1), reduced, (K, s, m, n); of the end, (m,
-        n)."""
+        """(derivatives of the stage residuals along variations after elimination, (K, s, m, n); derivatives
+        of the orbit's end, (m, n)).
+
+        variations: of orbit values and parameter, (m, N + 1).
+        """
         along = change_along(orbit.form, self.scale.name)
         rod = orbit.semidiscrete
         p = self.orbit.semidiscrete
@@ -96,48 +104,51 @@ class BorderedMatrix:
         return changed
 
     def back_substitute(self, starts: Array, columns: Array) -> Array:
-        """Changes of orbits, (m, N + 1), from changes of their starts, (m, n), and reduced right sides, (K,
-        s, m, n)."""
+        """Changes of m orbits, (m, N + 1), with period and parameter fixed, from changes of the start states,
+        (m, n), and eliminated right-hand sides of the stages, (K, s, m, n)."""
         out = np.empty_like(columns)
         substitute(starts, columns, self.orbit.semidiscrete, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
-        # Eigenvectors of the flow change neither the period nor the parameter.
+        # Eigenvectors of the monodromy matrix change neither the period nor the parameter.
         return np.hstack([starts, stages, np.zeros((len(starts), 2))])
 
     @property
     def propagator(self) -> Array:
-        """Monodromy matrix P over the solved interval, (n, n)."""
+        """Propagator P, (n, n), of the linearised motion over the solved time interval: a half period for a
+        symmetric orbit, otherwise the period."""
         return self._memory.propagator
 
     @cached_property
     def partial_multipliers(self) -> Complex:
-        """Multipliers over the solved interval: half a period and the reflection if symmetric, (rank,)."""
+        """Multipliers, (rank,): of the half-period map composed with the reflection for a symmetric orbit,
+        otherwise over the period."""
         if len(self._legs.maps) == 1:
             return partial_multipliers(self.propagator, self.orbit)
         return self._legs.multipliers(self.orbit)
 
     def multipliers(self) -> Complex:
-        """Floquet multipliers above rounding, the trivial one included, by descending modulus, (rank,)."""
+        """Floquet multipliers above rounding error by descending modulus, (rank,), including the trivial
+        multiplier."""
         return over_period(self.partial_multipliers, self.orbit)
 
     def approximate_null_vector(self) -> Array:
-        """Singular vector of the smallest singular value of the matrix at a fixed parameter, (N + 1,), of any
-        length and sign.
+        """Right singular vector for the smallest singular value of the matrix at a fixed parameter, (N + 1,),
+        of any length and sign.
 
-        At a crossing of branches the vector points along the second branch, which the tangent does not
-        follow.
+        At a crossing of two branches the vector points along the second branch.
         """
         matrix = self._matrix.copy()
-        # The last row fixes the parameter: the least singular vector then is a direction of cycles at one
+        # The last row fixes the parameter: the singular vector is a direction of cycles at a fixed
         # parameter.
         matrix[-1, -1] = 1.0
         return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._columns[:, :, 1], 0.0)
 
     def closing(self, jump: Array, columns: Array, ends: Array) -> Array:
-        """Right sides of the ends of all legs, (m n,), from the jump of the last end, (n,).
+        """Right-hand sides, (m n,), of the conditions that each leg (interval of multiple shooting) ends
+        where the next leg starts.
 
-        columns: reduced right sides of the stages, (K, s, 1, n). ends: change of the last end by these for a
-        fixed start, (1, n).
+        jump: right-hand side of the last leg, (n,). columns: eliminated right-hand sides of the stages,
+        (K, s, 1, n). ends: change of the last leg's end caused by `columns` for a fixed start, (1, n).
         """
         p = self.orbit.semidiscrete
         sides = -self._legs.ends(self._memory.factors, columns, ends, p)[:, 0]
@@ -145,28 +156,32 @@ class BorderedMatrix:
         return sides.ravel()
 
     def _jump(self, orbit: Orbit, columns: Array, ends: Array) -> Array:
-        """Right side of the ends of an orbit's legs and of its phase, (m n + 1,); arguments as in
-        `closing`."""
+        """Right-hand sides of the closing conditions of an orbit's legs and of the phase condition,
+        (m n + 1,); columns, ends: as in `closing`."""
         p = orbit.semidiscrete
         right = self.closing(jump_of(orbit.points, p), columns, ends)
         return np.append(right, -phase(orbit.start, p.rod, p.matrices))
 
     def solved(self, border: Array, right: Array, sides: Array, share: float) -> Array:
-        """Solution of the bordered system, (N + 1,).
+        """Solution of the bordered linear system, (N + 1,). border: last row, in components (deflection, log
+        period, parameter), (3,).
 
-        right: right sides of the ends of the legs, of the phase and of the border, (m n + 2,). sides: right
-        sides of the stages, (K, s, n), which are multiplied by `share`.
+        right: right-hand sides of the closing conditions, of the phase condition and of the border,
+        (m n + 2,). sides: right-hand sides of the stages, (K, s, n), which are multiplied by `share`.
         """
         n = len(self.orbit.start)
         matrix = self._matrix.copy()
-        matrix[-1, :n] = border[0] / self.scale.deflection * deflection_row(self.orbit)
+        matrix[-1, :n] = border[0] / self.scale.deflection_unit * deflection_row(self.orbit)
         # The border acts on log T, whose derivative is 1/T.
-        matrix[-1, -2:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate
+        matrix[-1, -2:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate_unit
         return self._back_substitute(np.linalg.solve(matrix, right), sides, share)
 
     def _back_substitute(self, found: Array, sides: Array, share: float) -> Array:
-        """Change of all, (N + 1,), from that of the starts of legs, period and parameter, (m n + 2,), and a
-        share of right sides, (K, s, n)."""
+        """Change of orbit values and parameter, (N + 1,), from the changes `found` of the leg starts, period
+        and parameter, (m n + 2,).
+
+        sides: right-hand sides of the stages, (K, s, n), which are multiplied by `share`.
+        """
         n = len(self.orbit.start)
         stages = found[-2] * self._columns[:, :, 0] + share * sides + found[-1] * self._columns[:, :, 2]
         columns = np.ascontiguousarray(stages[:, :, None])
@@ -176,8 +191,9 @@ class BorderedMatrix:
         return np.concatenate([found[:n], out.ravel(), found[-2:]])
 
 
-def bordered(found: ConvergedOrbit) -> BorderedMatrix:
-    """The bordered matrix of an orbit solved on a branch; TypeError if the orbit has another matrix."""
+def bordered_matrix_of(found: ConvergedOrbit) -> BorderedMatrix:
+    """The matrix of an orbit that was solved with the parameter as an unknown; raises TypeError for any other
+    orbit."""
     if not isinstance(found.matrix, BorderedMatrix):
         raise TypeError("the orbit has no bordered matrix: it was solved without the parameter as an unknown")
     return found.matrix

@@ -1,8 +1,8 @@
-"""Curves through the special points of all rows; each curve is followed once, from one of its points.
+"""Curves through the folds and torus points on all rows of a phase diagram; each curve is followed only once.
 
-As `changes.boundaries` for the straight rod. A curve is followed in two halves. Each half is a unit of work
-that depends on the special points alone. The results of the halves determine the set of curves, whoever
-computed them, in whatever order.
+`changes.boundaries` does the same for the straight rod. A curve is followed in two halves from a special
+point of a row. Each half is a unit of work that depends only on the special points of the rows; the order in
+which processes solve the units does not change the curves.
 """
 
 import math
@@ -13,18 +13,19 @@ from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.boundaries import Boundaries, BoundarySearch, boundary_search
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import FAILURES, Unsolvable
-from .curves import CYCLE_CURVES, CurveLimits
-from .cycle_curves import CURVE_IDENTITY, Arrays, CurveEnd, CurvePoint, CycleCurve, HalfCurve, TracedHalf
-from .on_curve import OnCurve
+from .curves import CYCLE_CURVES, SpecialCurveProblem
+from .cycle_curves import CURVE_IDENTITY, Arrays, CurveEnd, CurvePoint, CycleCurve, HalfCurve, TracedHalfCurve
+from .on_curve import SolvedPoint
 from .point import SpecialKind, SpecialPoint
 
 FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
-"""Kinds of special points that are followed as curves, with the words for their points."""
+"""Kinds of special points that are followed as curves, with the plural noun for messages."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RowSpecial:
-    """A special point of a row, as stored in the file; number, row: number and value of the row."""
+class RowSpecialPoint:
+    """A special point of a row as the result file stores it. number: index of the row. row: value of the
+    rows' parameter. at: value of the parameter along the row."""
 
     number: int
     row: float
@@ -36,29 +37,29 @@ class RowSpecial:
 
 @dataclass(frozen=True, slots=True)
 class SpecialBoundaries:
-    """Curves through all folds and torus points of the rows, over the line's parameter and the rows'
-    parameter.
+    """Curves through all folds and torus points of the rows of a parameter plane, traced in units of work.
 
-    Unit of work 2 i is the half of a curve from special point i towards larger values of the rows' parameter,
-    2 i + 1 the half towards smaller values.
+    line: axis of the parameter along a row. rows: axis of the rows' parameter. Unit 2 i is the half of a
+    curve from special point i to larger values of the rows' parameter, unit 2 i + 1 the half to smaller
+    values.
     """
 
     line: PlaneAxis
     rows: PlaneAxis
-    special: Sequence[RowSpecial]
+    special: Sequence[RowSpecialPoint]
 
     def wanted(self, results: Mapping[int, Arrays]) -> list[int]:
-        """Units whose results are needed next, then units that may be needed; empty once the curves are
-        complete."""
+        """Units to solve next, given the results of solved units: first needed units, then units that may be
+        needed later; empty once the curves are complete."""
         needed: list[int] = []
         likely: list[int] = []
         for curves, search in self._searches(results):
-            needed += search.needed
+            needed += search.missing_units
             likely += curves.likely(search)
         return needed + likely if needed else []
 
     def curves(self, results: Mapping[int, Arrays]) -> Boundaries[CycleCurve]:
-        """All curves, once no result is lacking."""
+        """All curves from the results of the units; valid once `wanted` is empty."""
         found = [search.boundaries for _, search in self._searches(results)]
         curves = tuple(traced.curve for one in found for traced in one.curves)
         return Boundaries(curves, max(one.agreement for one in found), sum(one.untraced for one in found))
@@ -66,32 +67,29 @@ class SpecialBoundaries:
     def _searches(
         self, results: Mapping[int, Arrays]
     ) -> "Iterator[tuple[_CurvesOfKind, BoundarySearch[_TracedCurve]]]":
-        """The curves of each kind, as far as the results go."""
+        """The curves of each kind, and the state of their search with the results so far."""
         for kind in FOLLOWED_KINDS:
             curves = _CurvesOfKind(kind, self.line, self.rows, self.special, results)
             seeds = (i for i, one in enumerate(self.special) if one.kind == kind)
-            yield curves, boundary_search(curves, seeds, CURVE_IDENTITY.on_curve)
+            yield curves, boundary_search(curves, seeds, CURVE_IDENTITY.max_distance)
 
     def solve(
         self, unit: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
     ) -> Arrays:
-        """The result of a unit: arrays with the shapes of `TracedHalf`.
-
-        located: solves the special points of a row anew, by the row's number. workspace: memory of Newton's
-        matrices.
-        """
+        """The result of a unit of work, as `TracedHalfCurve.arrays`. located: function from the index of a
+        row to its special points with cycles. workspace: memory of Newton's matrices."""
         # A unit is half a curve: twice the index of its special point, plus one for the half behind it.
         place, behind = divmod(unit, 2)
         one = self.special[place]
-        limits = CurveLimits(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
+        limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
         return _traced(limits, one, located(one.number), self.special).arrays()
 
     def row_of(self, unit: int) -> int:
-        """The number of the row on which a unit starts."""
+        """Index of the row on which the curve of a unit starts."""
         return self.special[unit // 2].number
 
     def where(self, unit: int) -> str:
-        """Description of a unit: curve, starting row and direction."""
+        """Words for a unit in the progress display: kind of the curve, starting row and direction."""
         place, behind = divmod(unit, 2)
         one = self.special[place]
         way = "down" if behind else "up"
@@ -100,7 +98,7 @@ class SpecialBoundaries:
 
 @dataclass(frozen=True, slots=True)
 class _TracedCurve:
-    """A curve joined from two halves, and the distances of nearby special points, by index."""
+    """A curve joined from two halves. distances: of nearby special points, in row lengths, by index."""
 
     curve: CycleCurve
     distances: Mapping[int, float]
@@ -108,42 +106,43 @@ class _TracedCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvesOfKind:
-    """Curves of one kind, as far as the results of units go."""
+    """Problem of `boundary_search` for one kind of special points, with the results of units so far."""
 
     kind: SpecialKind
     line: PlaneAxis
     rows: PlaneAxis
-    special: Sequence[RowSpecial]
+    special: Sequence[RowSpecialPoint]
     results: Mapping[int, Arrays]
 
     def next_seed(self, left: Sequence[int]) -> int:
-        """The middle special point in order: the two halves of its curve are then about equally long."""
+        """Median special point among `left`, so that the two halves of its curve have similar lengths."""
         return sorted(left, key=self._place)[len(left) // 2]
 
     def missing_units(self, seed: int) -> list[int]:
-        """The halves from a special point whose results are needed and lacking."""
+        """Units whose results are missing for the curve through a special point."""
         ahead = 2 * seed
         behind = 2 * seed + 1
         if ahead not in self.results:
             return [unit for unit in (ahead, behind) if unit not in self.results]
-        half = TracedHalf.of(self.results[ahead]).half
-        # A closed curve has no second half, and a curve not found ahead is not sought behind.
+        half = TracedHalfCurve.of(self.results[ahead]).half
+        # A closed curve has no second half; if the first half failed, the second is not needed.
         on = half is not None and half.end is not CurveEnd.closed
         return [behind] if on and behind not in self.results else []
 
     def likely(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
-        """Units from which further curves may start: special points on the row of the next seed."""
-        rows = {self.special[unit // 2].row for unit in search.needed}
-        beside = sorted((i for i in search.left if self.special[i].row in rows), key=self._place)
+        """Units that may be needed later, from special points on the row where the search stopped."""
+        rows = {self.special[unit // 2].row for unit in search.missing_units}
+        beside = sorted((i for i in search.open_seeds if self.special[i].row in rows), key=self._place)
         return [unit for i in beside for unit in self.missing_units(i)]
 
     def curve(self, seed: int) -> _TracedCurve | None:
-        """The curve through a special point, joined from its halves; None if the curve cannot be followed."""
-        ahead = TracedHalf.of(self.results[2 * seed])
+        """The curve through a special point, joined from its two halves; None if a half could not be
+        followed."""
+        ahead = TracedHalfCurve.of(self.results[2 * seed])
         if ahead.half is None:
             return None
         closed = ahead.half.end is CurveEnd.closed
-        behind = TracedHalf(None) if closed else TracedHalf.of(self.results[2 * seed + 1])
+        behind = TracedHalfCurve(None) if closed else TracedHalfCurve.of(self.results[2 * seed + 1])
         if behind.half is None and not closed:
             return None
         curve = CycleCurve.joined(self.kind, ahead.half, behind.half)
@@ -153,30 +152,30 @@ class _CurvesOfKind:
         return _TracedCurve(curve, near)
 
     def distance(self, curve: _TracedCurve, seed: int) -> float:
-        """Distance of a special point from a curve in units of the line's axis; inf unless it is near."""
+        """Distance of a special point from a curve, in units of the length of a row; inf if not near."""
         near = curve.distances.get(seed, math.inf)
-        lies_off = near > CURVE_IDENTITY.on_curve
-        # The last part of a curve is extrapolated: no cycle is solved there from which a distance could be
-        # measured.
+        lies_off = near > CURVE_IDENTITY.max_distance
+        # Between its last cycle and the Hopf point a curve is extrapolated: no cycle is solved there.
         return 0.0 if lies_off and self._vanishes(curve.curve, self.special[seed]) else near
 
     def same(self, one: _TracedCurve, other: _TracedCurve) -> bool:
-        """Whether two curves share both ends."""
+        """Whether two curves are identical, because both ends are equal."""
         pairs = zip(self._ends(one.curve), self._ends(other.curve), strict=True)
         distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
-        return all(distance <= CURVE_IDENTITY.equal_ends for distance in distances)
+        return all(distance <= CURVE_IDENTITY.max_end_distance for distance in distances)
 
     def _place(self, i: int) -> tuple[float, float]:
-        """Sort key of special points: row, then value."""
+        """Sort key of special point i: value of the rows' parameter, then value of the parameter along the
+        row."""
         return self.special[i].row, self.special[i].at
 
     def _ends(self, curve: CycleCurve) -> list[tuple[float, float]]:
-        """Both ends of a curve in scaled coordinates, the lower end first."""
+        """Axis coordinates (rows' axis, row's axis) of both ends of a curve, in ascending order."""
         return sorted((p.place, self.line.scaled(p.at)) for p in (curve.points[0], curve.points[-1]))
 
-    def _vanishes(self, curve: CycleCurve, one: RowSpecial) -> bool:
-        """Whether a special point lies on the last part of a curve, where cycles shrink to a Hopf point."""
-        if one.tip_y_max >= CYCLE_CURVES.vanishing:
+    def _vanishes(self, curve: CycleCurve, one: RowSpecialPoint) -> bool:
+        """Whether a special point lies on the extrapolation of a curve to a Hopf point."""
+        if one.tip_y_max >= CYCLE_CURVES.min_amplitude:
             return False
         for end, last in zip(curve.vanishing, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
@@ -187,40 +186,43 @@ class _CurvesOfKind:
             # proportion.
             share = (self.rows.scaled(one.row) - y) / (last.place - y)
             chord = x + share * (self.line.scaled(last.at) - x)
-            if 0 <= share <= 1 and abs(chord - self.line.scaled(one.at)) <= CURVE_IDENTITY.on_last_chord:
+            if (
+                0 <= share <= 1
+                and abs(chord - self.line.scaled(one.at)) <= CURVE_IDENTITY.max_last_chord_distance
+            ):
                 return True
         return False
 
 
 def _traced(
-    limits: CurveLimits,
-    one: RowSpecial,
+    limits: SpecialCurveProblem,
+    one: RowSpecialPoint,
     located: Iterable[SpecialPoint],
-    special: Sequence[RowSpecial],
-) -> TracedHalf:
-    """Half a curve from a special point of a row; the field `half` is None if no curve is found."""
+    special: Sequence[RowSpecialPoint],
+) -> TracedHalfCurve:
+    """One half of a curve, followed from the special point `one` of a row. located: special points of this
+    row with cycles. special: all special points, whose distances from the half are measured."""
     width = abs(limits.line.parameter_slope(one.at))
     same = [
         point
         for point in located
         if point.kind == one.kind
-        and abs(point.at - one.at) <= CURVE_IDENTITY.on_curve * width
-        and abs(point.period / one.period - 1) <= CURVE_IDENTITY.equal_period
+        and abs(point.at - one.at) <= CURVE_IDENTITY.max_distance * width
+        and abs(point.period / one.period - 1) <= CURVE_IDENTITY.max_period_difference
     ]
     if not same:
-        return TracedHalf(None)
+        return TracedHalfCurve(None)
     try:
         points, end = limits.followed(same[0], one.row)
-    except (*FAILURES, ValueError):  # a logarithmic axis has no place for a value that is not positive
-        return TracedHalf(None)
+    except (*FAILURES, ValueError):  # a logarithmic axis refuses a value that is not positive
+        return TracedHalfCurve(None)
     distances = {i: _distance(limits, points, other) for i, other in enumerate(special)}
-    near = {i: distance for i, distance in distances.items() if distance <= CURVE_IDENTITY.on_curve}
-    return TracedHalf(HalfCurve(tuple(map(CurvePoint.of, points)), end), near)
+    near = {i: distance for i, distance in distances.items() if distance <= CURVE_IDENTITY.max_distance}
+    return TracedHalfCurve(HalfCurve(tuple(map(CurvePoint.of, points)), end), near)
 
 
-def _distance(limits: CurveLimits, points: Sequence[OnCurve], one: RowSpecial) -> float:
-    """Distance of a special point from a curve on the point's row, in units of the line's axis; inf if not
-    near."""
+def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
+    """Distance of the special point `one` from a curve along its row, in row lengths; inf if not near."""
     if limits.kind != one.kind:
         return math.inf
     place = limits.rows.scaled(one.row)
@@ -233,16 +235,16 @@ def _distance(limits: CurveLimits, points: Sequence[OnCurve], one: RowSpecial) -
             crossing = limits.on_row(a, b, place)
         except Unsolvable:
             continue
-        if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY.equal_period:
+        if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY.max_period_difference:
             best = min(best, abs(limits.line.scaled(crossing.at) - at))
     return best
 
 
-def _near(limits: CurveLimits, a: OnCurve, b: OnCurve, one: RowSpecial) -> bool:
-    """Whether a special point may lie on the part of a curve between two points."""
+def _near(limits: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
+    """Whether the special point `one` may lie on the curve between its successive points `a` and `b`."""
     x = limits.line.scaled(one.at)
     ends = sorted(limits.line.scaled(p.at) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
-    on_line = ends[0] - CURVE_IDENTITY.near_chord <= x <= ends[1] + CURVE_IDENTITY.near_chord
-    ratio = 1 + CURVE_IDENTITY.near_period
+    on_line = ends[0] - CURVE_IDENTITY.max_chord_distance <= x <= ends[1] + CURVE_IDENTITY.max_chord_distance
+    ratio = 1 + CURVE_IDENTITY.max_period_change
     return on_line and periods[0] / ratio <= one.period <= periods[1] * ratio

@@ -1,4 +1,5 @@
-"""The first point of a curve of special points, from a special point located on a row."""
+"""The first point of a curve of special points in a parameter plane, from a special point located on a
+row."""
 
 from dataclasses import dataclass, replace
 from math import ceil
@@ -10,34 +11,41 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit_mesh import mesh_of, stages_for
 from ...point import Unsolvable
 from ..arc import tangent_at
-from ..beginning import BEGINNING, DEFLECTION
+from ..beginning import ALONG_DEFLECTION, BEGINNING
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import Scale, deflection_of
 from .family import CycleFamily
-from .on_curve import ACROSS_CURVE, OnCurve
+from .on_curve import ACROSS_CURVE, SolvedPoint
 from .point import SpecialPoint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CurveStartSettings:
-    """Settings for the first mesh of a curve of special points."""
+    """Settings for the first mesh on a curve of special points."""
 
     order_share: float = 0.62
-    """Order of a curve's first mesh, in units of the order that located the special point to 1e-9."""
+    """Order of the first mesh on a curve, in units of the order of the mesh that located the special point to
+    1e-9."""
     interval_share: float = 0.5
-    """Intervals of a curve's first mesh, in units of the intervals that located the special point."""
+    """Number of time intervals of the first mesh on a curve, in units of the number on the mesh that located
+    the special point."""
 
 
 CURVE_START = CurveStartSettings()
 
 
-def first_on_curve(
+def first_point_of_curve(
     special: SpecialPoint, line: str, rows: PlaneAxis, row: float, workspace: NewtonWorkspace
-) -> OnCurve:
-    """The first point of a curve, from a special point located on a row; raises Unsolvable."""
+) -> SolvedPoint:
+    """The first point of a curve of special points, from the point `special` located on a row; raises
+    Unsolvable.
+
+    line: parameter along the rows. rows: axis of the rows' parameter. row: its value at this row. workspace:
+    memory of Newton's matrices.
+    """
     orbit = special.orbit
     if orbit is None:
-        raise Unsolvable(special.message or "the special point has no cycle")
+        raise Unsolvable(special.message or "the cycle of the special point is not known")
     mesh = mesh_of(orbit)
     rough = replace(
         mesh,
@@ -49,9 +57,9 @@ def first_on_curve(
     least = abs(deflection_of(orbit)) * BEGINNING.min_deflection_amplitude / special.tip_y_max
     scale = Scale.of(orbit, line, least)
     matrix = BorderedMatrix(orbit, scale, workspace)
-    ahead = scale.moved(orbit, tangent_at(orbit, scale, DEFLECTION, matrix))
+    ahead = scale.moved(orbit, tangent_at(orbit, scale, ALONG_DEFLECTION, matrix))
     place = rows.scaled(row)
-    start = OnCurve(
+    start = SolvedPoint(
         orbit=orbit, scale=scale, ahead=ahead / np.linalg.norm(ahead), place=place, at=special.at, row=row
     )
     family = CycleFamily.about(special.kind, rows, start, workspace)

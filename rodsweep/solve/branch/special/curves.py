@@ -1,4 +1,4 @@
-"""Curves of folds and torus points of cycles, from a point located on a row to their ends."""
+"""Continuation of a curve of folds or torus points over two parameters, from a row to an end of the curve."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -9,34 +9,40 @@ from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
 from ....watch import SolvePosition, report
 from ....wording import counted
-from ...continuation.follower import Curve, CurveStop, StepControl, StepResult, follow, zero_along
+from ...continuation.follower import Curve, CurveStop, StepControl, StepResult, follow_curve, zero_along_step
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...point import Unsolvable
 from ..bordered.matrix import BorderedMatrix
-from .augmented.functions import crossing_pair
-from .curve_start import first_on_curve
-from .cycle_curves import CURVE_IDENTITY, CurveEnd, weights_at
+from .augmented.functions import pair_nearest_unit_circle
+from .curve_start import first_point_of_curve
+from .cycle_curves import CURVE_IDENTITY, CurveEnd, lagrange_weights
 from .family import CycleFamily
-from .least_stretch import stretch_of
-from .on_curve import OnCurve, errors_between, lengths_of, slope_of, with_parameters
+from .least_stretch import least_stretch_of_orbit
+from .on_curve import (
+    SolvedPoint,
+    arc_lengths,
+    chord_slope,
+    orbit_with_parameters,
+    with_larger_errors,
+)
 from .point import SpecialKind, SpecialPoint
 
 CURVE_STEPS = StepControl(
-    first=0.01,
-    longest=0.1,
-    shortest=1e-4,
-    aim=3e-3,
-    far=0.1,
-    order=CURVE_IDENTITY.max_interpolated,
-    sharpest=0.55,
-    growth=2.0,
-    most=400,
+    first_length=0.01,
+    max_length=0.1,
+    min_length=1e-4,
+    target_error=3e-3,
+    max_error=0.1,
+    prediction_order=CURVE_IDENTITY.max_interpolated_points,
+    max_angle=0.55,
+    max_ratio=2.0,
+    max_solutions=400,
 )
-"""Step lengths along a curve; the rows' axis has length 1, the other three directions are those of
-`Scale.place`."""
+"""Step length control along a curve of special points. Steps have four components: the three of `Scale`, and
+the rows' axis coordinate, from 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,19 +50,21 @@ class CycleCurveSettings:
     """Settings for the ends of a curve of special points."""
 
     min_loop_points: int = 5
-    """Minimum number of points of a closed curve."""
-    on_edge: float = 1e-8
-    """Largest scaled distance from an edge of a point on the edge."""
+    """Number of points of a curve below which the curve cannot be closed."""
+    max_edge_distance: float = 1e-8
+    """Largest distance of a point on an edge of the plane from this edge; each axis has length 1."""
     edge_bracket: float = 1e-10
-    """Fraction of a step to which the crossing of an edge is located."""
+    """Tolerance of the point at which a curve crosses a limit, in units of the step."""
     crushing_margin: float = 1e-3
-    """Relative distance below the crushing force k1 at which a curve ends."""
+    """Relative distance of F from the crushing force k1 at which a curve ends."""
     crushing_accuracy: float = 1e-6
-    """Relative accuracy of the shortened step that ends halfway into this margin."""
-    vanishing: float = 0.01
-    """Largest tip y, in L, from which a curve is extrapolated to the Hopf point where its cycles vanish."""
-    almost_real: float = 0.2
-    """Angle of a multiplier from the real axis, in radians, below which its pair is about to become real."""
+    """Relative tolerance of the length of a step that is shortened to end in the middle of
+    `crushing_margin`."""
+    min_amplitude: float = 0.01
+    """Largest tip y, in L, below which a curve is not followed, but extrapolated to a Hopf point."""
+    min_sine_at_resonance: float = 0.2
+    """Sine of the angle between a multiplier and the real axis, below which a lost curve of torus points ends
+    at a resonance: the complex pair becomes real."""
 
 
 CYCLE_CURVES = CycleCurveSettings()
@@ -66,19 +74,17 @@ ALONG_BRANCH = np.array([1.0, 0.0])
 
 
 EDGE_COUNT = 4
-"""Number of edges of the plane; the margins of a curve begin with the distances from these."""
+"""Number of edges of the parameter plane; the first margins of a curve are the distances from these edges."""
 ROW_EDGES = (2, 3)
-"""Indices of the margins whose edges are rows."""
-END_AT_MARGIN = (*EDGE_COUNT * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_model, CurveEnd.hopf)
-"""Reason for the end of a curve, by the margin that becomes 0."""
+"""Indices of the margins for the two edges of the plane that are rows."""
+END_BY_MARGIN = (*EDGE_COUNT * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_model, CurveEnd.hopf)
+"""Reason for the end of a curve, by the index of the margin that becomes 0."""
 
 
 @dataclass(frozen=True, slots=True)
-class CurveLimits:
-    """Limits of the curves of one kind of special points: the line's and the rows' axis.
-
-    side: 1 or -1, first direction along the rows' axis. workspace: memory of all matrices.
-    """
+class SpecialCurveProblem:
+    """Continuation problem for curves of one kind of special points in a parameter plane. line: axis of the
+    parameter along a row. rows: axis of the rows' parameter. side: 1 or -1, first direction along it."""
 
     kind: SpecialKind
     line: PlaneAxis
@@ -86,29 +92,29 @@ class CurveLimits:
     workspace: NewtonWorkspace
     side: float = 1.0
 
-    def followed(self, special: SpecialPoint, row: float) -> tuple[list[OnCurve], CurveEnd]:
-        """(points from a special point of a row to an end of its curve, reason for the end); raises
-        Unsolvable."""
-        first = first_on_curve(special, self.line.name, self.rows, row, self.workspace)
-        curve = follow(self, first, CURVE_STEPS, self._report)
-        return errors_between(curve.solutions), self._why_ended(curve)
+    def followed(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEnd]:
+        """(points of a curve in order from a special point of a row, reason for the end of the curve); raises
+        Unsolvable. row: value of the rows' parameter."""
+        first = first_point_of_curve(special, self.line.name, self.rows, row, self.workspace)
+        curve = follow_curve(self, first, CURVE_STEPS, self._report)
+        return with_larger_errors(curve.solutions), self._why_ended(curve)
 
-    def _why_ended(self, curve: Curve[OnCurve]) -> CurveEnd:
-        """Reason for the end of a curve."""
+    def _why_ended(self, curve: Curve[SolvedPoint]) -> CurveEnd:
+        """Reason for the end of a followed curve, as it is stored."""
         if curve.end is CurveStop.margin:
-            return END_AT_MARGIN[curve.margin]
+            return END_BY_MARGIN[curve.margin]
         if curve.end is CurveStop.closed:
             return CurveEnd.closed
         return self._why_lost(curve.solutions[-1]) if curve.end is CurveStop.lost else CurveEnd.not_followed
 
-    def _report(self, points: Sequence[OnCurve]) -> None:
-        """Reports the position along the curve."""
+    def _report(self, points: Sequence[SolvedPoint]) -> None:
+        """Reports the last point of a curve to the progress display."""
         report(
             lambda: SolvePosition(f"{self.rows.name} = {points[-1].row:.5g}, {counted(len(points), 'point')}")
         )
 
-    def step(self, behind: Sequence[OnCurve], length: float) -> StepResult[OnCurve]:
-        """The point a step ahead; raises Unsolvable."""
+    def step(self, behind: Sequence[SolvedPoint], length: float) -> StepResult[SolvedPoint]:
+        """The point of the curve one step ahead of `behind[-1]`; raises Unsolvable."""
         last = behind[-1]
         if len(behind) == 1:
             start = last.orbit
@@ -118,9 +124,11 @@ class CurveLimits:
             rates = None
         else:
             start, place = self._predicted(behind, self._step_before_crushing(behind, length))
-            way = np.append(last.scale.place(start) - last.scale.place(last.orbit), place - last.place)
+            way = np.append(
+                last.scale.components(start) - last.scale.components(last.orbit), place - last.place
+            )
             across = last.across(way)
-            slope = slope_of(*behind[-2:])
+            slope = chord_slope(*behind[-2:])
             rates = last.rates
         point = self._family(last).point(start, place, across, slope, rates, last)
         mesh = mesh_of(point.orbit)
@@ -128,28 +136,28 @@ class CurveLimits:
         # Prediction and point must live on one mesh to be compared.
         off = relative_change(predicted, point.orbit.values - predicted.values)
         if len(behind) == 1:  # the prediction was the cycle of another row
-            return StepResult(point, min(off, CURVE_STEPS.far), 1.0)
+            return StepResult(point, min(off, CURVE_STEPS.max_error), 1.0)
         one = last.step_from(behind[-2])
         other = point.step_from(last)
         return StepResult(point, off, float(one @ other / np.linalg.norm(one) / np.linalg.norm(other)))
 
-    def _family(self, point: OnCurve) -> CycleFamily:
+    def _family(self, point: SolvedPoint) -> CycleFamily:
         return CycleFamily.about(self.kind, self.rows, point, self.workspace)
 
-    def _predicted(self, points: Sequence[OnCurve], step: float) -> tuple[Orbit, float]:
-        """(orbit, place) a step beyond the last of some points; raises Unsolvable."""
-        known = points[-CURVE_IDENTITY.max_interpolated :]
-        return self._mixed(known, weights_at(lengths_of(known), step), mesh_of(known[-1].orbit))
+    def _predicted(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
+        """(orbit, rows' axis coordinate) predicted one step beyond the last point; raises Unsolvable."""
+        known = points[-CURVE_IDENTITY.max_interpolated_points :]
+        return self._mixed(known, lagrange_weights(arc_lengths(known), step), mesh_of(known[-1].orbit))
 
-    def _step_before_crushing(self, points: Sequence[OnCurve], step: float) -> float:
-        """The step length, shortened if its prediction would lie beyond the crushing margin."""
+    def _step_before_crushing(self, points: Sequence[SolvedPoint], step: float) -> float:
+        """The step length, shortened to keep the predicted rod half of the crushing margin away."""
         from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
-        known = points[-CURVE_IDENTITY.max_interpolated :]
-        lengths = lengths_of(known)
+        known = points[-CURVE_IDENTITY.max_interpolated_points :]
+        lengths = arc_lengths(known)
 
         def distance(longest: float) -> float:
-            weights = weights_at(lengths, longest)
+            weights = lagrange_weights(lengths, longest)
             rod = known[-1].orbit.form.rod
             at, place = (float(np.dot(weights, [getattr(p, n) for p in known])) for n in ("at", "place"))
             values = {"F": rod.F, "k1": rod.k1, self.line.name: at, self.rows.name: self.rows.value(place)}
@@ -160,31 +168,33 @@ class CurveLimits:
         return float(brentq(distance, 0.0, step, rtol=CYCLE_CURVES.crushing_accuracy))
 
     def _mixed(
-        self, points: Sequence[OnCurve], weights: Sequence[float] | Array, mesh: OrbitMesh
+        self, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
     ) -> tuple[Orbit, float]:
-        """(orbit, place): weighted means of some points, (points,); raises Unsolvable."""
+        """(orbit, rows' axis coordinate): sums with weights, (points,), on a mesh; raises Unsolvable."""
         values = np.dot(weights, [mesh.carry(point.orbit).values for point in points])
         at, place = (float(np.dot(weights, [getattr(p, n) for p in points])) for n in ("at", "place"))
         changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
-        return with_parameters(replace(mesh.carry(points[-1].orbit), values=values), changed), place
+        return orbit_with_parameters(replace(mesh.carry(points[-1].orbit), values=values), changed), place
 
-    def margins(self, point: OnCurve) -> Array:
-        """Scaled distances from the four edges, distance from crushing, least h1, and the cycle's size,
-        (7,)."""
+    def margins(self, point: SolvedPoint) -> Array:
+        """Margins, (7,): distances from the four edges and from crushing, smallest h1, and largest tip y
+        minus `min_amplitude`."""
         x = self.line.scaled(point.at)
         y = point.place
         rod = point.orbit.form.rod
         crushing = 1 - CYCLE_CURVES.crushing_margin - rod.F / rod.k1
-        stretch = stretch_of(point.orbit)
-        return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - CYCLE_CURVES.vanishing])
+        stretch = least_stretch_of_orbit(point.orbit)
+        return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - CYCLE_CURVES.min_amplitude])
 
-    def landed(self, behind: Sequence[OnCurve], outer: OnCurve, margin: int) -> OnCurve | None:
+    def located_zero(
+        self, behind: Sequence[SolvedPoint], outer: SolvedPoint, margin: int
+    ) -> SolvedPoint | None:
         """The point between `behind[-1]` and `outer` at which a margin is 0; None if not found."""
         inner = behind[-1]
-        if END_AT_MARGIN[margin] is CurveEnd.hopf:
+        if END_BY_MARGIN[margin] is CurveEnd.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated
         ends = float(self.margins(inner)[margin]), float(self.margins(outer)[margin])
-        if ends[0] <= CYCLE_CURVES.on_edge:
+        if ends[0] <= CYCLE_CURVES.max_edge_distance:
             return None
         try:
             if margin in ROW_EDGES:
@@ -195,18 +205,20 @@ class CurveLimits:
             return None
         return replace(point, errors=outer.errors and outer.errors.carried)
 
-    def _where_zero(self, inner: OnCurve, outer: OnCurve, margin: int, ends: tuple[float, float]) -> OnCurve:
-        """The point between two at which a margin is 0. ends: margin at the two points. Raises Unsolvable."""
-        found: dict[float, OnCurve] = {1.0: outer}
+    def _where_zero(
+        self, inner: SolvedPoint, outer: SolvedPoint, margin: int, ends: tuple[float, float]
+    ) -> SolvedPoint:
+        """The point at which a margin is 0; raises Unsolvable. ends: its values at `inner` and `outer`."""
+        found: dict[float, SolvedPoint] = {1.0: outer}
 
         def left(share: float) -> float:
             found[share] = self.between(inner, outer, share)
             return float(self.margins(found[share])[margin])
 
-        return found[zero_along(left, ends, 1.0, CYCLE_CURVES.edge_bracket, CYCLE_CURVES.edge_bracket)]
+        return found[zero_along_step(left, ends, 1.0, CYCLE_CURVES.edge_bracket, CYCLE_CURVES.edge_bracket)]
 
-    def closes(self, behind: Sequence[OnCurve], point: OnCurve) -> bool:
-        """Whether the first point of the curve lies between its last point and the next."""
+    def closes(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
+        """Whether the first point of the curve lies on the step from `behind[-1]` to the next `point`."""
         first = behind[0]
         last = behind[-1]
         step = point.step_from(last)
@@ -216,23 +228,23 @@ class CurveLimits:
         near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
         return len(behind) > CYCLE_CURVES.min_loop_points and 0 <= passed <= 1 and near
 
-    def between(self, one: OnCurve, other: OnCurve, share: float) -> OnCurve:
-        """The point at a fraction of the way between two, without error; raises Unsolvable."""
+    def between(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
+        """The point of the curve near a fraction of the chord between two points; raises Unsolvable."""
         start, place = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.across(other.step_from(one))
         return self._family(other).nearest(start, place, across, other.rates)
 
-    def on_row(self, one: OnCurve, other: OnCurve, place: float) -> OnCurve:
-        """The point at a scaled place of the rows' axis between two points, without error; raises
+    def on_row(self, one: SolvedPoint, other: SolvedPoint, place: float) -> SolvedPoint:
+        """The point of the curve at the rows' axis coordinate `place` between two points; raises
         Unsolvable."""
         share = (place - one.place) / (other.place - one.place) if other.place != one.place else 0.0
         start, _ = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         return self._family(other).nearest(start, place, ALONG_BRANCH, other.rates)
 
-    def _why_lost(self, last: OnCurve) -> CurveEnd:
-        """Reason why a curve cannot be followed beyond a point."""
+    def _why_lost(self, last: SolvedPoint) -> CurveEnd:
+        """Reason why a curve was lost beyond its last point: a resonance, or none known (`not_followed`)."""
         if self.kind == SpecialKind.torus:
-            pair = crossing_pair(BorderedMatrix(last.orbit, last.scale, self.workspace))
-            if pair is None or abs(pair.imag) < CYCLE_CURVES.almost_real * abs(pair):
+            pair = pair_nearest_unit_circle(BorderedMatrix(last.orbit, last.scale, self.workspace))
+            if pair is None or abs(pair.imag) < CYCLE_CURVES.min_sine_at_resonance * abs(pair):
                 return CurveEnd.resonance
         return CurveEnd.not_followed

@@ -1,11 +1,11 @@
-"""Continuation of folds and torus points of cycles as curves over two parameters.
+"""Correction of a predicted point of a curve of folds or torus points over two parameters.
 
-Cycles near a special point form a two-parameter family: arc length along the branch (`bordered`), and place
-on the rows' axis. In this plane the special points are the zeros of one test function along a smooth curve,
-also at a cusp, where both parameters turn back. The curve is followed by arc length. A polynomial through the
-previous points predicts cycle and place. The secant method across the curve corrects; every cycle and the
-test function's vectors are solved with the factors of one elimination (`augmented`). Derivatives across the
-curve come from the previous point. Errors are differences of two meshes, measured at every third point or so.
+Cycles near a special point form a two-parameter family: arc length along the branch (`bordered`), and the
+rows' axis coordinate. In the plane of these two variables the special points are the zeros of a test function
+on a smooth curve, also at a cusp, where both parameters turn back. The secant method across the curve finds
+the zero. The matrix factors of one cycle correct all other cycles and their test functions (`augmented`). The
+first derivatives across the curve come from the previous point. The error is the difference between two
+meshes, measured at about every third point.
 """
 
 from dataclasses import dataclass, replace
@@ -22,17 +22,20 @@ from ...orbit.orbit_mesh import mesh_of
 from ...orbit.tails import lasting_tails
 from ...point import Unsolvable
 from ..arc import tangent_at
-from ..bordered.condition import BorderCondition, moved
+from ..bordered.condition import BorderCondition, moved_orbit
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import Scale
 from .augmented.functions import AUGMENTED, FoldFunction, TorusFunction
-from .augmented.nearby_cycles import NearbyCycles
-from .on_curve import ACROSS_CURVE, CurveErrors, NormalDerivatives, OnCurve, with_parameters
+from .augmented.nearby_cycles import NearbyCycleSolver
+from .on_curve import ACROSS_CURVE, CurveErrors, NormalDerivatives, SolvedPoint, orbit_with_parameters
 from .point import SpecialKind
 
 
 class _CycleAcross(NamedTuple):
-    """A cycle at the distance `at` from a curve, measured across it, with test function and its vectors."""
+    """A cycle solved by the secant method, at the distance `at` from the predicted point across the curve.
+
+    vectors: tangent or eigenvector of the test function. test: value of the test function.
+    """
 
     orbit: Orbit
     vectors: Array
@@ -42,10 +45,11 @@ class _CycleAcross(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class CycleFamily:
-    """Cycles about a point of a curve. border: direction of its branch in the scale, (3,).
+    """Two-parameter family of the cycles near a point of a curve of special points.
 
-    small: whether the fold function is divided by the deflection, because the cycles are near a Hopf point.
-    workspace: memory of the matrices.
+    rows: axis of the rows' parameter. border: direction of the branch in components (deflection, log period,
+    parameter), (3,). small: whether the fold test function is divided by the deflection, because a Hopf point
+    is near. workspace: memory of Newton's matrices.
     """
 
     kind: SpecialKind
@@ -57,18 +61,20 @@ class CycleFamily:
 
     @classmethod
     def about(
-        cls, kind: SpecialKind, rows: PlaneAxis, point: OnCurve, workspace: NewtonWorkspace
+        cls, kind: SpecialKind, rows: PlaneAxis, point: SolvedPoint, workspace: NewtonWorkspace
     ) -> "CycleFamily":
-        """The cycles about a point."""
+        """The family of the cycles near a point of a curve."""
         small = kind == SpecialKind.fold and point.tip_y_max < ACROSS_CURVE.small_fold_cycle
         return cls(kind, rows, point.scale, point.ahead, small, workspace)
 
     def placed(self, orbit: Orbit, place: float) -> Orbit:
-        """The orbit's values for the rod at a place on the rows' axis; raises Unsolvable."""
-        return with_parameters(orbit, {self.rows.name: self.rows.value(place)})
+        """The orbit with unchanged values for the rod at the rows' axis coordinate `place`; raises
+        Unsolvable."""
+        return orbit_with_parameters(orbit, {self.rows.name: self.rows.value(place)})
 
     def function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:
-        """The test function that is zero at special points of this kind, at the cycle of a matrix."""
+        """The test function that is zero at special points of this kind, at the orbit of a bordered
+        matrix."""
         if self.kind == SpecialKind.fold:
             return FoldFunction(matrix, self.border, self.small)
         return TorusFunction(matrix)
@@ -80,12 +86,13 @@ class CycleFamily:
         across: Array,
         rates: NormalDerivatives | None = None,
         same: bool = False,
-    ) -> OnCurve:
-        """The point of the curve near an orbit, searched across the curve in a direction, (2,). Raises
+    ) -> SolvedPoint:
+        """The point of the curve near the orbit `start`, found by the secant method across the curve; raises
         Unsolvable.
 
-        rates: approximate derivatives across the curve. same: whether `rates` belong to the point sought, on
-        another mesh.
+        place: rows' axis coordinate of `start`. across: direction of the search, (2,): along the branch,
+        along the rows' axis. rates: approximate derivatives across the curve. same: whether `rates` are of
+        the same point on another mesh.
         """
         # Derivatives along another direction across the curve would mislead the secant method.
         known = rates if rates and rates.direction @ across >= ACROSS_CURVE.min_cosine else None
@@ -103,12 +110,13 @@ class CycleFamily:
         across: Array,
         slope: float = 0.0,
         rates: NormalDerivatives | None = None,
-        before: OnCurve | None = None,
-    ) -> OnCurve:
-        """`nearest` with an error estimate, on a finer mesh if necessary; raises Unsolvable.
+        before: SolvedPoint | None = None,
+    ) -> SolvedPoint:
+        """The point of the curve near `start` as in `nearest`, with an error estimate, on a finer mesh if
+        necessary; raises Unsolvable.
 
-        slope: d(line's value)/d(place) along the curve; a difference along the curve is no error. before: the
-        previous point, whose errors are reused while they apply.
+        slope: `chord_slope` of the curve: a difference along the curve is no error. before: previous point,
+        whose measured error is reused if still valid.
         """
         last = self.nearest(start, place, across, rates)
         if before and before.errors and before.errors.hold_at(last):
@@ -120,8 +128,8 @@ class CycleFamily:
             if not finer.allowed:
                 break
             fine = self.nearest(finer.carry(last.orbit), last.place, across, last.rates, same=True)
-            # The two points may lie at different places along the curve; the slope takes this out of the
-            # error.
+            # The solutions on both meshes may be displaced along the curve; the slope removes this
+            # displacement from the error.
             off = abs(fine.at - last.at - slope * (fine.place - last.place))
             error = ACROSS_CURVE.error_factor * off + ACROSS_CURVE.secant_error * abs(fine.at)
             if error <= ACROSS_CURVE.accuracy * abs(fine.at):
@@ -133,7 +141,7 @@ class CycleFamily:
 
 
 class _SecantAcross:
-    """The secant method across a curve; all its cycles are corrected with the factors of the first."""
+    """State of the secant method across a curve; the matrix factors of the first cycle correct all cycles."""
 
     def __init__(
         self,
@@ -151,15 +159,14 @@ class _SecantAcross:
         self.orbit = family.placed(start, place)
         self.at = 0.0
         self.before: _CycleAcross | None = None
-        self.length = float(family.border @ family.scale.place(start))
+        self.length = float(family.border @ family.scale.components(start))
         self.trusted = ACROSS_CURVE.max_linear_step if same else ACROSS_CURVE.max_carried_step
-        """Largest last step along a line for derivatives that were not computed from two cycles of this
-        search."""
+        """Longest last secant step with derivatives that were not computed from two cycles of this search."""
         contraction = rates.contraction if rates and not family.small else inf
-        self.near = NearbyCycles(family, self.orbit, contraction)
+        self.near = NearbyCycleSolver(family, self.orbit, contraction)
 
-    def next(self) -> OnCurve | None:
-        """The point of the curve, once a step is short enough; None while more steps are needed. Raises
+    def next(self) -> SolvedPoint | None:
+        """Makes one secant step and returns the point of the curve, or None if more steps are needed; raises
         Unsolvable."""
         present = self._solved_here()
         enough = self.trusted
@@ -184,20 +191,21 @@ class _SecantAcross:
         return None
 
     def _solved_here(self) -> _CycleAcross:
-        """The cycle at the present length across the curve; raises Unsolvable."""
+        """The cycle at the present distance `at` across the curve, with its test function; raises
+        Unsolvable."""
         family = self.family
         rates = self.rates
         length = self.length + self.at * float(self.direction[0])
         self.orbit = family.placed(self.orbit, self.place + self.at * float(self.direction[1]))
         slope = abs(rates.test) if rates else 1.0
-        enough = AUGMENTED.tolerance if rates else AUGMENTED.function_share * ACROSS_CURVE.first_secant
+        enough = AUGMENTED.tolerance if rates else AUGMENTED.tolerance_share * ACROSS_CURVE.first_secant
         condition = BorderCondition(family.scale, family.border, length)
         self.orbit, test = self.near.solved(self.orbit, condition, slope, enough)
         return _CycleAcross(self.orbit, self.near.function.vectors, test, self.at)
 
     def _rates_since(self, present: _CycleAcross) -> NormalDerivatives | None:
-        """Derivatives across the curve from the last two cycles; None for a single cycle or too small a
-        distance."""
+        """Derivatives across the curve from the last cycle and the cycle `present`; None for a single cycle
+        or too small a distance."""
         before = self.before
         if before is None or present.test == before.test:
             return None
@@ -216,19 +224,19 @@ class _SecantAcross:
         )
 
     def _moved(self, step: float, rates: NormalDerivatives) -> Orbit:
-        """The last cycle moved by a step across the curve."""
-        return moved(self.orbit, self.family.scale.name, step * rates.on(self.orbit))
+        """The last cycle moved linearly by a step across the curve."""
+        return moved_orbit(self.orbit, self.family.scale.name, step * rates.on(self.orbit))
 
-    def _point(self, step: float, rates: NormalDerivatives) -> OnCurve:
-        """The point of the curve at a short step across from the last cycle."""
+    def _point(self, step: float, rates: NormalDerivatives) -> SolvedPoint:
+        """The point of the curve: the last cycle moved linearly by a short step across the curve."""
         family = self.family
         matrix = self.near.matrix
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
         place = self.place + (self.at + step) * float(self.direction[1])
         orbit = family.placed(self._moved(step, rates), place)
-        scale = Scale.of(orbit, family.scale.name, family.scale.least)
+        scale = Scale.of(orbit, family.scale.name, family.scale.min_deflection_unit)
         ahead = scale.moved(orbit, tangent)
-        return OnCurve(
+        return SolvedPoint(
             orbit=orbit,
             scale=scale,
             ahead=ahead / np.linalg.norm(ahead),

@@ -1,4 +1,4 @@
-"""The least stretch h1 of a cycle over the whole rod and period; the model is valid for h1 > 0 only."""
+"""Smallest axial stretch h1 of a cycle over the whole rod and period; the model is valid only for h1 > 0."""
 
 from dataclasses import dataclass
 from math import inf
@@ -15,45 +15,49 @@ from ..arc import ArcPoint
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeastStretchSettings:
-    """Settings for the search for the least stretch of a cycle."""
+    """Settings for the search for the smallest stretch h1 of a cycle."""
 
-    places_per_node: int = 8
-    """Number of places per node at which the least stretch is sampled."""
+    positions_per_node: int = 8
+    """Number of sampled positions on the rod per node of the mesh."""
     times_per_harmonic: int = 8
-    """Number of times per harmonic at which the least stretch of one place is sampled."""
-    place_tolerance: float = 1e-9
-    """Tolerance of the place of the least stretch, in L; the stretch has the square of this as its error."""
-    safe_at_nodes: float = 0.2
-    """If h1 exceeds this limit at all nodes, h1 is positive between the nodes too."""
-    safe_at_places: float = 0.02
-    """If h1 exceeds this limit at all sampled places, h1 is positive everywhere: a resolved polynomial hardly
-    varies more."""
+    """Number of sampled times per harmonic, for the smallest stretch at one position on the rod."""
+    position_tolerance: float = 1e-9
+    """Tolerance of the position of the smallest stretch, in L; the stretch, which is stationary there, has an
+    error of second order."""
+    safe_nodal_stretch: float = 0.2
+    """Limit of h1 at all nodes above which no search between the nodes is needed: h1 is positive there
+    too."""
+    safe_sampled_stretch: float = 0.02
+    """Limit of h1 at all sampled positions above which no search between the positions is needed: a resolved
+    polynomial varies less."""
 
 
 LEAST_STRETCH = LeastStretchSettings()
 
 
-def stretch_at(point: ArcPoint) -> float:
-    """The least h1 of a cycle in space and time; the least nodal value if that is far from 0."""
+def least_stretch_of_cycle(point: ArcPoint) -> float:
+    """Smallest h1 of a cycle of a branch over rod and period; only the smallest nodal value if this exceeds
+    `safe_nodal_stretch`."""
     rough = point.cycle.measures.least_stretch
-    if rough > LEAST_STRETCH.safe_at_nodes:
+    if rough > LEAST_STRETCH.safe_nodal_stretch:
         return rough
-    return least_stretch(point.cycle.path, LEAST_STRETCH.safe_at_places)
+    return least_stretch(point.cycle.path, LEAST_STRETCH.safe_sampled_stretch)
 
 
-def stretch_of(orbit: Orbit) -> float:
-    """`stretch_at` for an orbit alone."""
+def least_stretch_of_orbit(orbit: Orbit) -> float:
+    """Smallest h1 of an orbit over rod and period; only the smallest nodal value if this exceeds
+    `safe_nodal_stretch`."""
     rough = orbit.form.least_stretch(orbit.points)
-    if rough > LEAST_STRETCH.safe_at_nodes:
+    if rough > LEAST_STRETCH.safe_nodal_stretch:
         return rough
-    return least_stretch(CyclePath(orbit), LEAST_STRETCH.safe_at_places)
+    return least_stretch(CyclePath(orbit), LEAST_STRETCH.safe_sampled_stretch)
 
 
 def least_stretch(path: CyclePath, enough: float = inf) -> float:
-    """The least h1 of a cycle over the whole rod and the whole period.
+    """Smallest h1 of a cycle over the whole rod and the whole period.
 
-    enough: if the least sampled value exceeds this, that value is returned without a search between the
-    samples.
+    enough: limit of the smallest sampled value above which this value is returned, without a search between
+    the sampled positions.
     """
     from scipy.optimize import minimize_scalar  # slow import: 0.1 s, for few runs
 
@@ -70,14 +74,14 @@ def least_stretch(path: CyclePath, enough: float = inf) -> float:
 
     before = [index_before_jump(int(node), grid.order) for node in form.nodal.jumps]
     at_jumps = float(least_of(c[:, before + [place + 1 for place in before]]).min(initial=inf))
-    places = np.linspace(0.0, 1.0, LEAST_STRETCH.places_per_node * len(grid.positions))
+    places = np.linspace(0.0, 1.0, LEAST_STRETCH.positions_per_node * len(grid.positions))
     values = least(places)
     best = int(np.argmin(values))
     rough = min(float(values[best]), at_jumps)
     if rough > enough:
         return rough
     ends = places[max(best - 1, 0)], places[min(best + 1, len(places) - 1)]
-    tolerance = {"xatol": LEAST_STRETCH.place_tolerance}
+    tolerance = {"xatol": LEAST_STRETCH.position_tolerance}
     found = minimize_scalar(
         lambda u: float(least(np.array([u]))[0]), bounds=ends, method="bounded", options=tolerance
     )

@@ -1,8 +1,9 @@
-"""Location of special points on a branch: the zero of a test function, with a cycle solved at each place.
+"""Location of special points on a branch: zeros of test functions of arc length, with a cycle solved at every
+argument.
 
-The zero is bracketed on the branch's own mesh, then found by the secant method on two finer meshes; their
-difference is the error. Each cycle takes one elimination: its test function is corrected with the factors of
-a nearby matrix (`augmented`).
+The zero is bracketed on the mesh of the branch, then found by the secant method on two finer meshes. The
+difference between the two zeros gives the error. Each cycle takes only one matrix factorisation, because its
+test function is corrected with the factors of a nearby matrix (`augmented`).
 """
 
 from dataclasses import replace
@@ -11,78 +12,84 @@ from math import ceil, log, nan
 import numpy as np
 
 from ....arrays import Array, Complex
-from ...continuation.follower import zero_along
+from ...continuation.follower import zero_along_step
 from ...orbit.measures import CyclePath
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of, stages_for
 from ...point import Unsolvable
 from ..arc import ArcPoint
-from ..bordered.condition import moved
-from ..bordered.matrix import BorderedMatrix, bordered
+from ..bordered.condition import moved_orbit
+from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
 from ..bordered.scale import Scale
 from .augmented.functions import TorusFunction, correct_fully
 from .least_stretch import least_stretch
-from .point import LOCATING, SpecialKind, SpecialPoint
+from .point import SPECIAL_POINT, SpecialKind, SpecialPoint
 from .segment import BranchSegment
 
 
-def through_minus_one(orbit: Orbit) -> SpecialKind:
-    """Kind of special point where a multiplier over the solved interval passes -1."""
+def kind_at_minus_one(orbit: Orbit) -> SpecialKind:
+    """Kind of the special point at which a multiplier of this orbit, over the solved time interval, passes
+    -1."""
     return SpecialKind.symmetry_breaking if orbit.symmetric else SpecialKind.period_doubling
 
 
 def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrbit) -> float:
-    """The test function of a kind, zero at its special points, at the cycle just found; raises Unsolvable."""
+    """The test function that is zero at special points of a kind, at the cycle `found`, which `segment`
+    solved last; raises Unsolvable."""
     if kind == SpecialKind.fold:
-        return segment.rises()
+        return segment.parameter_rate()
     if kind == SpecialKind.left_the_model:
         return least_stretch(CyclePath(found.orbit))
     if kind == SpecialKind.torus:
-        function = TorusFunction(bordered(found))
+        function = TorusFunction(bordered_matrix_of(found))
         correct_fully(function, found.orbit)
         return function.value(found.orbit)
     matrix = BorderedMatrix(found.orbit, segment.start.scale, found.workspace)
-    return test_of_multipliers(kind, matrix.partial_multipliers)
+    return multiplier_test_function(kind, matrix.partial_multipliers)
 
 
-def test_of_multipliers(kind: SpecialKind, h: Complex) -> float:
-    """The test function of a kind from multipliers over the solved interval, (rank,); raises Unsolvable."""
-    real = np.abs(h.imag) <= LOCATING.real_multiplier * np.abs(h)
+def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
+    """The test function of torus points, symmetry breakings or period doublings, from the nontrivial
+    multipliers h over the solved time interval, (rank,); raises Unsolvable."""
+    real = np.abs(h.imag) <= SPECIAL_POINT.real_multiplier * np.abs(h)
     if kind != SpecialKind.torus:
         # The sign of det(h + 1) changes only when a multiplier crosses -1, whichever multiplier is nearest.
         return float((-1) ** (h[real].real < -1).sum() * np.abs(h + 1).min())
-    # A pair that met on the real axis is no pair any more.
+    # A complex pair that has become real has no test function.
     if real.all():
-        raise Unsolvable("the multiplier that crosses the unit circle is lost")
+        raise Unsolvable("all multipliers are real, so no complex pair crosses the unit circle")
     beyond = np.abs(h[~real]) - 1
     return float(beyond[np.argmin(np.abs(beyond))])
 
 
 def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> float:
-    """The test function at a known cycle; scale, ahead: as for the segment. Raises Unsolvable."""
+    """The test function of a kind at `point`, a cycle at an end of a segment; raises Unsolvable.
+
+    scale, ahead: scale and tangent, (3,), of the segment's start.
+    """
     if kind == SpecialKind.fold:
         # In lengths along the segment's own direction, in which the zero is sought.
         rate = float(scale.moved(point.orbit, point.tangent) @ ahead)
-        return float(point.tangent[-1]) / scale.coordinate / rate
+        return float(point.tangent[-1]) / scale.coordinate_unit / rate
     if kind == SpecialKind.left_the_model:
         return least_stretch(point.cycle.path)
-    return test_of_multipliers(kind, point.partial_multipliers)
+    return multiplier_test_function(kind, point.partial_multipliers)
 
 
-def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
-    """The special point of a kind between two cycles. The error of a point that is not found is the distance
-    of the two cycles."""
-    aim = min(accuracy, LOCATING.accuracy)
+def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
+    """The special point of a kind between two cycles, to a relative accuracy. If the point is not located,
+    its message says why, and its error is the parameter difference of the two cycles."""
+    aim = min(accuracy, SPECIAL_POINT.accuracy)
     try:
         segment = BranchSegment(start, end)
         segment.start_on(mesh_of(end.orbit))
         length, slope = _enclosed(kind, segment)
-        mesh = end.calibration.planned_for_parameter(LOCATING.first_mesh_share * aim)
+        mesh = end.calibration.planned_for_parameter(SPECIAL_POINT.first_mesh_share * aim)
         # At least as many stages as make this accuracy cheapest.
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
         point: SpecialPoint | None = None
-        for number in range(LOCATING.max_mesh_pairs + 1):
+        for number in range(SPECIAL_POINT.max_mesh_pairs + 1):
             segment.start_on(mesh)
             length, orbit, slope = _zero(kind, segment, length, slope)
             last = point
@@ -103,37 +110,48 @@ def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) 
 
 
 def _finer(mesh: OrbitMesh, excess: float) -> OrbitMesh:
-    """The next finer mesh. excess: error of a point on this mesh in units of the accuracy."""
+    """The next finer mesh. excess: error on this mesh in units of the accuracy; 1 for the smallest
+    refinement."""
     # Errors fall with a power of the number of intervals that is proportional to the stages.
-    growth = excess ** (1 / (LOCATING.power_by_stages * mesh.stages))
-    growth = min(max(growth, LOCATING.more_intervals), LOCATING.max_interval_ratio)
-    more = min(max(ceil(log(excess) / LOCATING.fall), LOCATING.more_orders), LOCATING.max_more_orders)
+    growth = excess ** (1 / (SPECIAL_POINT.time_order_by_stages * mesh.stages))
+    growth = min(max(growth, SPECIAL_POINT.min_interval_ratio), SPECIAL_POINT.max_interval_ratio)
+    more = min(
+        max(ceil(log(excess) / SPECIAL_POINT.space_decay), SPECIAL_POINT.min_more_orders),
+        SPECIAL_POINT.max_more_orders,
+    )
     return replace(mesh, order=mesh.order + more, intervals=ceil(growth * mesh.intervals))
 
 
 def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: ArcPoint) -> SpecialPoint:
-    """A special point with errors: the differences from the same point on a coarser mesh, with a safety
-    factor.
+    """The special point with errors from its differences to `last`, the same point on a coarser mesh, with a
+    safety factor.
 
-    Period and size also have the error of the last secant step in arc length.
+    start, end: the cycles on both sides of the point, by which the errors of period and largest tip y include
+    the arc length error of the last secant step.
     """
-    place = LOCATING.secant_end_at_fold if point.kind is SpecialKind.fold else LOCATING.secant_end
+    place = (
+        SPECIAL_POINT.secant_error_at_fold if point.kind is SpecialKind.fold else SPECIAL_POINT.secant_error
+    )
     one = start.cycle.measures
     other = end.cycle.measures
-    period = LOCATING.error_factor * abs(point.period - last.period) + place * abs(one.period - other.period)
-    size = LOCATING.error_factor * abs(point.tip_y_max - last.tip_y_max) + place * abs(
+    period = SPECIAL_POINT.error_factor * abs(point.period - last.period) + place * abs(
+        one.period - other.period
+    )
+    size = SPECIAL_POINT.error_factor * abs(point.tip_y_max - last.tip_y_max) + place * abs(
         one.tip_y_max - other.tip_y_max
     )
     return replace(
         point,
-        error=LOCATING.error_factor * abs(point.at - last.at) + LOCATING.rounding * abs(point.at),
-        period_error=period / point.period + LOCATING.rounding,
-        size_error=size / point.tip_y_max + LOCATING.rounding,
+        error=SPECIAL_POINT.error_factor * abs(point.at - last.at)
+        + SPECIAL_POINT.rounding_error * abs(point.at),
+        period_error=period / point.period + SPECIAL_POINT.rounding_error,
+        size_error=size / point.tip_y_max + SPECIAL_POINT.rounding_error,
     )
 
 
 def _point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
-    """The special point at a cycle, without error. name: name of the parameter."""
+    """The special point of a kind at a solved cycle `orbit`, with errors NaN. name: continuation
+    parameter."""
     path = CyclePath(orbit)
     return SpecialPoint(
         kind=kind,
@@ -146,7 +164,8 @@ def _point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
 
 
 def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) -> SpecialPoint:
-    """A special point that is known only to lie between two cycles."""
+    """The special point for a zero that was not located between the cycles `start` and `end`, placed at
+    `end`; errors: differences of the two cycles."""
     name = start.scale.name
     measures = end.cycle.measures
     before = start.cycle.measures
@@ -157,7 +176,7 @@ def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) ->
         period=measures.period,
         tip_y_max=measures.tip_y_max,
         # The cycles may coincide in the parameter, as on both sides of a fold.
-        error=max(abs(at - other), LOCATING.accuracy * abs(at)),
+        error=max(abs(at - other), SPECIAL_POINT.accuracy * abs(at)),
         period_error=abs(before.period / measures.period - 1),
         size_error=abs(before.tip_y_max / measures.tip_y_max - 1),
         message=message,
@@ -165,10 +184,8 @@ def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) ->
 
 
 def _enclosed(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
-    """(approximate zero of the test function, its slope), bracketed by the ends of the segment.
-
-    Raises Unsolvable.
-    """
+    """(arc length of the approximate zero of the test function, slope of the test function there), by
+    bracketing on a segment; raises Unsolvable."""
     start = segment.start
     known = ((0.0, start), (segment.length, segment.end))
     values = {at: _at_end(kind, start.scale, start.ahead, point) for at, point in known}
@@ -178,9 +195,9 @@ def _enclosed(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
         return values[length]
 
     ends = values[0.0], values[segment.length]
-    least = LOCATING.enclosure_share * min(map(abs, ends))
-    at = zero_along(kept, ends, segment.length, least, LOCATING.enclosure_share)
-    # The nearest other place and this zero give the slope.
+    least = SPECIAL_POINT.bracket_tolerance * min(map(abs, ends))
+    at = zero_along_step(kept, ends, segment.length, least, SPECIAL_POINT.bracket_tolerance)
+    # The nearest other arc length with a known value and this zero give the slope.
     other = min((x for x in values if x != at), key=lambda x: abs(x - at))
     slope = (values[at] - values[other]) / (at - other)
     return at - values[at] / slope, slope
@@ -189,16 +206,19 @@ def _enclosed(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
 def _zero(
     kind: SpecialKind, segment: BranchSegment, guess: float, slope: float
 ) -> tuple[float, Orbit, float]:
-    """(zero of the test function near a guess, the cycle there, the slope of the test function).
+    """(arc length of the zero of the test function near `guess`, the cycle there, slope of the test
+    function), by the secant method; raises Unsolvable.
 
-    slope: approximate, as on a coarser mesh. Raises Unsolvable.
+    slope: approximate slope, for the first step.
     """
-    linear = LOCATING.linear_step_at_fold if kind == SpecialKind.fold else LOCATING.linear_step
+    linear = (
+        SPECIAL_POINT.max_linear_step_at_fold if kind == SpecialKind.fold else SPECIAL_POINT.max_linear_step
+    )
     enough = segment.length * linear
     at = guess
     step = np.inf
     before = None
-    for _ in range(LOCATING.max_secants):
+    for _ in range(SPECIAL_POINT.max_secants):
         f = test_function(kind, segment, segment.at(at))
         if before is not None and f != before[1]:
             slope = (f - before[1]) / (at - before[0])
@@ -207,12 +227,12 @@ def _zero(
         if not abs(step) < segment.length:
             raise Unsolvable("the secant method leaves the interval between the two cycles")
         # A short step that does not halve any more is rounding error.
-        if abs(step) <= enough or last / 2 < abs(step) <= LOCATING.stalled_secant * segment.length:
+        if abs(step) <= enough or last / 2 < abs(step) <= SPECIAL_POINT.max_stalled_step * segment.length:
             _, orbit, tangent = segment.known
             change = step * tangent
             if kind == SpecialKind.fold:
                 change[-1] /= 2  # the parameter's derivative falls to 0 along the step
-            return at + step, moved(orbit, segment.start.scale.name, change), slope
+            return at + step, moved_orbit(orbit, segment.start.scale.name, change), slope
         before = at, f
         at += step
     raise Unsolvable("the secant method for the special point does not converge")

@@ -1,4 +1,5 @@
-"""A point of a curve of special points: its cycle, its error, and derivatives of cycles across the curve."""
+"""A solved point of a curve of special points: cycle, error, and derivatives of cycles with respect to the
+distance from the curve."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -16,43 +17,46 @@ from ..bordered.scale import Scale
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AcrossCurveSettings:
-    """Settings of the corrections across a curve of special points, and of the errors of its points."""
+    """Settings for the secant method across a curve of special points, and for the errors of its points."""
 
     accuracy: float = 1e-7
-    """Relative accuracy of the line's parameter at the points of a curve. Special points on rows are solved
-    to 1e-9."""
+    """Relative accuracy of the parameter along a row, at the points of a curve. Special points on rows are
+    solved to 1e-9."""
     max_unmeasured: int = 3
-    """The error is measured at least at every third point."""
+    """Maximum number of successive points of a curve that share one measured error."""
     small_fold_cycle: float = 0.05
-    """Largest tip y, in L, of cycles whose fold function is divided by the deflection, since it vanishes at
-    the Hopf point too."""
+    """Largest tip y, in L, of a cycle whose fold test function is divided by the deflection, because the test
+    function vanishes at a Hopf point too."""
     first_secant: float = 1e-3
-    """First step of the secant method across a curve if the derivatives are unknown."""
+    """First step of the secant method across a curve if no derivatives are known, in arc length."""
     longest_secant: float = 0.1
-    """A longer step of the secant method has left the curve."""
+    """Longest step of the secant method across a curve, in arc length; a longer step is a failure."""
     max_secants: int = 12
     """Maximum number of secant steps for one point."""
     max_linear_product: float = 1e-9
-    """The last secant step is taken without solving at its end if its length times the distance of the last
-    two cycles is below this limit; the test function is known to about 1e-8."""
+    """Limit of the product of a secant step and the distance between the last two cycles, below which no
+    cycle is solved after the step, but the last cycle is moved linearly; the test function has an error of
+    about 1e-8."""
     max_linear_step: float = 1e-6
-    """Limit of the last step with derivatives from earlier cycles at the same point, with errors of 1e-3."""
+    """Longest last secant step with derivatives from cycles at the same point on another mesh, which have
+    relative errors of 1e-3."""
     max_carried_step: float = 1e-7
-    """The limit of the last step with derivatives from the previous point, which are known to a tenth."""
+    """Longest last secant step with derivatives from the previous point of the curve, which have relative
+    errors of 0.1."""
     min_cosine: float = 0.9
-    """Smallest cosine of the angle between two directions across the curve for which derivatives are
-    reused."""
+    """Smallest cosine of the angle between two directions across the curve at which derivatives along the
+    first direction serve for the second."""
     min_cycle_distance: float = 1e-6
-    """Smallest distance of two cycles whose difference gives the derivatives: the test function is known to
-    1e-8."""
+    """Smallest distance, in arc length, of two cycles whose difference gives derivatives: the test function
+    has an error of 1e-8."""
     error_factor: float = 3.0
-    """Safety factor on the difference of two meshes."""
+    """Safety factor on the difference between two meshes, which gives the error estimate."""
     secant_error: float = 3e-9
-    """Relative error of the line's value that the secant method leaves."""
+    """Relative error of the parameter along a row that the secant method leaves."""
     more_orders: int = 2
-    """Increase of the order on the next finer mesh."""
+    """Increase of the order of the elements on the next finer mesh."""
     more_intervals: float = 1.2
-    """Factor on the number of intervals on the next finer mesh."""
+    """Ratio of the numbers of time intervals on the next finer mesh and on the present mesh."""
     max_finer_meshes: int = 5
     """Maximum number of finer meshes for one point."""
 
@@ -62,23 +66,24 @@ ACROSS_CURVE = AcrossCurveSettings()
 
 @dataclass(frozen=True, eq=False)
 class NormalDerivatives:
-    """Derivatives of a family's cycles with respect to the length normal to its curve."""
+    """Derivatives of cycles with respect to the distance from a curve of special points, in a direction
+    across the curve."""
 
     direction: Array
-    """Unit direction normal to the curve: its components along the branch and along the rows, (2,)."""
+    """Unit direction across the curve, (2,): components along the branch and along the rows' axis."""
     test: float
-    """Derivative of the test function."""
+    """Derivative of the test function, which is 0 on the curve."""
     orbit: Array
-    """Derivative of the orbit's values and the line's coordinate, (N + 1,)."""
+    """Derivative of the orbit values and of the coordinate of the parameter along a row, (N + 1,)."""
     mesh: OrbitMesh
-    """Mesh of the orbit."""
+    """Mesh to which the derivative of the orbit values belongs."""
     span: float
-    """Length between the two cycles of the difference quotient."""
+    """Distance between the two cycles of the difference quotient."""
     contraction: float = inf
-    """Contraction of corrections, as in `NearbyCycles`."""
+    """Contraction rate of corrections, as in `NearbyCycles`; inf if unknown."""
 
     def on(self, orbit: Orbit) -> Array:
-        """Derivative of an orbit across its curve, on the orbit's own mesh, (N + 1,)."""
+        """The derivative `orbit`, (N + 1,), carried to the mesh of a given orbit."""
         mesh = mesh_of(orbit)
         if mesh == self.mesh:
             return self.orbit
@@ -88,11 +93,12 @@ class NormalDerivatives:
 
 @dataclass(frozen=True, eq=False)
 class CurveErrors:
-    """Relative error of the line's parameter at a point of a curve; it scales with the squared coefficient
+    """Measured error of a point of a curve, reused at the next points, scaled with the squared coefficient
     tails.
 
-    tails: tails of the orbit whose error was measured, in space and time, (2,). mesh: mesh of that orbit.
-    age: number of points since that orbit.
+    measured: relative error of the parameter along a row, at the measured point. tails, mesh: coefficient
+    tails in space and time, (2,), and mesh of the measured orbit. age: number of points since the
+    measurement.
     """
 
     measured: float
@@ -100,66 +106,70 @@ class CurveErrors:
     mesh: OrbitMesh
     age: int = 0
 
-    def at(self, point: "OnCurve") -> float:
-        """Absolute error of a neighbouring point on the same mesh."""
+    def at(self, point: "SolvedPoint") -> float:
+        """Absolute error of the parameter along a row, at a neighbouring point on the same mesh."""
         # Errors are of second order in the tails.
         growth = float((lasting_tails(point.orbit) / self.tails).max()) ** 2
         return max(growth, 1.0) * self.measured * abs(point.at)
 
-    def hold_at(self, point: "OnCurve") -> bool:
-        """Whether the measured error still applies to the next point and is within the accuracy."""
+    def hold_at(self, point: "SolvedPoint") -> bool:
+        """Whether the measured error still applies at a next point of the curve, and is within the accuracy
+        there."""
         recent = self.age < ACROSS_CURVE.max_unmeasured - 1 and mesh_of(point.orbit) == self.mesh
         return recent and self.at(point) <= ACROSS_CURVE.accuracy * abs(point.at)
 
     @property
     def carried(self) -> "CurveErrors":
-        """The measured error, for the next point along the curve."""
+        """The same measured error for the next point of the curve, with `age` increased by 1."""
         return replace(self, age=self.age + 1)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class OnCurve:
-    """A point of a curve: a cycle with its values of the line's and the rows' parameter."""
+class SolvedPoint:
+    """A solved point of a curve of special points: a cycle with both parameters of the plane."""
 
     orbit: Orbit
     scale: Scale
     ahead: Array
-    """Direction of the cycle's branch in the coordinates of `Scale.place`, (3,)."""
+    """Direction of the branch along the row, (3,), a unit vector in components (deflection, log period,
+    parameter)."""
     place: float
-    """Coordinate of the rows' parameter on its axis, scaled to [0, 1]."""
+    """Axis coordinate of the rows' parameter, from 0 to 1."""
     at: float
-    """Value of the line's parameter."""
+    """Value of the parameter along a row."""
     row: float
     """Value of the rows' parameter."""
     error: float = nan
     """Absolute error of `at`."""
     errors: CurveErrors | None = None
-    """Errors that apply to the point, measured here or at an earlier point of the curve."""
+    """Measured error that applies to this point, measured here or at an earlier point of the curve; None if
+    unknown."""
     rates: NormalDerivatives | None = None
-    """Derivatives across the curve, if known."""
+    """Derivatives across the curve; None if unknown."""
 
     @property
     def tip_y_max(self) -> float:
-        """Modulus of the tip y at t = 0, in L."""
+        """Modulus of the tip's y at t = 0, when it is largest, in L."""
         return abs(float(self.orbit.form.tip(self.orbit.start)[1]))
 
-    def step_from(self, other: "OnCurve") -> Array:
-        """Step from another point to this one, (4,): three coordinates of `Scale.place`, then `place`."""
-        moved = self.scale.place(self.orbit) - self.scale.place(other.orbit)
+    def step_from(self, other: "SolvedPoint") -> Array:
+        """Step from the point `other` to this point, (4,): deflection, log period, parameter along a row, and
+        rows' axis coordinate."""
+        moved = self.scale.components(self.orbit) - self.scale.components(other.orbit)
         return np.append(moved, self.place - other.place)
 
     def across(self, step: Array) -> Array:
-        """Unit direction perpendicular to a step, (4,), in the plane (along the branch, along the rows),
-        (2,)."""
+        """Unit direction across the curve, (2,), perpendicular to a step, (4,), in the plane with the axes
+        (branch, rows' axis)."""
         way = np.array([float(self.ahead @ step[:3]), step[3]])
         # Turned by a right angle: the correction must not slide along the curve.
         return np.array([-way[1], way[0]]) / np.linalg.norm(way)
 
 
-def errors_between(points: Sequence[OnCurve]) -> list[OnCurve]:
-    """Points of a curve in order. The error of each point is the larger of the errors measured before and
-    behind."""
-    found: list[OnCurve] = []
+def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
+    """The points of a curve in order, each with its error: the larger of the errors that the measurements
+    before and after the point predict."""
+    found: list[SolvedPoint] = []
     behind: CurveErrors | None = None
     # Backwards, so that every point knows the measurement behind it as well as the one before it.
     for point in reversed(points):
@@ -174,8 +184,12 @@ def errors_between(points: Sequence[OnCurve]) -> list[OnCurve]:
     return found[::-1]
 
 
-def with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
-    """The values of an orbit for the rod with other values of some parameters; raises Unsolvable."""
+def orbit_with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
+    """The orbit with unchanged values for a rod with changed parameters; raises Unsolvable if no such rod
+    exists.
+
+    changed: new values by parameter name.
+    """
     try:
         form = replace(orbit.form, rod=orbit.form.rod.changed(**changed))
     except (ValueError, ZeroDivisionError) as error:
@@ -188,15 +202,16 @@ def with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
     return replace(orbit, form=form)
 
 
-def lengths_of(points: Sequence[OnCurve]) -> Array:
-    """Arc lengths of points relative to the last, (points,), none positive."""
+def arc_lengths(points: Sequence[SolvedPoint]) -> Array:
+    """Arc lengths, (points,), along a curve from its last point to each point, counted negative."""
     steps = [float(np.linalg.norm(b.step_from(a))) for a, b in zip(points[:-1], points[1:], strict=True)]
     # Counted from the last point, so that a prediction is at a positive length.
     lengths: Array = np.cumsum([0.0, *steps]) - sum(steps)
     return lengths
 
 
-def slope_of(one: OnCurve, other: OnCurve) -> float:
-    """d(line's value)/d(place) between two points; 0 at equal places."""
+def chord_slope(one: SolvedPoint, other: SolvedPoint) -> float:
+    """Slope of the chord between two points of a curve: change of the parameter along a row per change of the
+    rows' axis coordinate; 0 if the latter is equal."""
     apart = other.place - one.place
     return (other.at - one.at) / apart if apart else 0.0

@@ -1,4 +1,4 @@
-"""Special points of a branch: kinds and stored numbers."""
+"""Special points of a branch: kinds, stored quantities, and settings for their location."""
 
 from dataclasses import dataclass, field
 from enum import IntEnum
@@ -8,71 +8,78 @@ from ...orbit.orbit import Orbit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LocatingSettings:
-    """Settings for the location of a special point on a branch."""
+class SpecialPointSettings:
+    """Settings for locating a special point on a branch: tolerances, meshes, and numbers of steps."""
 
     real_multiplier: float = 1e-7
-    """Largest imaginary part of a real multiplier, relative to its modulus."""
+    """Largest imaginary part of a multiplier that counts as real, relative to its modulus."""
     accuracy: float = 1e-9
-    """Relative accuracy of the parameter at a special point; the accuracy of the branch if that is
+    """Relative accuracy of the parameter at a special point; the accuracy of the branch applies if
     smaller."""
     first_mesh_share: float = 0.2
     """Accuracy for which the first of the two meshes is planned, in units of `accuracy`."""
     cycle_tolerance: float = 1e-12
-    """Relative tolerance of a cycle on the way; corrections with one matrix leave an error of this size."""
+    """Relative tolerance of the cycles solved during the search; corrections with one matrix reach about this
+    error."""
     function_tolerance: float = 1e-10
-    """Change of a test function by its last correction; folds are quadratic in it, and corrections gain two
-    digits each."""
+    """Largest change of a test function in its last correction. A correction gains two digits, and the
+    parameter at a fold has an error of second order in the test function."""
     max_secants: int = 12
     """Maximum number of secant steps."""
-    stalled_secant: float = 1e-6
-    """A secant step this small, in units of the step of the branch, that did not halve is rounding error."""
-    linear_step: float = 1e-6
-    """Longest last secant step, in units of the step of the branch: the cycle is moved along its tangent, and
-    the slope, known to a thousandth, leaves an error of `secant_end`."""
-    linear_step_at_fold: float = 1e-5
-    """`linear_step` at a fold, where the parameter is quadratic in arc length."""
-    secant_end: float = 1e-9
-    """Error of the place that the last secant step leaves, in units of the step of the branch."""
-    secant_end_at_fold: float = 1e-5
-    """`secant_end` at a fold, whose slope may come from a coarser mesh and is known to a tenth."""
+    max_stalled_step: float = 1e-6
+    """Length of a secant step, in units of the step of the branch, below which a step that did not halve is
+    rounding error; the secant method stops there."""
+    max_linear_step: float = 1e-6
+    """Longest last secant step, in units of the step of the branch. The cycle is then only moved along its
+    tangent; the slope, with a relative error of 1e-3, leaves an error of `secant_error`."""
+    max_linear_step_at_fold: float = 1e-5
+    """Longest last secant step at a fold, where the parameter is quadratic in arc length; in units of the
+    step of the branch."""
+    secant_error: float = 1e-9
+    """Arc length error of a located special point, from its last secant step, in units of the step of the
+    branch."""
+    secant_error_at_fold: float = 1e-5
+    """Arc length error of a located fold, in units of the step of the branch: the slope may come from a
+    coarser mesh, with a relative error of 0.1."""
     matrix_distance: float = 1e-3
-    """Largest relative distance of a matrix from the cycle whose test function is corrected with its factors:
-    each correction then gains two digits or more."""
-    enclosure_share: float = 1e-3
-    """Tolerance of the bracketing: test function in units of its values at the ends, bracket in units of the
-    step."""
+    """Largest relative distance between a cycle and the orbit whose matrix factors correct the test function:
+    each correction then gains at least two digits."""
+    bracket_tolerance: float = 1e-3
+    """Relative tolerance of the bracketing: of the test function in units of its values at the ends, and of
+    the arc length in units of the step."""
     max_mesh_pairs: int = 4
-    """Maximum number of pairs of meshes that are compared."""
-    more_orders: int = 2
-    """Smallest increase of the order on the next finer mesh."""
+    """Maximum number of comparisons of two meshes."""
+    min_more_orders: int = 2
+    """Smallest increase of the order of the elements on the next finer mesh."""
     max_more_orders: int = 8
-    """Largest increase of the order on the next finer mesh."""
-    fall: float = 0.8
-    """Decay of the error in space per order, natural logarithm, as measured at a torus point."""
-    more_intervals: float = 1.2
-    """Smallest factor on the number of intervals on the next finer mesh."""
+    """Largest increase of the order of the elements on the next finer mesh."""
+    space_decay: float = 0.8
+    """Decrease of the natural logarithm of the error in space per order of the elements, measured at a torus
+    point."""
+    min_interval_ratio: float = 1.2
+    """Smallest ratio of the numbers of time intervals on the next finer mesh and on the present mesh."""
     max_interval_ratio: float = 2.0
-    """Largest factor on the number of intervals on the next finer mesh."""
-    power_by_stages: float = 1.5
-    """Order in time of the special point, in units of the stages; known orders are larger."""
+    """Largest ratio of the numbers of time intervals on the next finer mesh and on the present mesh."""
+    time_order_by_stages: float = 1.5
+    """Assumed order in time of the error of a special point, in units of the number of stages; measured
+    orders are larger."""
     error_factor: float = 3.0
-    """Safety factor on the difference of two meshes."""
-    rounding: float = 1e-13
-    """Relative rounding error of the parameter, the period and the size."""
-    near_one: float = 3e-3
-    """A multiplier this close to 1 may be rounded to either side of 1. Beside a fold, two multipliers are
-    close to 1."""
+    """Safety factor on the difference between two meshes, which gives the error estimate."""
+    rounding_error: float = 1e-13
+    """Relative rounding error of the parameter, the period and the largest tip y of a special point."""
+    unit_multiplier_distance: float = 3e-3
+    """Distance of a multiplier from 1 below which errors may move it across the unit circle. Near a fold, two
+    multipliers are close to 1."""
     max_halvings: int = 7
     """Maximum number of halvings of a step with several special points, or with a point that is not
     located."""
 
 
-LOCATING = LocatingSettings()
+SPECIAL_POINT = SpecialPointSettings()
 
 
 class SpecialKind(IntEnum):
-    """Kind of a special point of a branch."""
+    """Kind of a special point of a branch; the result file stores the value."""
 
     hopf = 1
     fold = 2
@@ -84,7 +91,8 @@ class SpecialKind(IntEnum):
 
 
 class EndReason(IntEnum):
-    """Reason for the end of a branch: the first two are true ends, the others are failures."""
+    """Reason for the end of a branch. range_end and crushed are true ends; no_cycle_found and list_full are
+    failures."""
 
     range_end = 1
     crushed = 2
@@ -94,28 +102,29 @@ class EndReason(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpecialPoint:
-    """A special point: value of the parameter, period in tau2 and largest tip y in L of its cycle."""
+    """A special point of a branch. at: value of the continuation parameter. period: in tau2. tip_y_max:
+    largest tip y of the cycle, in L."""
 
     kind: SpecialKind
     at: float
     period: float
     tip_y_max: float
     error: float
-    """Absolute error of the parameter."""
+    """Absolute error of the parameter value `at`."""
     period_error: float = nan
-    """Relative error of the period at the special point itself."""
+    """Relative error of the period, relative to the exact special point."""
     size_error: float = nan
-    """Relative error of the largest tip y at the special point itself."""
+    """Relative error of the largest tip y, relative to the exact special point."""
     after: int = -1
     """Index of the last cycle of the branch before the special point, -1 for none."""
     reason: EndReason | None = None
-    """Why the branch ends here; None unless the point is an end."""
+    """Reason for the end of the branch at this point; None unless the branch ends here."""
     message: str = ""
-    """Why no cycle was found, or why the error is large."""
+    """Reason for a failure: why no cycle was found, or why the point was not located."""
     orbit: Orbit | None = field(default=None, repr=False, compare=False)
-    """The cycle of a located point."""
+    """The cycle at a located special point; None if the point was not located."""
     amplitude_coefficient: float = nan
-    """Largest tip y in L over the square root of the relative distance of the parameter from a Hopf point, as
-    in `HopfBirth`."""
+    """At a Hopf point, ratio of the largest tip y, in L, to the square root of the relative distance of the
+    parameter, as in `HopfBirth`; NaN at other points."""
     coefficient_error: float = nan
-    """Relative error of amplitude_coefficient."""
+    """Relative error of `amplitude_coefficient`."""

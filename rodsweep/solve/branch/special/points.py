@@ -1,9 +1,10 @@
-"""Special points of a branch: folds, torus points, symmetry breakings, period doublings.
+"""Detection of special points of a branch: folds, torus points, symmetry breakings, period doublings.
 
-Each is a sign change of a test function between two cycles. Fold: derivative of the parameter along the
-branch. Torus point: modulus of a complex pair of multipliers minus 1. Symmetry breaking: a multiplier of half
-a period and the reflection, plus 1. Period doubling of an asymmetric cycle: a multiplier of the whole period,
-plus 1. The number of multipliers outside the unit circle must change accordingly.
+A special point lies between two cycles at which its test function has opposite signs. Fold: derivative of the
+parameter by arc length. Torus point: modulus of a complex pair of multipliers minus 1. Symmetry breaking:
+multiplier of the half-period map composed with the reflection, plus 1. Period doubling of an asymmetric
+cycle: multiplier over the period, plus 1. The change of the number of multipliers outside the unit circle
+must agree.
 """
 
 from collections.abc import Callable
@@ -11,29 +12,29 @@ from collections.abc import Callable
 import numpy as np
 
 from ...point import Unsolvable
-from ..arc import ArcPoint, arc_between
-from .locating import located, through_minus_one
-from .point import LOCATING, SpecialKind, SpecialPoint
+from ..arc import ArcPoint, arc_length_between
+from .locating import kind_at_minus_one, special_point_between
+from .point import SPECIAL_POINT, SpecialKind, SpecialPoint
 
 Step = Callable[[ArcPoint, float], ArcPoint]
-"""Returns the cycle at an arc length from a given cycle; raises Unsolvable."""
+"""Function that returns the cycle at an arc length ahead of a cycle; raises Unsolvable."""
 
 
-def unstable_multipliers(point: ArcPoint) -> int:
-    """Number of multipliers outside the unit circle."""
+def unstable_multiplier_count(point: ArcPoint) -> int:
+    """Number of multipliers outside the unit circle, from the multipliers over the solved time interval."""
     return int((np.abs(point.partial_multipliers) > 1).sum())
 
 
-def changes_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], bool]:
-    """(kinds of special points between two cycles, whether they account for the change of the
-    multipliers)."""
+def special_kinds_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], bool]:
+    """(kinds of the special points between two cycles, whether these kinds explain the change of the number
+    of multipliers outside the unit circle)."""
     found = []
-    if start.rises * end.rises < 0:
+    if start.parameter_rate * end.parameter_rate < 0:
         found.append(SpecialKind.fold)
-    # Two multipliers may pass -1 together or meet there; an odd difference needs a crossing.
+    # Two multipliers may pass -1 together or become a pair near -1; an odd difference needs a crossing.
     if (_beyond_minus_one(start) - _beyond_minus_one(end)) % 2:
-        found.append(through_minus_one(start.orbit))
-    change = abs(unstable_multipliers(end) - unstable_multipliers(start))
+        found.append(kind_at_minus_one(start.orbit))
+    change = abs(unstable_multiplier_count(end) - unstable_multiplier_count(start))
     # Beside a fold a multiplier is 1 within its error, and may be counted on either side.
     slack = 1 if _near_one(start) or _near_one(end) else 0
     if not found and change - slack > 1:
@@ -42,18 +43,18 @@ def changes_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], 
 
 
 def _beyond_minus_one(point: ArcPoint) -> int:
-    """Number of real multipliers below -1."""
+    """Number of real multipliers below -1, over the solved time interval of a cycle."""
     h = point.partial_multipliers
-    return int(((h.real < -1) & (np.abs(h.imag) <= LOCATING.real_multiplier * np.abs(h))).sum())
+    return int(((h.real < -1) & (np.abs(h.imag) <= SPECIAL_POINT.real_multiplier * np.abs(h))).sum())
 
 
 def _near_one(point: ArcPoint) -> bool:
-    return bool((np.abs(point.partial_multipliers - 1) < LOCATING.near_one).any())
+    return bool((np.abs(point.partial_multipliers - 1) < SPECIAL_POINT.unit_multiplier_distance).any())
 
 
 def _has_pair(point: ArcPoint) -> bool:
     h = point.partial_multipliers
-    return bool((np.abs(h.imag) > LOCATING.real_multiplier * np.abs(h)).any())
+    return bool((np.abs(h.imag) > SPECIAL_POINT.real_multiplier * np.abs(h)).any())
 
 
 def special_points(
@@ -63,21 +64,23 @@ def special_points(
     accuracy: float,
     depth: int = 0,
 ) -> tuple[list[SpecialPoint], bool]:
-    """(special points between two cycles, in order, whether they account for the change of the multipliers).
+    """(special points between two cycles in order, whether these points explain the change of the number of
+    multipliers outside the unit circle).
 
-    accuracy: accuracy of the branch. The step is halved if several changes lie within it, or if a special
-    point is not located: near crushing a prediction over the whole step may leave the model.
+    step: function that returns a cycle between. accuracy: relative accuracy of the branch. depth: number of
+    halvings so far. The step is halved if the multipliers show several special points, or if a special point
+    is not located, as near crushing, where a prediction over the whole step may leave the model.
     """
-    kinds, explained = changes_between(start, end)
-    points = [located(kind, start, end, accuracy) for kind in kinds] if explained else []
-    if depth < LOCATING.max_halvings and (not explained or any(point.message for point in points)):
+    kinds, explained = special_kinds_between(start, end)
+    points = [special_point_between(kind, start, end, accuracy) for kind in kinds] if explained else []
+    if depth < SPECIAL_POINT.max_halvings and (not explained or any(point.message for point in points)):
         try:
-            # Half the step parts special points that are too close to be told apart by counts.
-            middle = step(start, arc_between(start, end) / 2)
+            # Half the step separates special points whose changes of the count cancel or add up.
+            middle = step(start, arc_length_between(start, end) / 2)
         except Unsolvable:
             pass
         else:
             first, first_explained = special_points(start, middle, step, accuracy, depth + 1)
             second, second_explained = special_points(middle, end, step, accuracy, depth + 1)
             return first + second, first_explained and second_explained
-    return points or [located(kind, start, end, accuracy) for kind in kinds], explained
+    return points or [special_point_between(kind, start, end, accuracy) for kind in kinds], explained

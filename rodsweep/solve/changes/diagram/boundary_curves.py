@@ -14,7 +14,7 @@ from ....arrays import Array
 from ....determinant.boundary import Boundary, BoundarySolution
 from ....determinant.parameter_plane import Plane
 from ....watch import report
-from ...continuation.follower import CurveStop, follow, zero_along
+from ...continuation.follower import CurveStop, follow_curve, zero_along_step
 from ...point import Unsolvable
 from .boundary_problem import BOUNDARY_STEPS, CHANGE_CURVES, BoundaryEnd, BoundaryPoint, ChangeCurveProblem
 
@@ -67,11 +67,11 @@ def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: flo
         first = BoundaryPoint.on(curve.near(guess, tangent), tangent)
     except (ValueError, ArithmeticError, Unsolvable):
         return None
-    ahead = follow(curve, first, BOUNDARY_STEPS, lambda _: report())
+    ahead = follow_curve(curve, first, BOUNDARY_STEPS, lambda _: report())
     back = ahead
     passed = ahead.solutions
     if ahead.end is not CurveStop.closed:
-        back = follow(curve, BoundaryPoint(first.v, -first.tangent), BOUNDARY_STEPS, lambda _: report())
+        back = follow_curve(curve, BoundaryPoint(first.v, -first.tangent), BOUNDARY_STEPS, lambda _: report())
         passed = [*back.solutions[:0:-1], *passed]
     points = np.array([point.v for point in passed])
     # Between coincident points, as on an edge, the chord has no direction.
@@ -114,7 +114,9 @@ def _fold(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: i
 
     ends = float(a.tangent[axis]), float(b.tangent[axis])
     try:
-        length = zero_along(component, ends, size, CHANGE_CURVES.fold_accuracy, CHANGE_CURVES.fold_accuracy)
+        length = zero_along_step(
+            component, ends, size, CHANGE_CURVES.fold_accuracy, CHANGE_CURVES.fold_accuracy
+        )
         # The tangent turns by the difference of the ends over the chord, so its error moves the fold.
         along = (abs(component(length)) + noise) * size / abs(ends[1] - ends[0])
     except Unsolvable:

@@ -17,7 +17,13 @@ from ...continuation.follower import Curve, CurveStop, StepControl, StepResult
 from ...point import Unsolvable
 
 BOUNDARY_STEPS = StepControl(
-    first=0.01, longest=0.04, shortest=1e-9, turn=0.15, sharpest=0.3, growth=1.5, most=5000
+    first_length=0.01,
+    max_length=0.04,
+    min_length=1e-9,
+    target_angle=0.15,
+    max_angle=0.3,
+    max_ratio=1.5,
+    max_solutions=5000,
 )
 """Arc lengths of steps; each axis of the plane has length 1. They are short enough for a smooth drawn
 curve."""
@@ -101,7 +107,7 @@ class ChangeCurveProblem:
         alive = 1.0 if not on_plane or self.boundary.plane.is_uncrushed(x, y) else -1.0
         return np.array([x, 1 - x, y, 1 - y, alive])
 
-    def landed(
+    def located_zero(
         self, behind: Sequence[BoundaryPoint], outer: BoundaryPoint, margin: int
     ) -> BoundaryPoint | None:
         """The point on the edge that a step crosses; None for a crushed rod, or if the point lies beyond a
@@ -144,6 +150,6 @@ class ChangeCurveProblem:
         v, tangent = followed.solutions[-1]
         if self.margins(followed.solutions[-1])[:CRUSHED_MARGIN].min() <= CHANGE_CURVES.beside_an_edge:
             return BoundaryEnd.edge
-        beyond = BoundaryPoint(v + 2 * BOUNDARY_STEPS.shortest * tangent, tangent)
+        beyond = BoundaryPoint(v + 2 * BOUNDARY_STEPS.min_length * tangent, tangent)
         is_crushed = self.margins(beyond)[CRUSHED_MARGIN] < 0
         return BoundaryEnd.crushed if is_crushed else BoundaryEnd.not_followed

@@ -1,9 +1,9 @@
-"""Calibration: the measured errors of a mesh, reused for the cycles that are solved on it next.
+"""Calibration of a mesh: measured errors, reused for the next cycles on the same mesh, and convergence rates.
 
-The errors in space and in time fall with the mesh at rates that the decay of the orbit's coefficients
-estimates; two measured meshes give the rates more accurately. The rates choose the cheapest sufficient mesh.
-Along a chain of cycles the errors are measured at the first cycle on a mesh. At later cycles they are scaled
-up as the orbit's tails grow.
+The decay of the orbit's coefficients estimates the convergence rates in space and in time; two measured
+meshes give more accurate rates. The rates determine the cheapest sufficient mesh. Along a chain of cycles the
+errors are measured at the first cycle on a mesh. At later cycles these errors are scaled up as the
+coefficient tails of the orbits grow.
 """
 
 from dataclasses import dataclass, field, replace
@@ -22,109 +22,120 @@ from .calibration_settings import CALIBRATION
 from .cycle_errors import CYCLE_ERRORS, CycleErrors, largest_error
 
 MULTIPLIER = 4
-"""Index of the largest multiplier's error, behind the indices of `path_differences`."""
+"""Index of the error of the largest multiplier in the error arrays; smaller indices are those of
+`path_differences`."""
 ERROR_COUNT = 5
-"""Number of error quantities."""
+"""Length of the error arrays of a calibration: four errors of `path_differences`, and the error of the
+largest multiplier."""
 
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """Errors of a mesh in space and in time, (5,) each: `path_differences` and the largest multiplier's.
+    """Measured errors of a mesh at an orbit, with convergence rates.
 
-    All errors are relative, but the multiplier's is absolute.
+    space, time: errors due to the elements and to the time intervals, (5,) each. The first four are relative,
+    as in `path_differences`; the last is the absolute error of the largest multiplier.
     """
 
     mesh: OrbitMesh
     space: Array
     time: Array
     fall: Array
-    """Decay of errors in space per order, natural logarithm, (5,)."""
+    """Decrease of the natural logarithm of the errors in space per order of the elements, (5,)."""
     power: Array
-    """Order of errors in time, (5,)."""
+    """Order of convergence of the errors in time, (5,)."""
     tails: Array
-    """`lasting_tails` and the orbit's size at the calibration, (3,)."""
+    """Coefficient tails in space and time (`lasting_tails`) and size of the measured orbit, (3,)."""
     reach: float
-    """Relative change of the parameter since the calibration."""
-    growth: Array = field(default_factory=lambda: np.ones(2))
-    """Factors by which the errors in space and in time have grown to a later orbit, (2,)."""
+    """Sum of the relative changes of the parameter since the measurement; inf if the errors no longer
+    apply."""
+    error_growth: Array = field(default_factory=lambda: np.ones(2))
+    """Estimated growth factors of the errors in space and in time since the measurement, (2,)."""
 
     def arrays(self) -> dict[str, Array]:
-        """Named arrays: errors and rates (5,), tails (3,), reach and mesh; growth belongs to one orbit."""
+        """Named arrays for a checkpoint: errors and rates (5,), tails (3,), reach and mesh, without
+        `error_growth`."""
         errors = {name: getattr(self, name) for name in ("space", "time", "fall", "power", "tails")}
         numbers = {"reach": np.array(self.reach), "calibrated_mesh": self.mesh.numbers}
         return errors | numbers
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, Array]) -> "Calibration":
-        """The calibration from stored `arrays`, with the shapes given there."""
+        """The calibration from the named arrays of `Calibration.arrays`."""
         mesh = OrbitMesh.from_numbers(arrays["calibrated_mesh"])
         errors = {name: arrays[name] for name in ("space", "time", "fall", "power", "tails")}
         return cls(mesh=mesh, reach=float(arrays["reach"]), **errors)
 
     def at(self, orbit: Orbit, change: float) -> "Calibration":
-        """The calibration for the orbit of the next point, after a relative change of the parameter."""
+        """The calibration with its errors scaled to a later orbit of a chain, after a further relative change
+        of the parameter."""
         tails = _tails(orbit)
-        # Errors are relative to the size: of a cycle that shrinks they must be measured anew.
+        # The errors are relative to the size of the orbit: for a shrinking cycle they are measured again.
         dies = tails[-1] < CALIBRATION.min_size_ratio * self.tails[-1]
-        return replace(self, growth=_growth(self.tails, tails), reach=inf if dies else self.reach + change)
+        return replace(
+            self, error_growth=_growth(self.tails, tails), reach=inf if dies else self.reach + change
+        )
 
     def on_branch(self, orbit: Orbit) -> "Calibration":
-        """The calibration for an orbit of a branch that is parametrised by the moment at the clamp.
-
-        The moment fixes the size of each cycle, so that no error grows because cycles shrink.
-        """
+        """The calibration with its errors scaled to a later orbit of a branch. On a branch, which is followed
+        by arc length, errors do not grow as orbits shrink."""
         growth = _growth(self.tails, _tails(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails * (0.0, 0.0, 1.0))
-        return replace(self, growth=growth)
+        return replace(self, error_growth=growth)
 
     @property
     def outdated(self) -> "Calibration":
-        """A copy that is used for its convergence rates only: its errors no longer apply."""
+        """The same calibration with `reach` = inf: its errors no longer apply, its convergence rates do."""
         return replace(self, reach=inf)
 
     @property
     def holds(self) -> bool:
-        """Whether the calibration still applies to the orbit."""
-        return self.reach <= CALIBRATION.max_reach and float(self.growth.max()) <= CALIBRATION.max_growth
+        """Whether the scaled errors still apply to the later orbit."""
+        return (
+            self.reach <= CALIBRATION.max_parameter_change
+            and float(self.error_growth.max()) <= CALIBRATION.max_error_growth
+        )
 
     def lasts(self, change: float) -> bool:
-        """Whether the calibration may apply after a further relative change of the parameter."""
-        return self.reach + change <= CALIBRATION.max_reach
+        """Whether the errors may still apply after a further relative change of the parameter."""
+        return self.reach + change <= CALIBRATION.max_parameter_change
 
     def least(self, orbit: Orbit) -> tuple[Array, Array]:
-        """Smallest errors in space and in time, (5,) each, of a new calibration of this mesh at an orbit."""
+        """(smallest errors in space, smallest errors in time), (5,) each, that a new measurement on the same
+        mesh may give at an orbit."""
         in_space, in_time = CALIBRATION.min_repeated_share * np.minimum(
             _change(self.tails, _tails(orbit)), 1.0
         )
         return in_space * self.space, in_time * self.time
 
     def errors(self, accuracy: float) -> CycleErrors:
-        """Errors of the orbit.
+        """Error estimates of the orbit to which the measured errors are scaled, not below a fraction of the
+        accuracy.
 
-        The larger growth applies to both parts of the errors of multiplier and other extrema, because one
-        part was seen to grow 2.7 times as much as the tail. For period and largest y, whose errors choose the
-        mesh, the larger growth would cost a tenth of a sweep's time.
+        For multiplier and other extrema, the errors in space and in time are both scaled by the larger
+        growth, because an error was once seen to grow 2.7 times as much as its tail. For period and largest
+        y, whose errors determine the mesh, the larger growth would cost a tenth of the time of a sweep.
         """
-        in_space, in_time = self.growth
+        in_space, in_time = self.error_growth
         stated = _stated(self.space * in_space, self.time * in_time, accuracy)
-        larger = float(self.growth.max())
-        # Extrema and multipliers mix both parts of the error, so the larger growth counts for them.
+        larger = float(self.error_growth.max())
+        # Extrema and multipliers mix the errors in space and in time, so the larger growth applies.
         stated[2:] = _stated(self.space * larger, self.time * larger, accuracy)[2:]
         return CycleErrors(*stated.tolist())
 
     def planned(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh that is expected to reach the accuracy."""
+        """The cheapest mesh on which the convergence rates predict a relative accuracy."""
         present = self.mesh
         lowest = max(ORBIT_MESH.min_order, present.order - CALIBRATION.max_fewer_orders)
         orders = np.arange(lowest, min(RESOLUTION.max_order, present.order + CALIBRATION.max_more_orders) + 1)
         fewest = max(ORBIT_MESH.min_intervals, ceil(CALIBRATION.min_interval_ratio * present.intervals))
         most = min(CALIBRATION.max_interval_ratio * present.intervals, ORBIT_MESH.max_intervals)
         intervals = np.arange(fewest, most + 1)
-        # Rates are measured up to the present mesh. On finer meshes errors may fall no faster than the paths'
-        # distance, and in time with the smallest order.
+        # Rates are measured up to the present mesh. On finer meshes errors in space may decrease no faster
+        # than the distance of the paths, and errors in time with the smallest order.
         least = np.minimum(self.fall, self.fall[WHOLE_PATH])
         fall = np.where(orders < present.order, self.fall[:, None], least[:, None])
         space = self.space[:, None] * np.exp(fall * (present.order - orders))
-        # Towards finer meshes the order is taken at its smallest, since it was measured on coarser ones.
+        # For finer meshes the smallest order is taken, because the order was measured on coarser meshes.
         power = np.where(intervals < present.intervals, self.power[:, None], present.stages + 1)
         time = self.time[:, None] * (present.full_intervals / (intervals - 1)) ** power
         errors = _stated(space[:, :, None], time[:, None, :], accuracy)
@@ -137,45 +148,49 @@ class Calibration:
 
 
 def _stated(space: Array, time: Array, accuracy: float) -> Array:
-    """Errors of `CycleErrors`, (4, ...), from the parts of the error in space and in time, (5, ...) each."""
-    whole = CALIBRATION.safety * (space + time)
+    """The four errors of `CycleErrors`, (4, ...), from errors in space and in time, (5, ...) each, with
+    safety factors and lower limits."""
+    whole = CALIBRATION.safety_factor * (space + time)
     apart = space[WHOLE_PATH] + time[WHOLE_PATH]
-    in_time = CALIBRATION.share_in_time * time[WHOLE_PATH]
+    in_time = CALIBRATION.min_error_share_in_time * time[WHOLE_PATH]
     parts = [np.maximum(part[PERIOD_CHANGE], part[LARGEST_Y]) for part in (space, time)]
     either = CALIBRATION.mutual_bound * (parts[0] + parts[1])
-    of_period = CALIBRATION.period_share * space[WHOLE_PATH] + in_time
-    of_height = CALIBRATION.height_share * space[WHOLE_PATH] + in_time
+    of_period = CALIBRATION.min_period_error_share * space[WHOLE_PATH] + in_time
+    of_height = CALIBRATION.min_height_error_share * space[WHOLE_PATH] + in_time
     stated = [
         np.maximum(np.maximum(whole[PERIOD_CHANGE], of_period), either),
         np.maximum(np.maximum(whole[LARGEST_Y], of_height), either),
-        np.maximum(whole[WORST_EXTREMUM], CALIBRATION.others_share * apart),
+        np.maximum(whole[WORST_EXTREMUM], CALIBRATION.min_extrema_error_share * apart),
         whole[MULTIPLIER],
     ]
-    least: Array = np.maximum(np.array(stated), max(CYCLE_ERRORS.min_claim * accuracy, CYCLE_ERRORS.rounding))
+    least: Array = np.maximum(
+        np.array(stated), max(CYCLE_ERRORS.min_error_share * accuracy, CYCLE_ERRORS.rounding_error)
+    )
     return least
 
 
 def _tails(orbit: Orbit) -> Array:
-    """Tails in space and in time, at least rounding errors, and the orbit's size, (3,)."""
+    """Tails of an orbit in space and in time, not below `min_tail`, and its size, (3,)."""
     return np.append(np.maximum(lasting_tails(orbit), CALIBRATION.min_tail), orbit.size)
 
 
 def _growth(before: Array, after: Array) -> Array:
-    """Growth of the errors in space and in time, (2,), at least 1.
+    """Estimated growth factors of the errors in space and in time between two orbits, (2,), at least 1.
 
-    before, after: tails in space and in time, and size, (3,) each.
+    before, after: tails in space and in time, and size, of both orbits, (3,) each.
 
-    Absolute errors grow as the squares of the tails. Where a cycle ends at a Hopf point, whose position
-    depends on the mesh, the error of its size grows as the reciprocal of the squared size. A decrease is not
-    relied on.
+    Absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, whose location
+    depends on the mesh, the error of the size also grows as the reciprocal of the squared size. A predicted
+    decrease is ignored.
     """
-    # Errors are of second order in the tails; a decrease is not trusted, hence at least 1.
+    # Errors are of second order in the tails.
     growth: Array = np.maximum(_change(before, after), 1.0) * max((before[2] / after[2]) ** 2, 1.0)
     return growth
 
 
 def _change(before: Array, after: Array) -> Array:
-    """Ratio of the squared absolute tails in space and in time, (2,), from tails and size, (3,) each."""
+    """Ratios of the squared absolute tails of two orbits, in space and in time, (2,). before, after: relative
+    tails and size, (3,)."""
     change: Array = ((after * after[2] / (before * before[2])) ** 2)[:2]
     return change
 
@@ -183,16 +198,16 @@ def _change(before: Array, after: Array) -> Array:
 def calibration_of(
     mesh: OrbitMesh, space: Array, time: Array, orbit: Orbit, before: Calibration | None
 ) -> Calibration:
-    """Calibration of a mesh with errors in space and in time, (5,) each.
+    """Calibration of a mesh from its measured errors in space and in time, (5,) each, with convergence rates.
 
-    orbit: orbit on the mesh or nearby. before: calibration at a nearby orbit, on any mesh, with the rates at
-    which errors fall; None to take the rates from the orbit's coefficients.
+    orbit: the measured orbit. before: calibration at a nearby orbit, on any mesh, from which the rates
+    follow; None if the decay of the orbit's coefficients gives the rates.
     """
     tails = _tails(orbit)
     if before is None:
-        decay = CALIBRATION.fall_by_decay * tails_of(orbit).decay
-        fall = np.full(ERROR_COUNT, min(max(decay, CALIBRATION.min_fall), CALIBRATION.max_fall))
-        power = np.full(ERROR_COUNT, CALIBRATION.power_by_stages * orbit.stages)
+        decay = CALIBRATION.error_decay_ratio * tails_of(orbit).decay
+        fall = np.full(ERROR_COUNT, min(max(decay, CALIBRATION.min_space_decay), CALIBRATION.max_space_decay))
+        power = np.full(ERROR_COUNT, CALIBRATION.time_order_by_stages * orbit.stages)
         return Calibration(mesh, space, time, fall, power, tails, 0.0)
     previous = before.mesh
     fall = before.fall
@@ -205,22 +220,27 @@ def calibration_of(
 
 
 def _fall(before: Array, after: Array, orders: int) -> Array:
-    """Decay of errors in space per order, (5,), from errors before and after added orders, (5,) each."""
-    fall: Array = np.clip(_logarithm(before, after) / orders, CALIBRATION.min_fall, CALIBRATION.max_fall)
+    """Decrease of the natural logarithm of the errors in space per order of the elements, (5,). before,
+    after: errors on two meshes, (5,) each. orders: increase of the order from the first mesh to the
+    second."""
+    fall: Array = np.clip(
+        _logarithm(before, after) / orders, CALIBRATION.min_space_decay, CALIBRATION.max_space_decay
+    )
     return fall
 
 
 def _power(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
-    """Order of errors in time, (5,), from errors, (5,) each, on two meshes with different intervals."""
-    # Twice the stages minus one is the order of Radau IIA; stages + 1 is the least that stiff problems keep.
+    """Order of convergence in time, (5,). before, after: errors, (5,) each, on two meshes, `previous` and
+    `mesh`, with different numbers of time intervals."""
+    # Radau IIA has the order 2 stages - 1, of which stiff problems may keep only stages + 1.
     least = mesh.stages + 1
     steps = np.log(mesh.full_intervals / previous.full_intervals)
-    power: Array = np.clip(_logarithm(before, after) / steps, least, CALIBRATION.max_power_ratio * least)
+    power: Array = np.clip(_logarithm(before, after) / steps, least, CALIBRATION.max_time_order_ratio * least)
     return power
 
 
 def _logarithm(before: Array, after: Array) -> Array:
-    """Logarithm of the quotient of two errors, of any shape; an error may be 0."""
+    """Logarithm of the ratios before/after of two arrays of errors of any shape; an error may be 0."""
     least = EXPONENTS.least_divisor
     quotient: Array = np.log(np.maximum(before, least) / np.maximum(after, least))
     return quotient

@@ -1,9 +1,10 @@
-"""Prediction of a cycle and its errors on a fine mesh, from three coarser meshes.
+"""Prediction of a cycle and its errors on a fine mesh, from the cycle on three coarser meshes.
 
-One mesh is coarse in space, one in time, one in both. The sum of the first two orbits minus the third equals
-the orbit on the fine mesh up to a product of two small errors (combination technique: Griebel, Schneider,
-Zenger 1992), so that one elimination on the fine mesh gives the cycle and its multipliers. The differences of
-the three orbits measure the errors of the coarse meshes; slowest rates of decay bound the fine mesh's errors.
+The first mesh is coarse in space, the second in time, the third in both. The sum of the first two orbits
+minus the third equals the orbit on the fine mesh up to a product of two small errors (combination technique:
+Griebel, Schneider, Zenger 1992). One matrix factorisation on the fine mesh then gives the cycle and its
+multipliers. The differences between the three orbits measure the errors of the coarse meshes; pessimistic
+convergence rates bound the errors of the fine mesh.
 """
 
 from dataclasses import dataclass, replace
@@ -27,47 +28,52 @@ from .finer_meshes import COMPARISON, ComparedCycle
 class CoarserMeshSettings:
     """Settings for the coarser meshes that predict a cycle on a fine mesh."""
 
-    fewer_orders: int = 2
-    """Least difference of the orders of a fine mesh and of the coarse mesh that is made to predict it."""
-    most_fewer_orders: int = 4
-    """Largest difference of the orders of these two meshes."""
-    fall_between: float = 1.5
-    """Smallest expected fall of the errors in space from the coarse mesh to the fine mesh, natural logarithm,
-    which determines the difference of the orders. Where coefficients decay slowly, errors oscillate with the
-    order, and meshes of nearly the same order agree by luck: with a difference of 2, 16 of 112 errors of
-    slender cones were beyond their estimates, up to 2.2 times; none was with this fall, the largest 0.4 times
-    its estimate."""
+    min_fewer_orders: int = 2
+    """Smallest difference between the orders of a fine mesh and of its coarse mesh."""
+    max_fewer_orders: int = 4
+    """Largest difference between the orders of a fine mesh and of its coarse mesh."""
+    min_space_decay: float = 1.5
+    """Smallest expected decrease of the natural logarithm of the errors in space from the coarse mesh to the
+    fine mesh, which determines the difference of the orders. Where coefficients decay slowly, errors
+    oscillate with the order, and meshes of nearly the same order may agree by coincidence. With a difference
+    of 2 orders, 16 of 112 errors of slender cones exceeded their estimates, by factors up to 2.2. With this
+    decrease none did; the largest error was 0.4 times its estimate."""
     more_intervals: float = 0.4
-    """Additional intervals of the fine mesh, as a fraction of the intervals of the coarse mesh."""
-    more_predicted_orders: int = 2
-    """Largest difference in orders of a predicted mesh and the fine mesh for which the coarse mesh was
-    made."""
+    """Additional time intervals of the fine mesh, as a fraction of the number of intervals of the coarse
+    mesh."""
+    max_more_orders: int = 2
+    """Largest increase of the order, beyond the fine mesh for which the coarse mesh was made, at which the
+    coarse mesh still predicts a cycle."""
     max_interval_ratio: float = 2.0
-    """Largest ratio of the intervals of a fine mesh that is predicted and the coarse mesh."""
-    slowest_fall: float = 1.2
-    """Slowest decay of errors in space per order, natural logarithm, in units of the coefficients' decay."""
+    """Largest ratio of the numbers of time intervals of the fine mesh and of the coarse mesh that predicts
+    its cycle."""
+    slowest_decay_ratio: float = 1.2
+    """Pessimistic decrease of the logarithm of the errors in space per order, in units of the same decrease
+    of the coefficients."""
 
 
 COARSER_MESHES = CoarserMeshSettings()
 
 
 class CoarserMeshes:
-    """The cycle on a coarse mesh, and on meshes that are finer in space only or in time only."""
+    """The cycle on a coarse mesh and on meshes finer only in space or only in time, which together predict
+    the cycle on a fine mesh."""
 
     def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
-        """mesh: the fine mesh. near: an orbit near the cycle, on any mesh. Raises Unsolvable."""
+        """mesh: the fine mesh. near: an orbit near the cycle, on any mesh. accuracy: requested relative
+        accuracy. Raises Unsolvable."""
         fewer = _fewer_orders(near)
-        order = max(mesh.order - fewer, ORBIT_MESH.min_order - COARSER_MESHES.fewer_orders)
-        self._highest_order = order + fewer + COARSER_MESHES.more_predicted_orders
+        order = max(mesh.order - fewer, ORBIT_MESH.min_order - COARSER_MESHES.min_fewer_orders)
+        self._highest_order = order + fewer + COARSER_MESHES.max_more_orders
         intervals = round(mesh.full_intervals / (1 + COARSER_MESHES.more_intervals)) + 1
         self.mesh = replace(mesh, order=order, intervals=intervals)
-        self._tolerance = COMPARISON.newton_share * accuracy
+        self._tolerance = COMPARISON.newton_tolerance_share * accuracy
         self._workspace = workspace
         self._coarse = self._solved(self.mesh, near)
         self._finer: dict[OrbitMesh, ComparedCycle] = {}
 
     def can_predict(self, mesh: OrbitMesh) -> bool:
-        """Whether the coarse meshes can predict the cycle on a fine mesh."""
+        """Whether the coarse mesh is fine enough to predict the cycle on the fine mesh `mesh`."""
         near = (
             mesh.order <= self._highest_order
             and self._refined_in_time(mesh) <= COARSER_MESHES.max_interval_ratio
@@ -75,7 +81,8 @@ class CoarserMeshes:
         return near and (mesh.edges, mesh.stages) == (self.mesh.edges, self.mesh.stages)
 
     def predicted(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:
-        """The predicted orbit on a fine mesh, and the calibration of this mesh; raises Unsolvable."""
+        """(predicted orbit on the fine mesh `mesh`, calibration of this mesh with predicted errors); raises
+        Unsolvable."""
         space = self._on(replace(self.mesh, order=mesh.order))
         time = self._on(replace(self.mesh, intervals=mesh.intervals))
         fine_in_space = mesh.carry(space.orbit)
@@ -84,8 +91,8 @@ class CoarserMeshes:
         orbit = replace(fine_in_space, values=fine_in_space.values + fine_in_time.values - coarse.values)
         by_orders = np.exp(_fall(space.orbit) * (mesh.order - self.mesh.order))
         by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
-        # The error of the multipliers need not fall as fast as those of the paths. It is therefore bounded by
-        # the difference between the meshes fine in space and fine in time, each of which lacks one error.
+        # The error of the multipliers may decrease more slowly than the errors of the paths. It is bounded by
+        # the difference between the mesh fine only in space and the mesh fine only in time.
         of_multipliers = multiplier_change(space.multipliers, time.multipliers)
         in_space = np.append(self._errors(space, by_orders), 0.0)
         in_time = np.append(self._errors(time, by_intervals), of_multipliers)
@@ -100,25 +107,27 @@ class CoarserMeshes:
         return ComparedCycle(newton(mesh.carry(near), self._tolerance, self._workspace))
 
     def _errors(self, finer: ComparedCycle, factor: float) -> Array:
-        """Errors of a finer mesh, (4,), from the difference of its cycle from the coarse mesh's.
+        """Errors of a finer mesh, (4,) as `path_differences`, from the difference between its cycle and the
+        cycle on the coarse mesh.
 
-        factor: errors of the coarse mesh in units of those of the finer mesh.
+        factor: ratio of the errors of the coarse mesh and of the finer mesh.
         """
         errors: Array = path_differences(self._coarse.path, finer.path) / (factor - 1)
         return errors
 
     def _refined_in_time(self, mesh: OrbitMesh) -> float:
-        """Ratio of the lengths of full intervals of the coarse mesh and a fine mesh."""
+        """Ratio of the numbers of full time intervals of the fine mesh `mesh` and of the coarse mesh."""
         return mesh.full_intervals / self.mesh.full_intervals
 
 
 def _fall(orbit: Orbit) -> float:
-    """Slowest expected decay of errors in space per order, natural logarithm, by an orbit's coefficients."""
-    slowest = COARSER_MESHES.slowest_fall * tails_of(orbit).decay
-    return min(max(slowest, CALIBRATION.min_fall), CALIBRATION.max_fall)
+    """Pessimistic decrease of the natural logarithm of the errors in space per order, from the coefficients
+    of an orbit."""
+    slowest = COARSER_MESHES.slowest_decay_ratio * tails_of(orbit).decay
+    return min(max(slowest, CALIBRATION.min_space_decay), CALIBRATION.max_space_decay)
 
 
 def _fewer_orders(near: Orbit) -> int:
-    """Difference of the orders of a fine and its coarse mesh, for a cycle near an orbit."""
-    needed = ceil(COARSER_MESHES.fall_between / _fall(near))
-    return min(max(needed, COARSER_MESHES.fewer_orders), COARSER_MESHES.most_fewer_orders)
+    """Difference between the orders of a fine mesh and its coarse mesh, for a cycle near the orbit `near`."""
+    needed = ceil(COARSER_MESHES.min_space_decay / _fall(near))
+    return min(max(needed, COARSER_MESHES.min_fewer_orders), COARSER_MESHES.max_fewer_orders)

@@ -1,4 +1,5 @@
-"""Error estimates of a cycle."""
+"""Error estimates of a cycle: of its period, of the tip's largest y and other extrema, and of its largest
+multiplier."""
 
 from dataclasses import dataclass
 from math import nan
@@ -10,15 +11,16 @@ from ....arrays import Array
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CycleErrorSettings:
-    """Settings for the smallest stated errors, and for the error that is compared with the accuracy."""
+    """Settings for the smallest error estimates of a cycle, and for the error that is compared with the
+    accuracy."""
 
-    rounding: float = 2e-14
-    """Smallest stated relative error of period and extrema: rounding errors on any mesh."""
-    min_claim: float = 0.1
-    """Smallest stated error in units of the accuracy: a smaller estimate may be small by coincidence."""
-    extrema_slack: float = 100.0
-    """Tolerance of the tip's other extrema in units of the tolerance of period and largest y. Period and
-    largest y converge fastest; a time node lies at the largest y."""
+    rounding_error: float = 2e-14
+    """Smallest relative error estimate of period and extrema: the rounding error on any mesh."""
+    min_error_share: float = 0.1
+    """Smallest error estimate, in units of the accuracy: a smaller estimate may be a coincidence."""
+    extrema_tolerance_ratio: float = 100.0
+    """Tolerance of the tip's other extrema, in units of the tolerance of period and largest y. Period and
+    largest y converge fastest, because a time node lies at the largest y."""
 
 
 CYCLE_ERRORS = CycleErrorSettings()
@@ -26,10 +28,11 @@ CYCLE_ERRORS = CycleErrorSettings()
 
 @dataclass(frozen=True, slots=True)
 class CycleErrors:
-    """Relative error estimates of the period and the tip's largest y, and of other extrema in units of the
-    largest y.
+    """Error estimates of a cycle.
 
-    multiplier_error: absolute error estimate of the largest nontrivial multiplier.
+    period_error: relative, of the period. amplitude_error: relative, of the tip's largest y. extrema_error:
+    largest error of the tip's other extrema, in units of the largest y. multiplier_error: absolute, of the
+    largest nontrivial multiplier.
     """
 
     period_error: float
@@ -39,14 +42,16 @@ class CycleErrors:
 
     @property
     def largest(self) -> float:
-        """Error that is compared with the requested accuracy."""
+        """The error that is compared with the requested accuracy: the largest of the errors of period and
+        largest y, and of the error of the other extrema divided by `extrema_tolerance_ratio`."""
         return float(largest_error(self.period_error, self.amplitude_error, self.extrema_error))
 
 
 def largest_error(period: Array | float, amplitude: Array | float, extrema: Array | float) -> Array:
-    """`CycleErrors.largest` of numbers, or of arrays with a common shape."""
+    """`CycleErrors.largest` from the errors of period, amplitude and other extrema: numbers, or arrays of a
+    common shape."""
     largest: Array = np.maximum(
-        np.maximum(period, amplitude), np.asarray(extrema) / CYCLE_ERRORS.extrema_slack
+        np.maximum(period, amplitude), np.asarray(extrema) / CYCLE_ERRORS.extrema_tolerance_ratio
     )
     return largest
 

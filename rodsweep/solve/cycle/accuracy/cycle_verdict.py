@@ -1,4 +1,5 @@
-"""A cycle with its measures, multipliers and errors, and its verdict: stable, unstable or undecided."""
+"""A solved cycle with measures, multipliers and errors, and the status that follows: stable, unstable or not
+settled."""
 
 from dataclasses import dataclass
 
@@ -16,13 +17,14 @@ from .minimal_period import undecided_divisor
 
 @dataclass(frozen=True, eq=False)
 class RefinedCycle:
-    """A cycle with its measures, multipliers and errors.
+    """A solved cycle with its measures, multipliers and errors.
 
-    calibration: source of the errors. multipliers: nontrivial multipliers, (rank - 1,), by descending
-    modulus. trivial_error: distance of the trivial multiplier from 1.
+    converged: orbit and matrix. calibration: source of the errors. path: motion of the tip. multipliers:
+    nontrivial multipliers, (rank - 1,), by descending modulus. trivial_error: distance of the computed
+    trivial multiplier from 1.
     """
 
-    fine: ConvergedOrbit
+    converged: ConvergedOrbit
     calibration: Calibration
     path: CyclePath
     measures: Measures
@@ -32,7 +34,7 @@ class RefinedCycle:
 
     @property
     def orbit(self) -> Orbit:
-        return self.fine.orbit
+        return self.converged.orbit
 
     @property
     def largest_multiplier(self) -> float:
@@ -41,29 +43,32 @@ class RefinedCycle:
 
     @property
     def divisor(self) -> int:
-        """Factor by which the minimal period may be shorter; 1 proves the period minimal."""
+        """Divisor by which the minimal period may be shorter than the period; 1 proves the period minimal."""
         return undecided_divisor(self.path, self.errors.extrema_error)
 
     @property
     def margin(self) -> float:
-        """Error of the largest multiplier's modulus: a modulus nearer to 1 leaves the stability open."""
+        """Error of the largest multiplier's modulus; the stability is undecided if this modulus is closer to
+        1."""
         return max(self.trivial_error, self.errors.multiplier_error)
 
     @property
     def stable(self) -> bool | None:
-        """Whether all nontrivial multipliers lie in the unit circle; None if the margin leaves this open."""
+        """Whether all nontrivial multipliers lie inside the unit circle; None if the largest modulus is 1
+        within its error."""
         beyond = self.largest_multiplier - 1
         return None if abs(beyond) <= self.margin else beyond < 0
 
     def verdict(self, accuracy: float) -> tuple[CycleStatus, str]:
-        """(status of the cycle, the reason why it is not a stable cycle)."""
+        """(status of the cycle for a requested relative accuracy, message if the status is not a stable or
+        unstable cycle)."""
         if self.measures.least_stretch <= 0:
             return CycleStatus.left_the_model, f"h1 = {self.measures.least_stretch:.3g} on the cycle"
         if self.errors.largest > accuracy:
             return CycleStatus.not_settled, "the cycle's errors exceed the requested accuracy"
         if self.divisor != 1:
-            shorter = f"a period that is {self.divisor} times shorter cannot be excluded"
+            shorter = f"the minimal period may be {self.divisor} times shorter"
             return CycleStatus.not_settled, shorter
         if self.stable is None:
-            return CycleStatus.not_settled, f"its largest multiplier is 1 within {self.margin:.0e}"
+            return CycleStatus.not_settled, f"the cycle's largest multiplier is 1 within {self.margin:.0e}"
         return (CycleStatus.cycle if self.stable else CycleStatus.unstable), ""

@@ -1,7 +1,8 @@
-"""Measured errors of a mesh, by comparison with two finer meshes: one in space and one in time.
+"""Measurement of the errors of a mesh by comparison with two finer meshes, one finer in space and one finer
+in time.
 
-A comparison with a coarser mesh measures the coarse mesh's error; the fine mesh's error follows only with an
-assumed order, which must be pessimistic. Two finer meshes measure the error directly.
+A comparison with a coarser mesh would measure only the error of the coarser mesh, and the error of the mesh
+itself would need an assumed, pessimistic order. Two finer meshes measure the error directly.
 """
 
 from dataclasses import dataclass, replace
@@ -20,40 +21,42 @@ from .calibration import Calibration, calibration_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ComparisonSettings:
-    """Settings for the two finer meshes whose cycles measure the errors of a mesh."""
+    """Settings for the two finer meshes by which the errors of a mesh are measured."""
 
     more_orders: int = 2
-    """Additional orders of the mesh finer in space: errors fall by a tenth or more."""
+    """Increase of the order on the mesh finer in space: the errors decrease there to a tenth or less."""
     more_intervals: float = 0.4
-    """Additional intervals of the mesh finer in time, in units of the mesh's; the share of the error that
-    they remove is known."""
-    newton_share: float = 0.1
-    """Tolerance of Newton's method on the compared meshes, in units of the accuracy."""
+    """Additional time intervals of the mesh finer in time, as a fraction of the intervals of the mesh; the
+    fraction of the error in time that remains is known."""
+    newton_tolerance_share: float = 0.1
+    """Tolerance of Newton's method on the finer meshes, in units of the accuracy."""
     matrix_distance: float = 1e-3
-    """Largest relative distance between an orbit and the matrix that gives its multipliers."""
+    """Largest relative distance between a cycle and the orbit whose matrix gives its multipliers."""
 
 
 COMPARISON = ComparisonSettings()
 
 
 def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
-    """((mesh finer in space, mesh finer in time), share of the error in time that the second removes)."""
+    """((mesh finer in space, mesh finer in time), fraction of the error in time that the second mesh
+    removes)."""
     longer = ceil((1 + COMPARISON.more_intervals) * mesh.intervals)
     # Errors fall with this power of the intervals; the last two intervals count as one.
     share = 1 - (mesh.full_intervals / (longer - 1)) ** (mesh.stages + 1)
     return (replace(mesh, order=mesh.order + COMPARISON.more_orders), replace(mesh, intervals=longer)), share
 
 
-def calibrated(found: ConvergedOrbit, accuracy: float, before: Calibration | None) -> Calibration:
-    """Calibration of the mesh of an orbit; raises Unsolvable.
+def measured_calibration(found: ConvergedOrbit, accuracy: float, before: Calibration | None) -> Calibration:
+    """Calibration of the mesh of the orbit `found`, with errors measured on two finer meshes; raises
+    Unsolvable.
 
-    before: calibration at a nearby orbit, on any mesh, with the rates at which errors fall; None to take the
-    rates from the orbit's coefficients.
+    before: calibration at a nearby orbit, on any mesh, from which the convergence rates follow; None if the
+    decay of the orbit's coefficients gives the rates.
     """
     mesh = mesh_of(found.orbit)
     measured = ComparedCycle(found)
     finer, share = finer_meshes(mesh)
-    tolerance = COMPARISON.newton_share * accuracy
+    tolerance = COMPARISON.newton_tolerance_share * accuracy
     others = (newton(target.carry(found.orbit), tolerance, found.workspace) for target in finer)
     space, time = (measured.difference(ComparedCycle(other)) for other in others)
     time = time / share
@@ -64,7 +67,7 @@ def calibrated(found: ConvergedOrbit, accuracy: float, before: Calibration | Non
 
 
 class ComparedCycle:
-    """Quantities of a cycle that are compared between meshes."""
+    """A cycle solved on one of several meshes, with the quantities that are compared between the meshes."""
 
     def __init__(self, found: ConvergedOrbit) -> None:
         self._found = found
@@ -73,10 +76,11 @@ class ComparedCycle:
 
     @cached_property
     def multipliers(self) -> Complex:
-        """Nontrivial multipliers, (rank - 1,), by descending modulus."""
+        """Nontrivial multipliers of the cycle, (rank - 1,), by descending modulus."""
         return multipliers_of(at_orbit(self._found, COMPARISON.matrix_distance))[0]
 
     def difference(self, fine: "ComparedCycle") -> Array:
-        """Difference from the cycle on a finer mesh, in the quantities of `Calibration.space`, (5,)."""
+        """Differences from the same cycle on a finer mesh, (5,): four of `path_differences`, and of the
+        largest multiplier."""
         change = multiplier_change(self.multipliers, fine.multipliers)
         return np.append(path_differences(self.path, fine.path), change)

@@ -1,9 +1,9 @@
 """Minimal period of an orbit, from the harmonics of its bending strain.
 
 An orbit that closes after T has the minimal period T/g, where g is the greatest common divisor of the numbers
-of all harmonics that are present. A harmonic larger than the orbit's error is certainly present; if the
-certain harmonics have g = 1, T is proved minimal. If g > 1 among harmonics of clear size, the orbit is solved
-again over T/g. If g = 1 only by harmonics that may be errors, the minimal period stays undecided.
+of all nonzero harmonics. A harmonic larger than the error of the orbit is certainly nonzero; if these
+harmonics give g = 1, T is proved minimal. If all large harmonics give g > 1, the orbit is solved again over
+T/g. If only small harmonics, which may be errors, give g = 1, the minimal period is undecided.
 """
 
 from dataclasses import dataclass, replace
@@ -19,49 +19,54 @@ from ...orbit.orbit import Orbit, node_times
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MinimalPeriodSettings:
-    """Settings for the harmonics that prove the period minimal."""
+    """Settings for the size above which a harmonic counts as nonzero."""
 
-    present: float = 1e-3
-    """Smallest size of a present harmonic, in units of the largest harmonic, as long as errors are not
-    known."""
-    certain: float = 10.0
-    """Smallest relative size of a certainly present harmonic, in units of the extrema's relative error."""
-    min_present: float = 1e-6
-    """Lower bound of this size: the error estimate is the tip's, and the bending strain may have a larger
-    error."""
+    min_harmonic: float = 1e-3
+    """Size of a harmonic, in units of the largest harmonic, above which it counts as nonzero while the error
+    of the orbit is not known."""
+    certain_harmonic_ratio: float = 10.0
+    """Size of a harmonic relative to the largest, in units of the relative error of the extrema, above which
+    the harmonic is certainly nonzero."""
+    min_certain_harmonic: float = 1e-6
+    """Lower limit of this relative size: the error estimate is of the tip, and the bending strain may have a
+    larger error."""
 
 
 MINIMAL_PERIOD = MinimalPeriodSettings()
 
 
 def common_divisor(path: CyclePath, present: float) -> int:
-    """Divisor g of the harmonics larger than `present` times the largest; 1 proves the period minimal."""
+    """Greatest common divisor of the numbers of all harmonics larger than `present` times the largest; 0 if
+    all are 0."""
     return int(_divisor_of(path.bending_harmonics, present))
 
 
 @compiled
 def _divisor_of(sizes: Array, present: float) -> int:
-    """`common_divisor` of harmonics of these sizes, (harmonics,), from the first; 0 if all sizes are 0."""
+    """`common_divisor` from the sizes of the harmonics 1, 2, ..., (harmonics,); 0 if all sizes are 0."""
     divisor = 0
     least = present * sizes.max()
     for k in range(len(sizes)):
         if sizes[k] > least:
-            # Harmonics that are all multiples of g repeat g times within the period.
+            # A motion whose nonzero harmonics are all multiples of g repeats g times within the period.
             divisor = gcd(divisor, k + 1)
     return divisor
 
 
 def undecided_divisor(path: CyclePath, error: float) -> int:
-    """Factor by which the minimal period may be shorter than the orbit's; 1 proves the period minimal.
+    """Divisor by which the minimal period may be shorter than the period of the path; 1 proves the period
+    minimal.
 
     error: relative error of the extrema.
     """
-    return common_divisor(path, max(MINIMAL_PERIOD.certain * error, MINIMAL_PERIOD.min_present))
+    return common_divisor(
+        path, max(MINIMAL_PERIOD.certain_harmonic_ratio * error, MINIMAL_PERIOD.min_certain_harmonic)
+    )
 
 
 def over_minimal_period(orbit: Orbit) -> Orbit:
-    """The orbit over the common period of its present harmonics, as a start for Newton's method."""
-    g = common_divisor(CyclePath(orbit), MINIMAL_PERIOD.present)
+    """The orbit over the minimal period by its large harmonics, as a start for Newton's method."""
+    g = common_divisor(CyclePath(orbit), MINIMAL_PERIOD.min_harmonic)
     if g == 1:
         return orbit
     times = node_times(orbit.intervals, orbit.stages)

@@ -1,7 +1,7 @@
-"""The cycle to a requested accuracy, on automatically chosen meshes.
+"""The cycle near an approximate orbit, solved to a requested accuracy on automatically chosen meshes.
 
-The tails of a nearby orbit choose the first mesh (`orbit_mesh`). If the measured errors (`finer_meshes`)
-exceed the accuracy, these errors choose the cheapest sufficient mesh.
+The coefficient tails of a nearby orbit determine the first mesh (`orbit_mesh`). If the measured errors
+(`finer_meshes`) exceed the accuracy, these errors determine the cheapest sufficient mesh.
 """
 
 from contextlib import suppress
@@ -20,19 +20,20 @@ from ...point import Unsolvable
 from .calibration import Calibration
 from .coarser_meshes import CoarserMeshes
 from .cycle_verdict import RefinedCycle
-from .finer_meshes import calibrated
+from .finer_meshes import measured_calibration
 from .minimal_period import MINIMAL_PERIOD, common_divisor, over_minimal_period
 from .refinement_settings import REFINEMENT
 
 
 def with_calibrated_errors(calibration: Calibration, found: ConvergedOrbit, accuracy: float) -> RefinedCycle:
-    """A cycle with the errors of its calibrated mesh."""
+    """The solved orbit `found` as a cycle, with measures, multipliers and the errors of a calibration that
+    holds at this orbit."""
     path = CyclePath(found.orbit)
     errors = calibration.errors(accuracy)
     multipliers, trivial_error = multipliers_of(found)
     largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
-    # The matrix was made beside the orbit; how far the trivial multiplier is from 1 shows what that costs.
-    by_matrix = REFINEMENT.multiplier_factor * largest * (found.distance + trivial_error)
+    # The matrix was assembled at a nearby orbit; the error of the trivial multiplier shows the effect.
+    by_matrix = REFINEMENT.multiplier_error_factor * largest * (found.distance + trivial_error)
     by_exponent = errors.amplitude_error * _multiplier_per_exponent(multipliers)
     errors = replace(errors, multiplier_error=max(errors.multiplier_error, by_exponent) + by_matrix)
     measures = measures_of(path)
@@ -40,30 +41,33 @@ def with_calibrated_errors(calibration: Calibration, found: ConvergedOrbit, accu
 
 
 def _multiplier_per_exponent(multipliers: Complex) -> float:
-    """Change of the largest multiplier per relative change of its exponent, |mu ln |mu||.
+    """Change of the largest multiplier mu per relative change of its exponent ln |mu|: |mu ln |mu||.
+    multipliers: (m,).
 
-    Exponents have the relative error of amplitudes, even if the multiplier agrees on two meshes by chance.
+    The exponent has the relative error of the amplitude, even if the multiplier agrees on two meshes by
+    coincidence.
     """
     modulus = float(np.abs(multipliers[0])) if len(multipliers) else 0.0
     return modulus * abs(log(modulus)) if modulus else 0.0
 
 
-def refine(
+def refined_at_period(
     orbit: Orbit, accuracy: float, workspace: NewtonWorkspace, parameter: str | None = None
 ) -> RefinedCycle:
-    """The cycle near an approximate orbit, to the accuracy or to the finest mesh; raises Unsolvable.
+    """The cycle near an approximate orbit, to a relative accuracy or on the finest allowed mesh; raises
+    Unsolvable.
 
-    workspace: memory of the matrices. parameter: parameter of the cycle's tangent; a cycle without one is a
-    single cycle, whose errors are predicted by coarser meshes where possible.
+    workspace: memory of Newton's matrices. parameter: parameter of the cycle's tangent; None for a single
+    cycle, whose errors coarser meshes predict if possible.
 
-    Near a Hopf point a coarse mesh may have no cycle, because its own Hopf point lies beyond. Finer meshes
-    are tried in this case.
+    Near a Hopf point a coarse mesh may have no cycle, because the mesh displaces the Hopf point. Finer meshes
+    are then tried.
     """
     aim = max(accuracy, REFINEMENT.first_accuracy)
     start = orbit
     while True:
         try:
-            rough = of_same_size(newton(start, REFINEMENT.nearby_tolerance, workspace), orbit.size)
+            rough = require_similar_size(newton(start, REFINEMENT.nearby_tolerance, workspace), orbit.size)
             near = rough.orbit
             stages = stages_for(accuracy)
             if parameter is None:
@@ -77,7 +81,7 @@ def refine(
             # Only symmetric cycles are born at Hopf points.
             if aim <= REFINEMENT.finest_accuracy or not orbit.symmetric:
                 raise
-            aim = max(REFINEMENT.aim_factor * aim, REFINEMENT.finest_accuracy)
+            aim = max(REFINEMENT.retry_accuracy_factor * aim, REFINEMENT.finest_accuracy)
             mesh = wanted_mesh(orbit, aim, orbit.stages)
             if mesh.intervals * mesh.unknowns**3 > REFINEMENT.max_retry_work:
                 raise
@@ -87,34 +91,36 @@ def refine(
 def _predicted_cycle(
     mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace
 ) -> RefinedCycle:
-    """A single cycle as coarser meshes predict it, on a mesh or on a finer one.
+    """A single cycle with errors predicted by coarser meshes, on the given mesh or a finer mesh. near: an
+    orbit near the cycle.
 
-    The best cycle is returned if no mesh of allowed size reaches the requested accuracy. Raises Unsolvable if
-    a coarser mesh has no such cycle, if the errors do not decrease, or if the cycle is too far from its
-    predictor.
+    The most accurate cycle is returned if no allowed mesh reaches the accuracy. Raises Unsolvable if a
+    coarser mesh has no such cycle, if the errors do not decrease, or if the cycle is far from its prediction.
     """
     coarser = CoarserMeshes(mesh, near, accuracy, workspace)
     last = inf
     orbit, known = best = coarser.predicted(mesh)
-    for _ in range(REFINEMENT.max_rounds):
+    for _ in range(REFINEMENT.max_meshes):
         error = known.errors(accuracy).largest
         if error < best[1].errors(accuracy).largest:
             best = orbit, known
         if error <= accuracy:
             break
-        # A prediction that gets worse on a finer mesh has met rounding errors, or another cycle.
+        # A prediction that gets worse on a finer mesh has reached rounding errors, or another cycle.
         if error > last:
             raise Unsolvable("the errors do not decrease on finer meshes")
         mesh = finer_mesh(mesh, known.planned(accuracy))
-        last = REFINEMENT.allowed_increase * error
+        last = REFINEMENT.max_error_increase * error
         if not mesh.allowed:
             break
         if not coarser.can_predict(mesh):
             coarser = CoarserMeshes(mesh, orbit, accuracy, workspace)
         orbit, known = coarser.predicted(mesh)
     orbit, known = best
-    found = of_same_size(newton(orbit, newton_tolerance(accuracy), workspace), near.size)
-    if found.distance > max(REFINEMENT.predicted_within * accuracy, REFINEMENT.min_predicted_distance):
+    found = require_similar_size(newton(orbit, newton_tolerance(accuracy), workspace), near.size)
+    if found.distance > max(
+        REFINEMENT.max_prediction_distance * accuracy, REFINEMENT.min_prediction_distance
+    ):
         raise Unsolvable("coarser meshes do not predict the cycle")
     return with_calibrated_errors(
         known, at_orbit(found, min(accuracy, REFINEMENT.max_matrix_distance)), accuracy
@@ -124,21 +130,22 @@ def _predicted_cycle(
 def calibrated_cycle(
     found: ConvergedOrbit, before: Calibration | None, accuracy: float, parameter: str | None
 ) -> RefinedCycle:
-    """A cycle with measured errors, on finer meshes if necessary; raises Unsolvable.
+    """The solved orbit `found` as a cycle with measured errors, solved again on finer meshes if necessary;
+    raises Unsolvable.
 
-    before: calibration at a nearby cycle. The best cycle is returned if no mesh of allowed size reaches the
-    requested accuracy.
+    before: calibration at a nearby cycle. The most accurate cycle is returned if no allowed mesh reaches the
+    accuracy.
     """
     best = None
     last = inf
-    for _ in range(REFINEMENT.max_rounds):
-        before = calibrated(found, accuracy, before)
+    for _ in range(REFINEMENT.max_meshes):
+        before = measured_calibration(found, accuracy, before)
         cycle = with_calibrated_errors(before, found, accuracy)
         if best is None or cycle.errors.largest < best.errors.largest:
             best = cycle
         if cycle.errors.largest <= accuracy or cycle.errors.largest > last:
             break
-        last = REFINEMENT.allowed_increase * cycle.errors.largest
+        last = REFINEMENT.max_error_increase * cycle.errors.largest
         finer = finer_mesh(before.mesh, before.planned(accuracy))
         if not finer.allowed:
             break
@@ -149,37 +156,37 @@ def calibrated_cycle(
 
 
 def _on(mesh: OrbitMesh, found: ConvergedOrbit, accuracy: float, parameter: str | None) -> ConvergedOrbit:
-    """The orbit on another mesh, and a matrix made at this orbit, with multipliers exact to rounding."""
-    # `linearised` makes one more step
-    # The last step is quadratic, so half of the digits suffice before it.
+    """The orbit `found` solved again on another mesh, with a matrix assembled at the solution, whose
+    multipliers are exact to rounding; raises Unsolvable."""
+    # `linearised` makes one more, quadratically convergent step, so half of the digits suffice here.
     last = (newton_tolerance(accuracy) / ORBIT_NEWTON.quadratic_error) ** 0.5
     solution = newton(mesh.carry(found.orbit), last, found.workspace)
-    return linearised(of_same_size(solution, found.orbit.size), parameter)
+    return linearised(require_similar_size(solution, found.orbit.size), parameter)
 
 
-def of_same_size(found: ConvergedOrbit, size: float) -> ConvergedOrbit:
-    """The solution, if near in size to the start's `size`; raises Unsolvable otherwise."""
-    if not REFINEMENT.min_size * size < found.orbit.size < REFINEMENT.max_size * size:
-        raise Unsolvable("Newton's method converged to another motion than the one at its start")
+def require_similar_size(found: ConvergedOrbit, size: float) -> ConvergedOrbit:
+    """The solved orbit `found`; raises Unsolvable if its size is far from `size`, the size of the start."""
+    if not REFINEMENT.min_size_ratio * size < found.orbit.size < REFINEMENT.max_size_ratio * size:
+        raise Unsolvable("Newton's method converged to an orbit of a very different size than its start")
     return found
 
 
 def refined_cycle(
     orbit: Orbit, accuracy: float, workspace: NewtonWorkspace, parameter: str | None = None
 ) -> RefinedCycle:
-    """The cycle near an orbit, over its minimal period; raises Unsolvable.
+    """The cycle near an orbit, over its minimal period, to a relative accuracy; raises Unsolvable.
 
-    workspace, parameter: as in `refine`. If the multipliers leave the stability open, the cycle is solved
-    again for a hundredth of the accuracy.
+    workspace: memory of Newton's matrices. parameter: parameter of the cycle's tangent, or None. If the
+    stability is undecided, the cycle is solved again for a hundredth of the accuracy.
     """
-    found = refine(over_minimal_period(orbit), accuracy, workspace, parameter)
-    if common_divisor(found.path, MINIMAL_PERIOD.present) > 1:
-        found = refine(over_minimal_period(found.orbit), accuracy, workspace, parameter)
-    # The multiplier is 1 within its error: a hundredth of the error may tell.
+    found = refined_at_period(over_minimal_period(orbit), accuracy, workspace, parameter)
+    if common_divisor(found.path, MINIMAL_PERIOD.min_harmonic) > 1:
+        found = refined_at_period(over_minimal_period(found.orbit), accuracy, workspace, parameter)
+    # The multiplier is 1 within its error: a hundredth of the error may decide.
     if found.stable is None:
-        found = refine(
+        found = refined_at_period(
             found.orbit,
-            max(accuracy / REFINEMENT.undecided_divisor, REFINEMENT.finest_accuracy),
+            max(accuracy / REFINEMENT.undecided_accuracy_divisor, REFINEMENT.finest_accuracy),
             workspace,
             parameter,
         )
@@ -187,12 +194,13 @@ def refined_cycle(
 
 
 def newton_tolerance(accuracy: float) -> float:
-    """Relative tolerance of Newton's method for a cycle of this accuracy."""
-    return max(REFINEMENT.newton_share * accuracy, REFINEMENT.min_newton_tolerance)
+    """Relative tolerance of Newton's method for a cycle of a given relative accuracy."""
+    return max(REFINEMENT.newton_tolerance_share * accuracy, REFINEMENT.min_newton_tolerance)
 
 
 def matrix_distance(accuracy: float) -> float:
-    """Largest relative distance between an orbit and a matrix with accurate multipliers."""
+    """Largest relative distance between a cycle of a given relative accuracy and the orbit at which its
+    matrix was assembled, so that multipliers and tangent are accurate enough."""
     return min(
         max(REFINEMENT.matrix_distance_share * accuracy, REFINEMENT.min_matrix_distance),
         REFINEMENT.max_matrix_distance,

@@ -1,11 +1,11 @@
-"""Amplitude equation of slow motions about the straight rod, which predicts their final amplitude.
+"""Amplitude equation of slow motions about the straight rod, which predicts the final amplitude of a motion.
 
-The amplitude a grows per period by g = g0 - c a^2, with the exact linear growth g0, so that a cycle has the
-amplitude a* = sqrt(g0/c). The coefficient c is measured where c a^2 exceeds the integrator's error, which it
-may not near a*. A rod near a limit grows linearly at a slightly different rate than the rod in the limit; the
-measured growth is corrected by the difference. A slowly decaying motion is scaled down until the motion
-decays at the linear rate. A slowly growing motion with a growth that increases with the amplitude (c < 0) is
-scaled up.
+The logarithm of the amplitude a grows per period by g = g0 - c a^2, with the exact linear growth g0, so that
+a cycle has the amplitude a* = sqrt(g0/c). The coefficient c is measured from a motion at amplitudes where c
+a^2 exceeds the error of the integrator. A rod near a limit has a slightly different linear growth rate than
+the rod in the limit; the measured growth is corrected by the difference. The state of a slowly decaying
+motion is scaled down until the motion decays at the linear rate. The state of a slowly growing motion is
+scaled up if its growth increases with the amplitude (c < 0).
 """
 
 from dataclasses import dataclass
@@ -20,30 +20,36 @@ from ....arrays import Array
 class AmplitudeEquationSettings:
     """Settings for the prediction of the amplitude of a slowly growing motion."""
 
-    slow_growth: float = 0.2
-    """Linear growth per period below which the amplitude is predicted instead of integrated."""
-    significant_growth: float = 10.0
-    """Part of c in the growth, in units of the noise, at which a new c replaces the c of a larger motion. A
-    tenth of the new c is noise then; a c measured within the noise may have the wrong sign."""
-    near_amplitude: float = 0.1
-    """Relative distance from the predicted amplitude within which Newton's method takes over."""
-    shrink: float = 0.7
-    """Factor on the state of a slowly decaying motion; the inverse applies to a growing motion. It is near
-    enough to 1 not to jump over a cycle."""
-    max_jump: float = 4.0
-    """Largest factor on the state."""
+    max_slow_growth: float = 0.2
+    """Linear growth per period, in modulus, below which the final amplitude of a motion is predicted instead
+    of integrated."""
+    min_significant_growth: float = 10.0
+    """Smallest contribution c a^2 to the growth, in units of the noise, at which a new measurement of c
+    replaces an earlier one. The noise then is a tenth of c; a c measured within the noise may have the wrong
+    sign."""
+    max_amplitude_distance: float = 0.1
+    """Relative distance from the predicted amplitude below which the state is not scaled, because Newton's
+    method converges."""
+    decay_factor: float = 0.7
+    """Factor on the state of a slowly decaying motion; its inverse is the factor on a growing motion with c <
+    0. The factor is close enough to 1 not to miss a cycle."""
+    max_jump_factor: float = 4.0
+    """Largest factor by which a state is scaled up, or its inverse down, in one jump."""
     linear_tolerance: float = 0.05
-    """Relative deviation from the linear decay rate and frequency up to which a rod is called straight."""
+    """Largest relative deviation of a motion's decay rate and frequency from the leading mode's, at which the
+    rod counts as straight."""
 
 
 AMPLITUDE_EQUATION = AmplitudeEquationSettings()
 
 
 class AmplitudeEquation:
-    """g = g0 - c |z|^2 of one rod, from the returns of its motion: times, (k,), and states, (k, unknowns).
+    """Amplitude equation g = g0 - c |z|^2 of one rod, with c measured from returns of its motion.
 
-    period: period of the leading mode. linear_rate: g0 per time, 1/tau2. excess: linear growth rate of the
-    rod minus that of the integrated beam, 1/tau2. noise: growth per period that the integrator may add.
+    period: of the leading mode, in tau2. linear_rate: exact linear growth rate of the rod, in 1/tau2. excess:
+    linear growth rate of the rod minus the rate of the integrated beam, in 1/tau2. noise: growth per period
+    that the integrator may add. Arguments of the methods: times of returns, (k,), and states at the returns,
+    (k, unknowns).
     """
 
     def __init__(self, period: float, linear_rate: float, excess: float, noise: float) -> None:
@@ -52,10 +58,11 @@ class AmplitudeEquation:
         self.excess = excess
         self.noise = noise
         self.coefficient = nan
-        """Coefficient c; NaN until the growth shows it."""
+        """Coefficient c; NaN until a contribution c |z|^2 to the growth exceeds the noise."""
 
     def growth(self, times: Array, states: Array) -> tuple[float, float]:
-        """(growth of |z| over the last return, linear growth over this time), of the rod, not of the beam.
+        """(growth of log |z| over the last return, linear growth of the rod over the same time); the first is
+        corrected from the integrated beam to the rod.
 
         times: (k,); states: (k, unknowns).
         """
@@ -66,13 +73,15 @@ class AmplitudeEquation:
         return growth + self.excess * duration, self.linear_rate * duration
 
     def slow(self, times: Array, states: Array) -> bool:
-        """Whether the motion is a slowly growing or decaying leading mode; arguments as of `growth`."""
+        """Whether a motion is the slowly growing or decaying leading mode. times: (k,); states:
+        (k, unknowns)."""
         return max(
             map(abs, self.growth(times, states))
-        ) <= AMPLITUDE_EQUATION.slow_growth and self._has_period_of_mode(times)
+        ) <= AMPLITUDE_EQUATION.max_slow_growth and self._has_period_of_mode(times)
 
     def decays_as_linear(self, times: Array, states: Array) -> bool:
-        """Whether the returns shrink steadily and the last as the leading mode, up to noise."""
+        """Whether a motion decays steadily, and over its last return as the leading mode. times: (k,);
+        states: (k, unknowns)."""
         growth, linear = self.growth(times, states)
         sizes = np.linalg.norm(states, axis=1)
         margin = AMPLITUDE_EQUATION.linear_tolerance * abs(linear)
@@ -83,17 +92,20 @@ class AmplitudeEquation:
         return linear < 0 and (alike or small) and self._has_period_of_mode(times)
 
     def decays_faster(self, times: Array, states: Array) -> bool:
-        """Whether the motion decays faster than the leading mode; no cycle is near in this case."""
+        """Whether a motion decays faster than the leading mode, so that no cycle is near. times: (k,);
+        states: (k, unknowns)."""
         growth, linear = self.growth(times, states)
         known = self.coefficient > 0 and self.slow(times, states)
-        return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION.slow_growth) + (
+        return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION.max_slow_growth) + (
             self.noise if known else 0
         )
 
     def jump(self, times: Array, states: Array) -> float | None:
-        """Factor on the state to the amplitude at which the growth vanishes, or towards this amplitude.
+        """Factor by which the state is scaled to the predicted amplitude of the cycle, or towards this
+        amplitude.
 
-        None if the state has the right amplitude already, or if this amplitude is not known.
+        None if the state is close to this amplitude, or if no amplitude is predicted. times: (k,); states:
+        (k, unknowns).
         """
         growth, linear = self.growth(times, states)
         if not self.slow(times, states):
@@ -102,29 +114,30 @@ class AmplitudeEquation:
         # d|z|/dt = linear |z| - c |z|^3, so what the growth lacks is c |z|^2.
         measured = (linear - growth) / size**2
         if abs(linear - growth) > self.noise * (
-            1 if isnan(self.coefficient) else AMPLITUDE_EQUATION.significant_growth
+            1 if isnan(self.coefficient) else AMPLITUDE_EQUATION.min_significant_growth
         ):
             self.coefficient = measured
         coefficient = measured if isnan(self.coefficient) else self.coefficient
         if isnan(self.coefficient) and linear > 0:
-            factor = AMPLITUDE_EQUATION.max_jump  # at this small amplitude the growth does not show c
+            factor = AMPLITUDE_EQUATION.max_jump_factor  # at this small amplitude the growth does not show c
         elif linear > 0 and coefficient > 0:
             factor = float(
                 np.clip(
                     # The amplitude at which linear = c |z|^2.
                     np.sqrt(linear / coefficient) / size,
-                    1 / AMPLITUDE_EQUATION.max_jump,
-                    AMPLITUDE_EQUATION.max_jump,
+                    1 / AMPLITUDE_EQUATION.max_jump_factor,
+                    AMPLITUDE_EQUATION.max_jump_factor,
                 )
             )
         elif linear > 0 or (coefficient < 0 and growth > self.noise):
-            factor = 1 / AMPLITUDE_EQUATION.shrink  # the growth increases with the amplitude
+            factor = 1 / AMPLITUDE_EQUATION.decay_factor  # the growth increases with the amplitude
         elif coefficient > 0 or growth < -self.noise:
-            factor = AMPLITUDE_EQUATION.shrink
+            factor = AMPLITUDE_EQUATION.decay_factor
         else:
             return None
-        return factor if abs(factor - 1) >= AMPLITUDE_EQUATION.near_amplitude else None
+        return factor if abs(factor - 1) >= AMPLITUDE_EQUATION.max_amplitude_distance else None
 
     def _has_period_of_mode(self, times: Array) -> bool:
-        """Whether the return time is the leading mode's period; otherwise the growth predicts nothing."""
+        """Whether the last return took the leading mode's period; otherwise the motion is not the leading
+        mode. times: (k,)."""
         return bool(abs((times[-1] - times[-2]) / self.period - 1) < AMPLITUDE_EQUATION.linear_tolerance)

@@ -1,4 +1,4 @@
-"""Start of Newton's method: an orbit from the integrated motion of a rod near a cycle."""
+"""Start of Newton's method for a cycle: an approximate orbit from an integrated motion near the cycle."""
 
 from dataclasses import dataclass
 
@@ -18,51 +18,53 @@ class NewtonFromMotionSettings:
     """Settings for starting Newton's method from an integrated motion."""
 
     stages: int = 3
-    """Collocation stages of the start."""
+    """Number of collocation stages per interval of the approximate orbit."""
     intervals: int = 20
-    """Intervals of the start per return of the tip."""
-    phases: int = 128
-    """Number of times at which the largest y is searched."""
+    """Number of time intervals of the approximate orbit per return of the tip."""
+    peak_search_times: int = 128
+    """Number of times per period at which the largest y is searched."""
     max_asymmetry: float = 0.2
-    """Largest relative distance of a symmetric motion from its reflection half a period later."""
+    """Relative distance of a motion from its reflection half a period later, below which the orbit is solved
+    as symmetric."""
 
 
 FROM_MOTION = NewtonFromMotionSettings()
 
 
 def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: float, turns: int) -> Orbit:
-    """The last period of a run as an orbit of the rod `form`, on the beam's mesh.
+    """The last period of an integrated run as an approximate orbit of the rod in `form`, on the mesh of the
+    integrated beam.
 
-    turns: returns of the tip per period. The beam may be a rod near the limit in which the rod of `form` is.
+    period: in tau2. turns: number of returns of the tip per period. If the rod in `form` is in a limit, the
+    beam is a rod near this limit.
     """
     from scipy.interpolate import CubicSpline  # slow import: 0.1 s, for few runs
 
     spline = CubicSpline(run.times, run.states)
     begin = float(run.times[-1]) - period
-    times = begin + period * np.arange(FROM_MOTION.phases) / FROM_MOTION.phases
+    times = begin + period * np.arange(FROM_MOTION.peak_search_times) / FROM_MOTION.peak_search_times
     whole = spline(times)
     top = float(times[int(np.argmax(beam.tip(whole)[1]))])
-    symmetry = REFLECTION if asymmetry(beam, whole) < FROM_MOTION.max_asymmetry else NO_SYMMETRY
+    symmetry = REFLECTION if relative_asymmetry(beam, whole) < FROM_MOTION.max_asymmetry else NO_SYMMETRY
     intervals = FROM_MOTION.intervals * turns // symmetry.parts
     duration = period / symmetry.parts
     at = top + duration * node_times(intervals, FROM_MOTION.stages)
     at = np.where(at > run.times[-1], at - period, at)
-    states = stressed(beam, form, spline(at))
+    states = form_states(beam, form, spline(at))
     return Orbit.of(form, symmetry, period, states, FROM_MOTION.stages)
 
 
-def asymmetry(beam: Beam, states: Array) -> float:
-    """Relative distance of the bending moments of states (m, n) from their reflection half a period later.
-
-    The m states are equidistant over a period.
-    """
+def relative_asymmetry(beam: Beam, states: Array) -> float:
+    """Relative distance between the bending moments over a period and their reflection half a period later.
+    states: at m equidistant times over a period, (m, n)."""
     moments = beam.layout.field(states, "m3")
     mirrored = -np.roll(moments, len(moments) // 2, axis=0)
     return float(np.linalg.norm(moments - mirrored) / np.linalg.norm(moments))
 
 
-def stressed(beam: Beam, form: StressForm, z: Array) -> Array:
-    """States of `form`, (m, unknowns), from states z of the beam, (m, its unknowns), on the same mesh."""
+def form_states(beam: Beam, form: StressForm, z: Array) -> Array:
+    """States of the collocation problem `form`, (m, unknowns), from states z of the integrated beam, (m,
+    unknowns of the beam), on the same mesh."""
     S = beam.stresses(z)
     V = np.empty(S.shape)
     G = np.empty((len(S), S.shape[-1]))

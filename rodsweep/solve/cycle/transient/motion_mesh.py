@@ -1,4 +1,4 @@
-"""Rod and mesh of an integrated motion: a rod near a limit instead of a rod in it, and the first mesh."""
+"""Rod and mesh for the integration of a motion: a rod near a limit replaces a rod in the limit."""
 
 from dataclasses import dataclass, replace
 
@@ -11,33 +11,35 @@ from ....model.rod import Rod
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MotionMeshSettings:
-    """Settings for the mesh of an integrated motion."""
+    """Settings for the rod and the mesh of an integrated motion."""
 
     accuracy: float = 1e-5
-    """Accuracy of the mesh of the integrated motion. The motion decides only the basin of attraction;
-    Newton's method supplies the digits of the cycle."""
+    """Relative accuracy of the mesh of an integrated motion. The motion determines only the basin of
+    attraction; Newton's method gives the accuracy of the cycle."""
     expected_modes: int = 3
-    """Number of modes whose wave number determines the first mesh; the cycle refines the mesh later."""
+    """Number of modes that the first mesh resolves; the mesh is refined for the cycle later."""
     waves_per_root_force: float = 2.5
-    """Largest wave number of a cycle in units of sqrt(F), the inverse of the length to which F bends a
-    rod."""
+    """Largest wave number of a cycle, in units of sqrt(F) (with F in k3/L^2), the inverse of the length on
+    which the force bends a rod."""
     order_per_wave: float = 0.55
-    """Order of the coarse mesh in units of a cycle's largest wave number."""
+    """Order of the coarse mesh, in units of the largest wave number of a cycle (in 1/L)."""
     min_order: int = 12
     """Smallest order of the coarse mesh."""
     coarse_accuracy: float = 1e-4
-    """Accuracy of the linear problem on the coarse mesh of an arm."""
+    """Relative accuracy of the linear problem that the coarse mesh of an arm must reach."""
     max_stiffness: float = 1e8
-    """Largest stiffness of an integrated rod. Rods beyond move alike, to 1e-6 or better."""
+    """Largest dimensionless stiffness k1 or k2 of an integrated rod; a stiffer rod is replaced, and moves
+    equally to 1e-6 or better."""
     min_drag: float = 1e-6
-    """Smallest gamma3 of an integrated rod, for the same reason."""
+    """Smallest rotational drag gamma3 of an integrated rod; a rod with less drag is replaced, and moves
+    equally to 1e-6 or better."""
 
 
 MOTION_MESH = MotionMeshSettings()
 
 
 def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
-    """The first mesh of a motion, for a relative accuracy."""
+    """The first mesh for the integration of a rod's motion to a relative accuracy."""
     by_force = MOTION_MESH.waves_per_root_force * abs(rod.F) ** 0.5
     if not rod.standard:
         modal = arm_mesh(rod, MOTION_MESH.expected_modes, accuracy)
@@ -50,7 +52,7 @@ def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
 
 
 def coarse_mesh(rod: Rod) -> Mesh:
-    """Mesh of the intermediate orbits on the branch from a Hopf point to a cycle."""
+    """Coarse mesh for the intermediate orbits on the branch from a Hopf point to the cycle of a rod."""
     wave_number = MOTION_MESH.waves_per_root_force * abs(rod.F) ** 0.5
     if rod.standard:
         return mesh(1, max(MOTION_MESH.min_order, int(MOTION_MESH.order_per_wave * wave_number)))
@@ -58,8 +60,9 @@ def coarse_mesh(rod: Rod) -> Mesh:
     return mesh_on(elements.edges, elements.order)
 
 
-def near_rod(rod: Rod) -> Rod:
-    """The rod; a nearby rod for a rod in a limit, which the time stepper cannot integrate."""
+def integrable_rod(rod: Rod) -> Rod:
+    """The rod, with finite stiffnesses and positive rotational drag: the time integrator cannot integrate a
+    rod in a limit."""
     return replace(
         rod,
         k1=min(rod.k1, MOTION_MESH.max_stiffness),

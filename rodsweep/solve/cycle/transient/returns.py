@@ -1,6 +1,7 @@
-"""Returns of the tip to the section theta = 0, theta rising, which most motions cross once per period.
+"""Returns of a motion to the Poincare section where the tip's theta rises through 0; most motions return once
+per period.
 
-A motion is integrated from return to return. A cycle is near where the states at returns repeat.
+A motion is integrated from return to return. A cycle is near if the states at two returns agree.
 """
 
 from collections.abc import Sequence
@@ -19,32 +20,33 @@ from ...motion.integrator import RunEnding, RunLimit, Trajectory
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReturnSettings:
-    """Settings for the returns of the tip, by which a motion is classified."""
+    """Settings for the returns of the tip to the section theta = 0, by which a motion is classified."""
 
     straight_size: float = 1e-6
-    """Norm of z below which a rod with a stable straight state is called straight, and norm of the bending
-    and shear part of z below which a rod no longer swings. Smaller motions are governed by numerical
-    damping."""
-    same_return: float = 0.03
-    """Largest relative distance of two returns at the same crossing of the orbit."""
+    """Norm of the state z below which a rod with a stable straight state counts as straight, and norm of the
+    bending and shear components of z below which a rod no longer swings. Numerical damping governs smaller
+    motions."""
+    max_return_distance: float = 0.03
+    """Largest relative distance between the states at two returns that count as equal."""
     max_returns_per_period: int = 8
-    """Maximum number of returns per period."""
-    steps_per_run: int = 20_000
+    """Largest number of returns of the tip per period of a recognised cycle."""
+    max_steps_per_run: int = 20_000
     """Maximum number of time steps in one run."""
     bisections: int = 50
-    """Bisections of a time step for a crossing: all digits of the crossing time."""
+    """Number of bisections of a time step for the time of a crossing; enough for all digits."""
 
 
 RETURNS = ReturnSettings()
 
 
-def angle_weights(beam: Beam) -> Array:
-    """Row c, shape (unknowns,), with c z = theta of the tip."""
+def tip_angle_row(beam: Beam) -> Array:
+    """Row vector c, (unknowns,), whose product with a state z of the beam is theta of the tip."""
     return beam.layout.vector({"m3": (beam.sqrt_compliance[2] * beam.mesh.quadrature)[:-1]})
 
 
 def until_returns(row: Array, z: Array, wanted: int) -> RunLimit:
-    """Limit that ends a run from z after `wanted` returns; row: `angle_weights`; both (unknowns,)."""
+    """Limit that ends a run from the state z, (unknowns,), after `wanted` returns of the tip. row:
+    `tip_angle_row` of the beam, (unknowns,)."""
     count = 0
     last = float(row @ z)
 
@@ -55,23 +57,24 @@ def until_returns(row: Array, z: Array, wanted: int) -> RunLimit:
         last = angle
         return count >= wanted
 
-    return RunLimit(enough, RETURNS.steps_per_run)
+    return RunLimit(enough, RETURNS.max_steps_per_run)
 
 
 class EarlyEnd(NamedTuple):
-    """The end of a run before its limit: whether the rod has left the model, and the reason."""
+    """Failure of a run before its limit. left_the_model: whether the rod left the range of the model."""
 
     left_the_model: bool
-    why: str
+    message: str
 
 
 def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:
-    """The early end of a run, `returns` returns after the start; None if the run is complete."""
+    """The failure of a run, with a message; None if the run is complete. returns: number of returns of the
+    tip before the run."""
     if run.ending in (RunEnding.reached, RunEnding.stopped):
         return None
     if run.ending == RunEnding.left_the_model:
         h1 = beam.least_stretch(run.states[-1])
-        return EarlyEnd(True, f"h1 = {h1:.3g} somewhere, {returns} returns from the start")
+        return EarlyEnd(True, f"h1 = {h1:.3g} somewhere on the rod, {returns} returns from the start")
     end = run.states[-1]
     if not run.message and np.isfinite(end).all() and not beam.is_convex(end):
         why = f"the energy of a section is not convex, {returns} returns from the start"
@@ -83,11 +86,11 @@ def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:
 
 
 def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
-    """Times, (k,), and states, (k, unknowns), of a run at which theta of the tip rises through 0.
+    """(times, (k,), states, (k, unknowns)) at which the tip's theta rises through 0 on a run.
 
-    The cubic through two steps and their rates is interpolated.
+    Between two time steps a run is interpolated by the cubic Hermite polynomial.
     """
-    row = angle_weights(beam)
+    row = tip_angle_row(beam)
     angle = run.states @ row
     times: list[float] = []
     states: list[Array] = []
@@ -111,36 +114,38 @@ def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
 
 
 def _hermite_weights(x: float) -> tuple[float, float, float, float]:
-    """Weights of two values and two slopes, at 0 and 1, in the value at x of the cubic through these data."""
+    """Weights of (value at 0, value at 1, slope at 0, slope at 1) in the value at x of the cubic Hermite
+    polynomial."""
     rest = 1 - x
     # Cubic Hermite basis on [0, 1].
     return rest * rest * (1 + 2 * x), x * x * (3 - 2 * x), x * rest * rest, -x * x * rest
 
 
 def repetition(moments: Sequence[Array]) -> tuple[int, float]:
-    """(m, relative distance) for the number of returns m after which the last state repeats best.
+    """(m, relative distance between the last return and the return m before) for the smallest m with a nearly
+    minimal distance.
 
-    moments: bending moments at returns of the tip, (nodes,) each. Bending moments are compared because the
-    interpolation between steps has errors in the stiff components, 1e-2 at k1 = 1e7. Of several good matches
-    the smallest m is taken.
+    moments: bending moments at successive returns of the tip, (nodes,) each. Only bending moments are
+    compared, because the interpolation between time steps has errors in the stiff components, 1e-2 at k1 =
+    1e7.
     """
     size = np.linalg.norm(moments[-1])
     if size < RETURNS.straight_size:  # moments of this size are rounding errors, which do not repeat
         return 1, inf
     found = [(float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))]
     # The first repetition that is nearly as good as the best: multiples of a period repeat as well.
-    enough = max(2 * min(found)[0], RETURNS.same_return)
+    enough = max(2 * min(found)[0], RETURNS.max_return_distance)
     return next((m, distance) for distance, m in found if distance <= enough)
 
 
 def why_not_settled(waited: int, returns: int, last: float) -> str:
-    """The reason why a motion has not settled after the time of `waited` returns.
+    """Message why a motion has not settled after the time of `waited` returns.
 
-    returns: how many are known. last: relative distance of the last of them from an earlier one, not finite
-    if there are too few, or if the motion has decayed.
+    returns: number of returns with a known state. last: relative distance of the last return from an earlier
+    return; NaN for too few returns, inf for a decayed motion.
     """
     if isfinite(last):
-        return f"{waited} returns of the tip, the last at a relative distance of {last:.1e}"
+        return f"{waited} returns of the tip, the last at a relative distance {last:.1e} from an earlier one"
     if isnan(last):
-        return f"the tip passes theta = 0 {counted(returns, 'time')} in all, so that no period is seen"
+        return f"the tip returned to theta = 0 only {counted(returns, 'time')}, so no period is known"
     return "the deflection has decayed to rounding error, but the straight rod is not stable"

@@ -1,4 +1,4 @@
-"""Shapes at equal times from the start of a motion, for an animation."""
+"""Shapes of a rod at equidistant times from the start of a motion, for an animation."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,23 +14,25 @@ from ..cycle import MotionShapes
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ShapeTraceSettings:
-    """Settings for the shapes of a motion that are kept for a moving picture."""
+    """Settings for the shapes of a motion that are stored for an animation."""
 
     max_steps: int = 4000
-    """Largest number of time steps whose shapes are kept: some 50 to 100 returns of the tip, or 4 MB."""
+    """Maximum number of recorded time steps: some 50 to 100 returns of the tip, or 4 MB."""
     max_frames: int = 1600
-    """Largest number of shapes: 50 periods of 32 shapes."""
-    at_rest: float = 2e-3
-    """Deflection of the tip, in L, below which an arm is drawn straight."""
-    few_returns: int = 3
-    """Returns of the tip below which the period of the motion is that of the leading mode."""
+    """Maximum number of stored shapes: 50 periods of 32 shapes."""
+    max_rest_deflection: float = 2e-3
+    """Tip's |y|, in L, below which an arm counts as at rest."""
+    min_returns: int = 3
+    """Number of returns of the tip below which the leading mode's period is taken as the period of the
+    motion."""
 
 
 SHAPE_TRACE = ShapeTraceSettings()
 
 
 class ShapeTrace:
-    """The first steps of the successive runs of one motion, in tau2, and shapes between them."""
+    """Record of the first time steps of one motion, and the interpolation of shapes between these time
+    steps."""
 
     def __init__(self, beam: Beam) -> None:
         self.beam = beam
@@ -40,21 +42,21 @@ class ShapeTrace:
 
     @property
     def is_full(self) -> bool:
-        """Whether no further step is kept."""
+        """Whether the maximum number of time steps is recorded; later steps are ignored."""
         return self.steps >= SHAPE_TRACE.max_steps
 
     def records_on(self, z: Array) -> bool:
-        """Whether to record the motion from a state z, (unknowns,), on although its outcome is known: until
-        the arm is at rest or the trace is full.
-        """
-        return not self.is_full and abs(float(self.beam.tip(z)[1])) > SHAPE_TRACE.at_rest
+        """Whether to integrate the motion further from the state z, (unknowns,), although its outcome is
+        known: until the arm is at rest or the record is full."""
+        return not self.is_full and abs(float(self.beam.tip(z)[1])) > SHAPE_TRACE.max_rest_deflection
 
     def begin(self, z: Array, relaxed: Array, duration: float) -> None:
-        """Keeps the start z, which relaxes to a state, both (unknowns,), in a time too short to be seen."""
+        """Records the start state z, (unknowns,). Its relaxation to the state `relaxed`, (unknowns,), within
+        `duration` is too short to be visible."""
         self._keep(np.zeros(1), z[None])
 
     def add(self, run: Trajectory, clock: float) -> None:
-        """Keeps a run that begins at the time `clock`, in tau2."""
+        """Records the time steps of a run that begins at the time `clock`, in tau2."""
         # A run that left the model may end with a state that is not finite.
         finite = np.isfinite(run.states).all(axis=1)
         self._keep(clock + run.times[finite], run.states[finite])
@@ -66,15 +68,15 @@ class ShapeTrace:
             self.steps += len(times)
 
     def motion(self, returns: Sequence[float], period: float, frames: int, nodes: int) -> MotionShapes:
-        """Shapes on `nodes` Lobatto nodes, `frames` per return of the tip, until the arm is at rest.
+        """Shapes on `nodes` Lobatto nodes, `frames` shapes per return of the tip, until the arm is at rest.
 
-        returns: times of the tip's last returns. period: period of the leading mode, used if there are too
-        few returns.
+        returns: times of the last returns of the tip. period: period of the leading mode, in tau2, used for
+        too few returns.
         """
         from scipy.interpolate import CubicSpline  # a tenth of a second of every start
 
         step = (
-            float(np.median(np.diff(returns))) if len(returns) >= SHAPE_TRACE.few_returns else period
+            float(np.median(np.diff(returns))) if len(returns) >= SHAPE_TRACE.min_returns else period
         ) / frames
         due = step * np.arange(min(int(self.times[-1][-1] / step) + 1, SHAPE_TRACE.max_frames))
         run_of = np.searchsorted([times[0] for times in self.times], due, side="right") - 1
@@ -85,5 +87,5 @@ class ShapeTrace:
                 states[within] = CubicSpline(times, steps)(due[within]) if len(times) > 1 else steps[:1]
         shapes = self.beam.shape(states)[:2] @ self.beam.mesh.evaluation(lobatto_points(nodes)).T
         is_whole = not self.is_full and len(due) < SHAPE_TRACE.max_frames
-        swings = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE.at_rest)
+        swings = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE.max_rest_deflection)
         return MotionShapes(step, shapes[:, : int(swings.max(initial=0)) + 2], is_whole)

@@ -1,12 +1,12 @@
-"""Quasiperiodic motions: motions on a torus, with two frequencies, which never settle.
+"""Recognition of quasiperiodic motions: motions on a torus, with two frequencies, which never close.
 
 A torus surrounds a cycle whose largest multipliers are a complex pair outside the unit circle. The returns of
-the motion to the section lie on a closed curve around the cycle's own return, and advance on this curve by
-the same angle on average. The bending moments at the k-th return are therefore a Fourier series in k times
-this angle. The series is fitted to the earlier returns and must predict the later ones, which excludes
-motions that grow, decay or are irregular. The earlier returns must fill the closed curve: an orbit that
-closes after several returns leaves gaps, as does a motion that is too short. An orbit that closes after
-`TORUS_TEST.inverse_gap` or more returns cannot be distinguished from a torus.
+the motion to the Poincare section lie on a closed curve around the return of the cycle, and advance on this
+curve by the same angle on average. The bending moments at the k-th return are therefore a Fourier series in k
+times this angle. The series is fitted to the earlier returns and must predict the later returns, which
+excludes growing, decaying and irregular motions. The earlier returns must fill the closed curve: a periodic
+motion that closes after several returns leaves gaps, as does a short motion. A motion that closes after
+`TORUS_TEST.min_returns_around` or more returns cannot be distinguished from a torus.
 """
 
 from collections.abc import Iterator
@@ -26,29 +26,31 @@ from .transient_outcome import TransientOutcome
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TorusTestSettings:
-    """Settings of the test whether a motion lies on a torus."""
+    """Settings for the test whether a motion lies on a torus."""
 
     harmonics: int = 6
-    """Harmonics of the second frequency in the returns. Each harmonic of the studied tori was a fifth of the
-    previous one, and all harmonics beyond the sixth together were 6e-4."""
-    inverse_gap: int = 16
-    """Inverse of the largest gap between returns, as a share of the closed curve. The returns then determine
-    the 13 terms of the series, and an orbit that closes after fewer returns is rejected."""
+    """Number of harmonics of the second frequency in the fitted Fourier series. On the studied tori each
+    harmonic was a fifth of the previous harmonic, and the sum of all harmonics beyond the sixth was 6e-4."""
+    min_returns_around: int = 16
+    """Inverse of the largest allowed gap between returns, as a fraction of the closed curve. The returns then
+    determine the 13 terms of the Fourier series, and a motion that closes after fewer returns is rejected."""
     max_prediction_error: float = 0.05
-    """Largest rms error of the predicted returns in units of the rms modulation. The error was 7e-4 to 0.03
-    on tori, and 0.11 for a growing modulation."""
-    skipped_share: float = 1 / 3
-    """Share of the returns, from the start, that is left out: the motion still approaches the torus."""
-    angle_tolerance: float = 0.3
-    """Largest difference between torus and cycle in the angle per return, rad. It vanishes where the torus is
-    born; 0.18 was seen far from there."""
+    """Largest rms error of the predicted returns on a torus, in units of the rms modulation. Errors of 7e-4
+    to 0.03 were measured on tori, and 0.11 for a growing modulation."""
+    skipped_fraction: float = 1 / 3
+    """Fraction of the returns, counted from the start, that the test ignores, because the motion still
+    approaches the torus."""
+    max_angle_difference: float = 0.3
+    """Largest difference, in rad, between the angle per return on a torus and the angle of the cycle's
+    multipliers. The difference is 0 at the torus point; 0.18 was observed far away."""
     trials_per_width: int = 4
-    """Angles tried over the width of the minimum for one harmonic, before the best one is refined."""
-    angle_share: float = 1e-4
-    """Tolerance of the angle, in units of the width of its minimum."""
-    period_tolerance: float = 0.1
-    """Largest relative difference between torus and cycle in the mean return time; it vanishes where the
-    torus is born, too."""
+    """Number of trial angles over the width of the residual's minimum for one harmonic, before the best trial
+    is refined."""
+    angle_tolerance_share: float = 1e-4
+    """Tolerance of the fitted angle, in units of half the width of the residual's minimum."""
+    max_period_difference: float = 0.1
+    """Largest relative difference between the mean return time on a torus and the period of the cycle; the
+    difference is 0 at the torus point."""
 
 
 TORUS_TEST = TorusTestSettings()
@@ -56,40 +58,45 @@ TORUS_TEST = TorusTestSettings()
 
 @dataclass(frozen=True, slots=True)
 class Modulation:
-    """Second frequency of a motion: angle per return in rad, and relative error of the predicted returns."""
+    """Second frequency of a quasiperiodic motion. angle: advance on the closed curve per return, in rad.
+    prediction_error: relative rms error of the predicted returns."""
 
     angle: float
-    error: float
+    prediction_error: float
 
 
 def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> TransientOutcome:
-    """The outcome `torus` of a motion on a torus that has not settled; the given outcome otherwise."""
-    if end.status != CycleStatus.not_settled or end.found is not None:
+    """The outcome `torus` for a motion on a torus; the outcome `end` for any other motion, and for a motion
+    that has settled."""
+    if end.status != CycleStatus.not_settled or end.cycle is not None:
         return end
-    # Only the last returns are kept, so the first third may be partly or wholly forgotten already.
+    # Only the last returns are stored, so the first third may be missing already, in part or wholly.
     skipped = max(
-        0, int(TORUS_TEST.skipped_share * transient.waited) - (transient.waited - len(transient.past))
+        0, int(TORUS_TEST.skipped_fraction * transient.waited) - (transient.waited - len(transient.past))
     )
     past = list(transient.past)[skipped:]
-    if len(past) < 2 * TORUS_TEST.inverse_gap:
+    if len(past) < 2 * TORUS_TEST.min_returns_around:
         return end
     times = np.array([time for time, _ in past])
     moments = np.array([moment for _, moment in past])
     for cycle in _unstable_cycles(transient):
-        near = abs(np.ptp(times) / (len(times) - 1) / cycle.orbit.period - 1) <= TORUS_TEST.period_tolerance
-        angle = pair_outside(cycle)
+        near = (
+            abs(np.ptp(times) / (len(times) - 1) / cycle.orbit.period - 1) <= TORUS_TEST.max_period_difference
+        )
+        angle = unstable_pair_angle(cycle)
         modulation = modulation_of(moments, angle) if near and angle else None
-        if modulation and modulation.error <= TORUS_TEST.max_prediction_error:
+        if modulation and modulation.prediction_error <= TORUS_TEST.max_prediction_error:
             message = (
                 f"modulated with {modulation.angle / (2 * np.pi):.3f} of the return frequency; "
                 f"the cycle inside the torus is unstable, multiplier {cycle.largest_multiplier:.3g}"
             )
-            return TransientOutcome(CycleStatus.torus, message, end.periods, around=cycle)
+            return TransientOutcome(CycleStatus.torus, message, end.periods, unstable_cycle=cycle)
     return end
 
 
 def _unstable_cycles(transient: Transient) -> Iterator[RefinedCycle]:
-    """The unstable cycle found during the motion, then the cycle on the branch from the Hopf point."""
+    """Candidates for the unstable cycle inside a torus: a cycle found during the motion, then the cycle on
+    the branch from the Hopf point below the force."""
     if transient.unstable is not None:
         yield transient.unstable
     try:
@@ -101,8 +108,9 @@ def _unstable_cycles(transient: Transient) -> Iterator[RefinedCycle]:
         return
 
 
-def pair_outside(cycle: RefinedCycle) -> float | None:
-    """Angle in (0, pi) of the complex pair outside the unit circle; None if the instability is different."""
+def unstable_pair_angle(cycle: RefinedCycle) -> float | None:
+    """Angle in (0, pi) of the complex pair of multipliers outside the unit circle; None unless this pair is
+    the only instability of the cycle."""
     outside = cycle.multipliers[np.abs(cycle.multipliers) > 1 - cycle.margin]
     if cycle.stable is not False or len(outside) != 2 or abs(outside[0].imag) <= cycle.margin:
         return None
@@ -110,9 +118,11 @@ def pair_outside(cycle: RefinedCycle) -> float | None:
 
 
 def modulation_of(returns: Array, angle: float) -> Modulation | None:
-    """Modulation of successive states, (k, n), that advance on a closed curve by about `angle` rad each.
+    """Modulation of the states at successive returns, (k, n), which advance on a closed curve by about
+    `angle` rad per return.
 
-    None if the states do not fill a closed curve. The first half is fitted, and the second half is predicted.
+    The Fourier series is fitted to the first half of the returns, and predicts the second half. None if the
+    returns do not fill a closed curve.
     """
     half = len(returns) // 2
     numbers = np.arange(len(returns))
@@ -120,7 +130,7 @@ def modulation_of(returns: Array, angle: float) -> Modulation | None:
     later = returns[half:]
     best = fitted_angle(fitted, angle)
     size = float(np.linalg.norm(later - later.mean(axis=0)))
-    if size == 0 or largest_gap(best * numbers[:half]) > 2 * np.pi / TORUS_TEST.inverse_gap:
+    if size == 0 or largest_phase_gap(best * numbers[:half]) > 2 * np.pi / TORUS_TEST.min_returns_around:
         return None
     basis = fourier_basis(best * numbers, TORUS_TEST.harmonics)
     # Fitted on the first half, tested on the second: a fit alone would explain any motion.
@@ -129,7 +139,8 @@ def modulation_of(returns: Array, angle: float) -> Modulation | None:
 
 
 def fitted_angle(returns: Array, angle: float) -> float:
-    """Angle per return, rad, near `angle`, with the best fit of a Fourier series to the states (k, n)."""
+    """Angle per return, in rad and near `angle`, with the least-squares fit of a Fourier series to the states
+    at successive returns, (k, n)."""
     from scipy.optimize import minimize_scalar  # slow import: 0.1 s, for few runs
 
     numbers = np.arange(len(returns))
@@ -140,9 +151,9 @@ def fitted_angle(returns: Array, angle: float) -> float:
 
     # The minimum for one harmonic is 2 pi/k wide, that for m harmonics m times narrower.
     tried = np.linspace(
-        angle - TORUS_TEST.angle_tolerance,
-        angle + TORUS_TEST.angle_tolerance,
-        int(TORUS_TEST.trials_per_width * TORUS_TEST.angle_tolerance * len(returns)) + 1,
+        angle - TORUS_TEST.max_angle_difference,
+        angle + TORUS_TEST.max_angle_difference,
+        int(TORUS_TEST.trials_per_width * TORUS_TEST.max_angle_difference * len(returns)) + 1,
     )
     best = min(map(float, tried), key=lambda at: residual(at, 1))
     for harmonics in range(1, TORUS_TEST.harmonics + 1):
@@ -153,19 +164,20 @@ def fitted_angle(returns: Array, angle: float) -> float:
             bounds=bounds,
             args=(harmonics,),
             method="bounded",
-            options={"xatol": TORUS_TEST.angle_share * reach},
+            options={"xatol": TORUS_TEST.angle_tolerance_share * reach},
         )
         best = float(found.x)
     return best
 
 
 def fourier_basis(phases: Array, harmonics: int) -> Array:
-    """1, cosines and sines of the multiples of phases (k,), shape (k, 2 harmonics + 1)."""
+    """Matrix of Fourier terms at phases, (k,), in rad: 1, cosines and sines of the multiples up to
+    `harmonics`, (k, 2 harmonics + 1)."""
     multiples = np.outer(phases, np.arange(1, harmonics + 1))
     return np.hstack([np.ones((len(phases), 1)), np.cos(multiples), np.sin(multiples)])
 
 
-def largest_gap(phases: Array) -> float:
-    """Largest distance between neighbouring phases of (k,) on the unit circle, rad."""
+def largest_phase_gap(phases: Array) -> float:
+    """Largest distance, in rad, between neighbouring phases on the unit circle. phases: (k,), in rad."""
     around = np.sort(phases % (2 * np.pi))
     return float(np.diff(around, append=around[0] + 2 * np.pi).max())

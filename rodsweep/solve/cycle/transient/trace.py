@@ -1,7 +1,7 @@
-"""Path of the tip from the start of a motion to the end of its integration, from the integrator's steps.
+"""Path of the tip from the start of a motion to the end of its integration, interpolated between time steps.
 
-Tip and velocity are kept for each step. Their cubics have errors below the integrator's own, and six numbers
-replace a state of several hundred.
+Only position and velocity of the tip are recorded at each time step: six numbers instead of a state of
+several hundred. Cubic interpolation has smaller errors than the integrator.
 """
 
 import numpy as np
@@ -12,25 +12,26 @@ from ...motion.integrator import Trajectory
 
 
 class TipTrace:
-    """Tip and velocity at the steps of successive runs of one motion."""
+    """Record of the tip's path: position and velocity at all time steps of the successive runs of one
+    motion."""
 
     def __init__(self, beam: Beam) -> None:
         self.beam = beam
         self.times: list[Array] = []
         self.tips: list[Array] = []
-        """Tip (x, y, theta) and velocity of each run, (6, steps)."""
+        """For each run, x, y (in L) and theta of the tip, and their rates, (6, steps)."""
 
     is_full = False
-    """A path has any length."""
+    """Always False: the record has no maximum length."""
 
     def records_on(self, z: Array) -> bool:
-        """Always False: unlike a moving picture, the path ends as soon as the outcome is known. z: state,
-        (unknowns,).
-        """
+        """Always False: unlike an animation, the path ends as soon as the outcome of the motion is known. z:
+        state, (unknowns,)."""
         return False
 
     def begin(self, z: Array, relaxed: Array, duration: float) -> None:
-        """Adds a straight line between the tips of the start z and of its relaxed state, both (unknowns,).
+        """Records a straight line from the tip at the start state z to the tip at the state `relaxed`, both
+        (unknowns,), over `duration`, in tau2.
 
         The relaxation rates, up to 1e10/tau2, are too large for a cubic.
         """
@@ -40,7 +41,7 @@ class TipTrace:
         self.tips.append(np.concatenate([tips, np.repeat(slope, 2, axis=1)]))
 
     def add(self, run: Trajectory, clock: float) -> None:
-        """Adds a run that begins at the time `clock`, in tau2."""
+        """Records the time steps of a run that begins at the time `clock`, in tau2."""
         # A run that left the model may end with a state that is not finite.
         finite = np.isfinite(run.states).all(axis=1)
         states = run.states[finite]
@@ -48,7 +49,8 @@ class TipTrace:
         self.tips.append(np.concatenate(self.beam.tip_motion(states, self.beam.rate(states))))
 
     def at_equal_times(self, count: int) -> Array:
-        """Time in tau2 and x, y, theta of the tip, (4, count), from the start to the end of the last run."""
+        """Time in tau2, and x, y (in L) and theta of the tip, (4, count), at equidistant times from the start
+        to the end of the last run."""
         from scipy.interpolate import CubicHermiteSpline  # slow import: 0.1 s, for few runs
 
         times = np.linspace(0.0, self.times[-1][-1], count)

@@ -1,11 +1,12 @@
-"""Integration of the motion from a start until Newton's method can take over, or to the straight rod.
+"""Integration of a motion from a start until Newton's method finds its cycle, or until the rod is straight.
 
-The motion is integrated from return to return (`returns`). Newton's method starts when two returns agree to a
-tenth. Slow motions about the straight rod are shortened: the state is scaled to the amplitude that the
-amplitude equation predicts (`amplitude_equation`). A motion whose path is stored has no such jumps.
+The motion is integrated from return to return (`returns`). Newton's method starts once two returns agree to a
+relative distance of a tenth. Slow motions about the straight rod are shortened by jumps: the state is scaled
+to the amplitude that the amplitude equation predicts (`amplitude_equation`). A motion with a stored path has
+no jumps.
 
-A rod with an unstable straight state leaves this state. While a large stretch relaxes slowly, the deflection
-may decay nevertheless; the motion then restarts from a small deflection in the leading mode.
+A rod with an unstable straight state leaves this state. The deflection may nevertheless decay while a large
+stretch relaxes slowly; the motion then restarts from a small deflection in the leading mode.
 """
 
 from collections import deque
@@ -28,9 +29,9 @@ from ..status import CycleStatus
 from ..straight_rod import StraightRod, straight_rod
 from .amplitude_equation import AmplitudeEquation
 from .from_motion import orbit_from_motion
-from .motion_mesh import near_rod
-from .returns import RETURNS, angle_weights, early_end, repetition, section_crossings, until_returns
-from .schemes import schemes_of
+from .motion_mesh import integrable_rod
+from .returns import RETURNS, early_end, repetition, section_crossings, tip_angle_row, until_returns
+from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
 from .trace import TipTrace
 from .transient_outcome import TransientOutcome
@@ -38,12 +39,12 @@ from .transient_settings import TRANSIENT
 
 
 class Transient:
-    """Motion of one rod from a start; `follow` is called once.
+    """Integration of the motion of one rod from a start; `follow` is called only once.
 
-    form: the rod whose cycle is solved for. beam: the integrated rod on the same mesh, different only where
-    the rod is in a limit. straight: stability of the straight rod. along: parameter of the cycle's tangent.
-    unstable: a nearby unstable cycle. trace: path of the tip or shapes, if the request stores them.
-    workspace: memory of Newton's matrices.
+    form: the rod whose cycle is solved for. straight: stability of the straight rod. along: parameter of the
+    cycle's tangent. unstable: a nearby unstable cycle. workspace: memory of Newton's matrices. beam: the
+    integrated rod on the same mesh; a rod near the limit if `form` is in a limit. trace: record of the tip's
+    path or of shapes, if the request stores either.
     """
 
     def __init__(
@@ -55,7 +56,7 @@ class Transient:
         unstable: RefinedCycle | None,
         workspace: NewtonWorkspace,
     ) -> None:
-        self.beam = Beam(near_rod(form.rod), form.mesh)
+        self.beam = Beam(integrable_rod(form.rod), form.mesh)
         self.form = form
         self.straight = straight
         self.along = along
@@ -65,31 +66,33 @@ class Transient:
         self.unstable = unstable
         self.mode = leading_mode(self.beam)
         self.trace = self._trace(request)
-        self.row = angle_weights(self.beam)
+        self.row = tip_angle_row(self.beam)
         rate = straight.growth_rate(self.mode.w.real)
         period = self.mode.period
-        self.first_scheme, self.scheme, noise, steps = schemes_of(rate * period, request.transient > 0)
+        self.first_scheme, self.scheme, noise, steps = schemes_for_growth(
+            rate * period, request.transient > 0
+        )
         self.max_steps = steps * max(request.most_periods, TRANSIENT.min_returns)
         self.small = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
-        self.step = period / TRANSIENT.first_steps
-        """First time step of the next run, tau2."""
-        self.past: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT.max_returns)
-        """Times and bending moments of the last returns since the last jump."""
+        self.step = period / TRANSIENT.first_steps_per_period
+        """First time step of the next run, in tau2."""
+        self.past: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT.max_stored_returns)
+        """Times, in tau2, and bending moments of the last returns since the last jump."""
         self.clock = 0.0
         self.waited = self.steps = self.jumps = self.failures = self.next_newton = 0
         self.failed_starts = 0
-        """Successive starts of Newton's method without a cycle near."""
+        """Number of successive failures of Newton's method."""
         self.unsolved = ""
-        """The reason why a closed motion has no cycle; empty while it is sought."""
+        """Message why a periodic motion has no cycle; "" while the search continues."""
 
     def _trace(self, request: CycleRequest) -> TipTrace | ShapeTrace | None:
-        """The part of the motion that the request stores."""
+        """Record of the tip's path or of shapes, if the request stores either; else None."""
         if request.frames:
             return ShapeTrace(self.beam)
         return TipTrace(self.beam) if request.transient else None
 
     def follow(self, z: Array) -> TransientOutcome:
-        """Outcome of the motion from z, shape (unknowns,)."""
+        """Outcome of the motion from the state z, (unknowns,)."""
         z = self._relaxed(z)
         first = True
         while self.waited < self.most_periods and self.steps < self.max_steps and not self.unsolved:
@@ -97,19 +100,17 @@ class Transient:
             run = self._run_of_returns(z, first)
             if end := early_end(self.beam, run, self.waited):
                 status = CycleStatus.left_the_model if end.left_the_model else CycleStatus.failed
-                return self._ended(status, end.why)
+                return self._ended(status, end.message)
             z = run.states[-1]
             times, states = section_crossings(self.beam, run)
             self._remember(run, times, states)
-            # Below rounding a motion has no memory of its amplitude: only a rod that is not unstable stays
-            # straight.
+            # Rounding errors hide the growth of a motion this small, so an unstable rod is not straight.
             if self.straight.stable is not False and np.linalg.norm(z) < RETURNS.straight_size:
                 return self._ended(CycleStatus.straight, "decayed to rounding")
             if self.straight.stable is False and not self._bends_visibly(z):
                 if self.trace or self.jumps >= TRANSIENT.max_jumps:
                     break
-                # The rod is unstable, but the start has no part along the growing mode beyond rounding: it is
-                # started anew.
+                # The rod is unstable, but the state has no component along the growing mode beyond rounding.
                 z = self._jumped(TRANSIENT.restart_deflection * self.mode.z.real)
                 continue
             early = first
@@ -121,7 +122,7 @@ class Transient:
                 return self._ended(CycleStatus.straight, "decays at the rate of the leading mode")
             factor = None if early or self.jumps >= TRANSIENT.max_jumps else self.small.jump(times, states)
             if factor is not None and self.trace and not self.trace.is_full:
-                continue  # a stored path has no jumps
+                continue  # a motion with a stored path has no jumps
             if factor is not None:
                 scaled = factor * z
                 pull = self.beam.layout.field(scaled, "n1")
@@ -134,7 +135,8 @@ class Transient:
         return self._ended(CycleStatus.not_settled, self._not_settled(z))
 
     def _remember(self, run: Trajectory, times: Array, states: Array) -> None:
-        """Counts the returns of a run, and stores their times since the start and their bending moments."""
+        """Counts the returns and time steps of a run, and records times, (k,), and bending moments of its
+        returns. states: at the returns, (k, unknowns)."""
         self.waited += max(len(times), 1)
         self.steps += len(run.times) - 1
         moments = self.beam.layout.field(states, "m3")
@@ -142,13 +144,14 @@ class Transient:
         self.clock += run.times[-1]
 
     def _jumped(self, z: Array) -> Array:
-        """State after a jump to z and the relaxation of fast components, (unknowns,)."""
+        """State, (unknowns,), after a jump to the state z, (unknowns,), and the relaxation of its fast
+        components."""
         self.jumps += 1
         self.past.clear()
         return relaxed(self.beam, z, self.mode.period)
 
     def _not_settled(self, z: Array) -> str:
-        """The reason why the motion, now at the state z, has no outcome."""
+        """Message why the motion, which has reached the state z, (unknowns,), has not settled."""
         if self.unsolved:
             return f"{counted(self.waited, 'return')} of the tip, {self.unsolved}"
         if self._bends_visibly(z):
@@ -156,24 +159,25 @@ class Transient:
             return f"{counted(self.waited, 'return')} of the tip{work}, none periodic"
         unstable = self.straight.stable is False
         why = "the straight rod is unstable" if unstable else "its stretch has not relaxed"
-        return f"the deflection has decayed after {counted(self.waited, 'return')} of the tip, but {why}"
+        return f"the deflection has decayed after {self.waited} returns, but {why}"
 
     def _bends_visibly(self, z: Array) -> bool:
-        """Whether bending and shear exceed rounding errors."""
+        """Whether bending and shear of the state z, (unknowns,), exceed rounding errors."""
         return bool(np.linalg.norm(self.beam.layout.transverse(z)) >= RETURNS.straight_size)
 
     def _rate_of_the_beam(self, rate: float) -> float:
-        """Linear growth rate of the beam's rod, 1/tau2, from the spectrum of that rod.
+        """Linear growth rate of the integrated rod, in 1/tau2, from its exact spectrum.
 
-        rate: linear growth rate of the rod of `form`, which is returned if both rods are equal. Eigenvalues
-        of the beam's matrix would have rounding errors of 1e-4 for stiff rods.
+        rate: linear growth rate of the rod in `form`, the result if both rods are equal. Eigenvalues of the
+        matrix of a stiff beam would have rounding errors of 1e-4.
         """
         if self.beam.rod == self.form.rod:
             return rate
         return straight_rod(self.beam.rod, np.array([self.straight.w])).growth_rate(rate)
 
     def _relaxed(self, z: Array) -> Array:
-        """State to which the stretch of the start z relaxes; the relaxation counts in a stored path."""
+        """State, (unknowns,), to which the fast components of the start z, (unknowns,), relax; a stored path
+        includes the relaxation."""
         after = relaxed(self.beam, z, self.mode.period)
         if self.trace:
             self.clock = INTEGRATOR.relaxation_share * self.mode.period
@@ -184,14 +188,16 @@ class Transient:
         return TransientOutcome(status, why, self.waited, found)
 
     def _run_of_returns(self, z: Array, first: bool) -> Trajectory:
-        """A run over TRANSIENT.returns_per_run returns, limited to three times the expected duration."""
+        """A run from the state z, (unknowns,), over TRANSIENT.returns_per_run returns, or
+        TRANSIENT.max_run_duration times their expected duration. first: whether this is the first run of the
+        motion."""
         returns, scheme = (
             (TRANSIENT.first_returns, self.first_scheme)
             if first
             else (TRANSIENT.returns_per_run, self.scheme)
         )
         limit = until_returns(self.row, z, returns)
-        duration = TRANSIENT.longest_wait * returns * self.mode.period
+        duration = TRANSIENT.max_run_duration * returns * self.mode.period
         run = integrator(self.beam.mesh, scheme).run(self.beam, z, duration, self.step, limit)
         if len(run.times) > 2:
             self.step = run.times[-1] - run.times[-2]
@@ -200,11 +206,12 @@ class Transient:
         return run
 
     def _closed(self, run: Trajectory) -> RefinedCycle | None:
-        """The stable cycle, if the returns repeat and Newton's method converges; None otherwise."""
+        """The stable cycle near the end of a run, if the returns repeat and Newton's method converges; else
+        None."""
         turns, distance = repetition([state for _, state in self.past][-1 - RETURNS.max_returns_per_period :])
-        if self.failed_starts >= TRANSIENT.max_unsolved and distance < TRANSIENT.closed_distance:
+        if self.failed_starts >= TRANSIENT.max_failed_starts and distance < TRANSIENT.max_periodic_distance:
             self.unsolved = (
-                f"periodic to {distance:.0e}, but on finer meshes no cycle is found near the motion"
+                f"periodic within {distance:.0e}, but on finer meshes no cycle is found near the motion"
             )
             return None
         if distance >= self._near_enough() or self.waited < self.next_newton:
@@ -214,14 +221,15 @@ class Transient:
         return self._cycle_near(run, self.past[-1][0] - self.past[-1 - turns][0], turns)
 
     def _near_enough(self) -> float:
-        """Relative distance of two returns below which Newton's method is tried."""
-        distance = TRANSIENT.newton_distance / TRANSIENT.newton_divisor**self.failures
+        """Relative distance between two returns below which Newton's method starts next."""
+        distance = TRANSIENT.max_newton_distance / TRANSIENT.newton_divisor**self.failures
         settles = self.trace and self.waited < self.most_periods // 2
         return min(distance, TRANSIENT.stored_path_distance) if settles else distance
 
     def _cycle_near(self, run: Trajectory, period: float, turns: int) -> RefinedCycle | None:
-        """The stable cycle near the end of a run, by Newton's method; None if not found."""
-        # The run is shorter than the period to be cut from it: several returns may make one period.
+        """The stable cycle near the end of a run, by Newton's method; None if not found. period: approximate,
+        in tau2. turns: number of returns of the tip per period."""
+        # The run may be shorter than a period of several returns.
         if run.times[-1] < period:
             run = integrator(self.beam.mesh, self.scheme).run(self.beam, run.states[-1], period, self.step)
             if run.ending != RunEnding.reached:
@@ -235,5 +243,5 @@ class Transient:
         self.failed_starts = 0
         if found.stable is False:
             self.unstable = found
-        # A multiplier of 1 to rounding is a closed motion of any amplitude, not a limit cycle.
-        return found if found.stable and 1 - found.largest_multiplier >= TRANSIENT.neutral_distance else None
+        # A multiplier of 1 to rounding belongs to a family of periodic orbits of any amplitude.
+        return found if found.stable and 1 - found.largest_multiplier >= TRANSIENT.min_unit_distance else None

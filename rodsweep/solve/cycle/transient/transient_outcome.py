@@ -1,4 +1,4 @@
-"""Outcome of the integration of a motion (`transient`)."""
+"""Outcome of integrating a motion until its cycle is found (`transient`)."""
 
 from dataclasses import dataclass
 
@@ -8,13 +8,11 @@ from ..status import CycleStatus
 
 @dataclass(frozen=True, eq=False)
 class TransientOutcome:
-    """Outcome of the transient. periods: returns of the tip; found: the cycle, if the motion reached one.
-
-    around: the unstable cycle inside a torus.
-    """
+    """Outcome of integrating a motion. periods: number of returns of the tip. cycle: the cycle, if the motion
+    reached a cycle. unstable_cycle: the unstable cycle inside the torus, if the motion is on a torus."""
 
     status: CycleStatus
     message: str
     periods: int
-    found: RefinedCycle | None = None
-    around: RefinedCycle | None = None
+    cycle: RefinedCycle | None = None
+    unstable_cycle: RefinedCycle | None = None

@@ -1,1 +1,2 @@
-"""Minimally augmented systems: cycles and their test functions by the factors of a nearby matrix."""
+"""Minimally augmented systems: cycles and their test functions, corrected with the matrix factors of a nearby
+cycle."""

@@ -1,9 +1,9 @@
-"""Test functions of folds and torus points, evaluated at any cycle near a cycle with an eliminated matrix.
+"""Test functions of folds and torus points, evaluated at cycles near a cycle with a factorised Newton matrix.
 
-Minimally augmented systems (Govaerts 2000, ch. 4 and 10): the test function g of a cycle follows from a
-bordered linear system of the linearised equations. That system is corrected here with the factors of a
-neighbouring cycle, the previous vector as the start and the residual at the cycle itself, without another
-elimination.
+Minimally augmented systems (Govaerts 2000, ch. 4 and 10): the test function of a cycle is the solution of a
+bordered linear system of the linearised equations. This module solves the bordered system iteratively. Each
+correction uses the residual at the cycle itself and the matrix factors of the neighbouring cycle, so that no
+further matrix is factorised.
 """
 
 from dataclasses import dataclass, replace
@@ -17,44 +17,49 @@ from ....orbit.orbit import Orbit
 from ....point import Unsolvable
 from ...bordered.matrix import BorderedMatrix
 from ...bordered.scale import deflection_of
-from ..point import LOCATING
+from ..point import SPECIAL_POINT
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AugmentedSettings:
-    """Settings for iterating cycle, test function and null vectors with the factors of a nearby cycle's
-    matrix.
-    """
+    """Settings for correcting a cycle, its test function and its null vectors with the matrix factors of a
+    nearby cycle."""
 
     tolerance: float = 1e-9
-    """Relative tolerance of a cycle and its test function, which is thus known to about 1e-8."""
-    function_share: float = 0.01
-    """Tolerance in units of the distance from the curve that the test function indicates; the larger
-    tolerance counts."""
+    """Relative tolerance of a cycle and its test function; the test function then has an error of about
+    1e-8."""
+    tolerance_share: float = 0.01
+    """Tolerance of a cycle, in units of its distance from the curve by the test function; the larger of both
+    tolerances applies."""
     min_contraction: float = 10.0
-    """Lower limit of the assumed contraction rate: ratio of successive corrections over the distance from the
-    matrix's cycle. The true rate is 2 or 3 for large cycles; a larger one is on the safe side."""
+    """Smallest assumed contraction rate: ratio of successive corrections, divided by the relative
+    distance from the cycle of the matrix. The measured rate is 2 or 3 for large cycles; a larger assumed
+    rate is safe."""
     contraction_safety: float = 3.0
-    """Safety factor on a measured contraction rate, for the next cycle."""
-    slow: float = 0.3
-    """Ratio of successive corrections above which a new matrix is assembled."""
-    rounding: float = 1e-8
-    """Size below which a correction that hardly decreases is rounding error: the iteration stops."""
+    """Safety factor on a measured contraction rate that is assumed for the next cycle."""
+    max_correction_ratio: float = 0.3
+    """Ratio of the sizes of successive corrections, above which a new matrix is assembled."""
+    rounding_correction: float = 1e-8
+    """Relative size of a correction below which corrections that hardly decrease are rounding errors: the
+    iteration stops."""
     max_corrections: int = 30
     """Maximum number of corrections of one cycle."""
     inverse_shift: float = 1e-9
-    """Relative distance of inverse iteration's shift from the eigenvalue, which keeps the matrix regular."""
+    """Relative distance between the shift of inverse iteration and the eigenvalue, which keeps the shifted
+    matrix regular."""
     inverse_iterations: int = 2
-    """Number of inverse iterations; each damps other eigenvectors by the ratio of shift and gap."""
+    """Number of inverse iterations; each iteration damps other eigenvectors by the ratio of this distance to
+    the gap between eigenvalues."""
 
 
 AUGMENTED = AugmentedSettings()
 
 
 class FoldFunction:
-    """Test function of folds: the derivative dp/dl of the parameter along the branch; the border measures l.
+    """Test function of folds: derivative of the scaled parameter coordinate by the length along `border`.
 
-    small: whether the function is divided by the deflection, because it vanishes at a Hopf point too.
+    small: whether the derivative is divided by the deflection, because the derivative vanishes at a Hopf
+    point too.
     """
 
     def __init__(self, matrix: BorderedMatrix, border: Array, small: bool) -> None:
@@ -65,17 +70,18 @@ class FoldFunction:
         self.vectors = tangent / (matrix.scale.moved(matrix.orbit, tangent) @ border)
 
     def value(self, orbit: Orbit) -> float:
-        """The test function from the present tangent."""
-        rises = float(self.vectors[-1] / self.matrix.scale.coordinate)
+        """The test function at an orbit, from the last corrected tangent."""
+        rises = float(self.vectors[-1] / self.matrix.scale.coordinate_unit)
         # Beside a Hopf point the rate vanishes with the amplitude; divided by it the function stays regular.
-        return rises * self.matrix.scale.deflection / deflection_of(orbit) if self.small else rises
+        return rises * self.matrix.scale.deflection_unit / deflection_of(orbit) if self.small else rises
 
     def start_from(self, tangent: Array) -> None:
-        """Sets the tangent, (N + 1,), that is corrected next."""
+        """Sets the tangent, (N + 1,), from which the next correction starts."""
         self.vectors = tangent
 
     def correct(self, orbit: Orbit) -> None:
-        """Corrects the tangent once at a cycle; the equation for the tangent is linear."""
+        """Corrects the tangent at an orbit by one step of iterative refinement; the equation for the tangent
+        is linear."""
         matrix = self.matrix
         tangent = self.vectors
         p = orbit.semidiscrete
@@ -92,12 +98,12 @@ class FoldFunction:
 
 
 class TorusFunction:
-    """Test function of torus points: |mu| - 1 of the complex pair nearest to the unit circle, from its
-    eigenvector."""
+    """Test function of torus points: |mu| - 1 for the complex pair of multipliers mu nearest to the unit
+    circle, corrected together with its eigenvector. Raises Unsolvable if all multipliers are real."""
 
     def __init__(self, matrix: BorderedMatrix) -> None:
         self.matrix = matrix
-        pair = crossing_pair(matrix)
+        pair = pair_nearest_unit_circle(matrix)
         if pair is None:
             raise Unsolvable("the multipliers that cross the unit circle have become real")
         self.multiplier = pair
@@ -117,15 +123,15 @@ class TorusFunction:
         self.bordered[n, :n] = self.border
 
     def value(self, orbit: Orbit) -> float:
-        """The test function from the present multiplier."""
+        """The test function |mu| - 1, from the last corrected multiplier mu; `orbit` is not used."""
         return abs(self.multiplier) - 1
 
     def start_from(self, parts: Array) -> None:
-        """Sets the real and imaginary part of the eigenvector, (2, N + 1), that is corrected next."""
+        """Sets the eigenvector, given by real and imaginary part, (2, N + 1), that is corrected next."""
         self.vectors = parts
 
     def correct(self, orbit: Orbit) -> None:
-        """Corrects the multiplier and its eigenvector once at a cycle."""
+        """Corrects the multiplier and its eigenvector at an orbit by one approximate Newton step."""
         columns, ends = self.matrix.residual_variations(orbit, self.vectors)
         n = ends.shape[1]
         start, end = (part[0] + 1j * part[1] for part in (self.vectors[:, :n], self.vectors[:, -2 - n : -2]))
@@ -137,7 +143,8 @@ class TorusFunction:
 
 
 def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
-    """Corrects a test function at a cycle until its value is known to rounding; raises Unsolvable."""
+    """Corrects a test function at an orbit until its value changes only by rounding error; raises
+    Unsolvable."""
     value = function.value(orbit)
     last = np.inf
     for _ in range(AUGMENTED.max_corrections):
@@ -145,7 +152,9 @@ def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
         before = value
         value = function.value(orbit)
         change = abs(value - before)
-        if change <= LOCATING.function_tolerance or (change > last / 2 and change <= AUGMENTED.rounding):
+        if change <= SPECIAL_POINT.function_tolerance or (
+            change > last / 2 and change <= AUGMENTED.rounding_correction
+        ):
             return
         if change > last:
             break
@@ -154,13 +163,13 @@ def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
 
 
 def _parts(vector: Array) -> Array:
-    """Real and imaginary part of a vector, (2, n)."""
+    """Real and imaginary part, (2, n), of a complex vector, (n,)."""
     return np.array([vector.real, vector.imag])
 
 
-def crossing_pair(matrix: BorderedMatrix) -> complex | None:
-    """Complex multiplier nearest to the unit circle, over half a period and the reflection; None if all are
-    real."""
+def pair_nearest_unit_circle(matrix: BorderedMatrix) -> complex | None:
+    """Complex multiplier nearest to the unit circle, over the solved time interval of the matrix's orbit;
+    None if all multipliers are real."""
     h = matrix.partial_multipliers
-    pairs = h[np.abs(h.imag) > LOCATING.real_multiplier * np.abs(h)]
+    pairs = h[np.abs(h.imag) > SPECIAL_POINT.real_multiplier * np.abs(h)]
     return complex(pairs[np.argmin(np.abs(np.abs(pairs) - 1))]) if len(pairs) else None
