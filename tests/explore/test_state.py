@@ -47,8 +47,8 @@ def test_the_address_of_an_arm_gives_the_same_arm():
         ("F=3&length=2", "length"),
     ],
 )
-def test_an_address_with_an_unknown_key_or_choice_is_refused(query, threshold_title):
-    with pytest.raises(InputError, match=threshold_title):
+def test_an_address_with_an_unknown_key_or_choice_is_refused(query, named):
+    with pytest.raises(InputError, match=named):
         from_address(query)
 
 
