@@ -18,21 +18,23 @@ from .material.build import Build, LocalCoefficients
 from .rod import Rod
 
 SAMPLES = 64
-"""Number of samples of K, at equal ratios: 13 % apart, enough for an estimate."""
+"""Number of samples of K = kappa^2, at equal ratios. Neighbours differ by 13 %, enough for an estimate."""
 PIECE_SAMPLES = 33
-"""Points of each smooth piece of an arm at which local waves are evaluated."""
+"""Number of points in each interval between two breaks of an arm's profile at which local waves are
+evaluated."""
 KEPT = 16
-"""Arms whose samples are kept."""
+"""Number of arms, or builds, whose latest results the caches of this module hold."""
 LOWEST = 1e-4
-"""Smallest sample of K in units of F g, the K above which every wave decays."""
+"""Smallest sample of K = kappa^2, divided by F g. Every wave with K > F g decays."""
 FRACTIONS: Array = LOWEST ** (1 - np.arange(SAMPLES) / SAMPLES)
-"""The samples of K in units of F g, (SAMPLES,)."""
+"""Samples of K = kappa^2 divided by F g, increasing, (SAMPLES,)."""
 
 
 def most_amplified_wave(rod: Rod) -> tuple[float, float]:
     """(growth rate in 1/tau2, wave number in 1/L) of the most amplified wave; (0, 0) if all waves decay.
 
-    Not compiled, so that `check` need not load numba.
+    The wave travels on an infinitely long rod with the coefficients of the uniform `rod`. The function is not
+    compiled, so that `rodsweep check` need not load numba.
     """
     F, nu, c2, gamma3 = rod.coefficients
     top = F * rod.g
@@ -44,9 +46,9 @@ def most_amplified_wave(rod: Rod) -> tuple[float, float]:
 
 
 class SampledArm(NamedTuple):
-    """Points between the breaks of an arm, the length that each stands for, and the coefficients there.
+    """Midpoints of short intervals of u along an arm, with the local coefficients at the midpoints.
 
-    points, weights: (points,).
+    points: midpoints, (points,), none of them a break of the profile. weights: interval lengths, (points,).
     """
 
     points: Array
@@ -56,14 +58,14 @@ class SampledArm(NamedTuple):
 
 @lru_cache(maxsize=KEPT)
 def sampled(rod: Rod) -> SampledArm:
-    """The samples of an arm, kept for the next question about it."""
+    """Sample points of the arm `rod` and its local coefficients there, cached by rod."""
     points, weights = _points_of(rod.build)
     return SampledArm(points, weights, rod.local(points))
 
 
 @lru_cache(maxsize=KEPT)
 def _points_of(build: Build) -> tuple[Array, Array]:
-    """`points` and `weights` of `SampledArm` for the arms of a build."""
+    """`points` and `weights` of `SampledArm`, both (points,), for all arms of one build."""
     lengths = np.diff(build.breaks)
     inside = (np.arange(PIECE_SAMPLES) + 0.5) / PIECE_SAMPLES
     points = (build.breaks[:-1, None] + lengths[:, None] * inside).ravel()
@@ -72,9 +74,9 @@ def _points_of(build: Build) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=KEPT)
 def local_growth(rod: Rod) -> tuple[Array, Array]:
-    """Growth rates and wave numbers of the most amplified waves at the samples u of an arm, both (points,).
+    """(growth rates, wave numbers) of the most amplified wave at each point of `sampled(rod)`: (points,).
 
-    Each point is treated as a uniform rod with the local coefficients.
+    A local wave travels on an infinitely long uniform rod with the coefficients of the arm at the point.
     """
     nu, c2, c3, gamma2, gamma3, g = sampled(rod).local
     top = np.maximum(rod.F * c3 * g, 0.0)
@@ -85,9 +87,10 @@ def local_growth(rod: Rod) -> tuple[Array, Array]:
 
 
 def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:
-    """(K, growth rates) of the sampled waves, both (..., SAMPLES), for k3 = gamma2 = 1; 0 for decaying waves.
+    """(K, growth rates) of the sampled waves, both (..., SAMPLES), for k3 = gamma2 = 1.
 
-    top: F g. relaxation: g nu. All arguments are numbers, or arrays (n, 1) for n rods.
+    A decaying wave has the growth rate 0. top: F g. relaxation: g nu. All arguments are numbers, or arrays
+    (n, 1) for n rods.
     """
     square = c2 * gamma3
     K = top * FRACTIONS
@@ -96,8 +99,8 @@ def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Arra
         drive = K * (top - K)
         linear = (c2 + gamma3) * K + relaxation
         spread = np.sqrt(linear**2 + 4 * square * drive)
-        # The root of square r^2 + linear r = drive; each formula is free of cancellation for one sign of
-        # `linear`.
+        # The positive root r of square r^2 + linear r = drive. Each of the two formulas is free of
+        # cancellation for one sign of `linear`.
         rates = 2 * drive / (linear + spread)
         if not (linear > 0).all():
             slow = np.where(square > 0, (spread - linear) / (2 * square), 0.0)

@@ -19,15 +19,15 @@ from .scaling import compression_factor, scaled
 
 
 class Crushed(ValueError):
-    """The force is not below the force that crushes the rod."""
+    """The follower force is not below the force that crushes the rod."""
 
 
 class NotUniform(ValueError):
-    """Constant coefficients were requested for an arm that varies or whose law is not linear."""
+    """A formula for uniform rods was applied to an arm that varies or has a nonlinear constitutive law."""
 
 
 class Coefficients(NamedTuple):
-    """Coefficients of the transverse operator, the argument of compiled functions."""
+    """Coefficients of the transverse operator of a uniform rod, as an argument of compiled functions."""
 
     F: float
     nu: float
@@ -36,7 +36,7 @@ class Coefficients(NamedTuple):
 
 
 def coefficients_of(values: Mapping[str, Any]) -> Coefficients:
-    """The coefficients for parameter values by name: floats, or arrays (n,) for n rods. Checks no range."""
+    """Coefficients for parameter values by name, floats or arrays (n,) for n rods; checks no range."""
     own = scaled(values)
     F = own["F"]
     k1 = own["k1"]
@@ -87,12 +87,12 @@ class Rod:
         return self._coefficients
 
     def local(self, u: Array) -> LocalCoefficients:
-        """Coefficients of the transverse operator at points u, (points,), none of them a break."""
+        """Coefficients of the transverse operator at points u, (points,), none a break of the profile."""
         return self.build.local(self.F, scaled(self.values), u)
 
     @staticmethod
     def local_of_all(rods: Sequence["Rod"], u: Array) -> LocalCoefficients:
-        """`local` of n rods of one build, (n, *u.shape), in the time of one."""
+        """`local` of n rods with the same build at points u; each array has the shape (n, *u.shape)."""
         if len(rods) == 1:
             return LocalCoefficients(*(x[None] for x in rods[0].local(u)))
         shape = (len(rods), *(1,) * u.ndim)
@@ -127,8 +127,8 @@ class Rod:
     def equivalent(self) -> tuple["Rod", float]:
         """(linear rod, rate): eigenvalues of this uniform rod are `rate` times the linear rod's eigenvalues.
 
-        With K = B(nu), the linear rod has the coefficients (F/K, nu, c2 K, gamma3), and rate = K. Raises
-        NotUniform for an arm that varies.
+        With the bending factor K = B(nu) of this rod's law, the linear rod has the coefficients
+        (F/K, nu, c2 K, gamma3), and rate = K. Raises NotUniform for an arm that varies.
         """
         if not self.uniform:
             raise NotUniform(f"{self} is not uniform")
@@ -142,7 +142,9 @@ class Rod:
 
     @property
     def linear(self) -> "Rod":
-        """The rod with the same transverse linear problem; parameters of cycles alone have their defaults."""
+        """The rod with equal parameters of the transverse linear problem, and defaults of all other
+        parameters.
+        """
         return Rod(**{name: self.values[name] for name in OF_TRANSVERSE_PROBLEM}, build=self.build)
 
     def coordinate(self, name: str) -> float:
@@ -150,11 +152,11 @@ class Rod:
         return float(PARAMETERS[name].coordinate(getattr(self, name)))
 
     def with_coordinate(self, name: str, coordinate: float) -> "Rod":
-        """The rod with another coordinate of a parameter; ValueError for a coordinate outside the model."""
+        """The rod with another coordinate of the parameter `name`; ValueError for an invalid value."""
         return self.changed(**{name: PARAMETERS[name].value(coordinate)})
 
     def changed(self, **values: float) -> "Rod":
-        """The rod with other values of some parameters; ValueError for values outside the model."""
+        """The rod with other parameter values, given by name; ValueError for an invalid value."""
         # `dataclasses.replace` takes a third longer.
         return Rod(**{**self.values, **values}, build=self.build)
 
@@ -165,17 +167,17 @@ class Rod:
 
     @property
     def c1(self) -> float:
-        """Stretch compliance; 0 for an inextensible rod."""
+        """Stretch compliance 1/k1 at the base, in L^2/k3; 0 for an inextensible rod."""
         return 1 / self.stretch_stiffness
 
     @property
     def c2(self) -> float:
-        """Shear compliance; 0 for an unshearable rod."""
+        """Shear compliance 1/k2 at the base, in L^2/k3; 0 for an unshearable rod."""
         return 1 / float(scaled(self.values)["k2"])
 
     @property
     def nu(self) -> float:
-        """Compression of the straight state, nu = 1 - F c1 (Sec. V)."""
+        """Stretch of the straight uniform rod under its force, nu = 1 - F c1 (Sec. V)."""
         return self.coefficients.nu
 
     @property
@@ -194,7 +196,7 @@ class Rod:
         return float(scaled(self.values)["gamma1"])
 
     def direction(self, name: str) -> Coefficients:
-        """Derivative of the coefficients, which are affine, with respect to a parameter's coordinate."""
+        """Derivative of the affine `coefficients` with respect to the coordinate of the parameter `name`."""
         slopes = self._slopes(name)
         F = slopes.get("F", 0.0)
         c1 = slopes.get("k1", 0.0)
@@ -204,22 +206,22 @@ class Rod:
 
     @property
     def material(self) -> Material:
-        """Compliances, drags, force and straight state of the rod, for motion in the plane."""
+        """Coefficients of the nonlinear balance of the uniform rod, for motion in the plane."""
         compliance = np.array([self.c1, self.c2, 1.0])
         drag = np.array([self.axial_drag, 1.0, self.rotational_drag])
         return Material(compliance, drag, self.F, first_component(self.nu, 3))
 
     def sections(self, u: Array) -> Sections:
-        """Cross-sections at points u, (points,), none of them a break."""
+        """Compliances, drags and stretch at points u, (points,); no point may be a break of the profile."""
         return self.build.sections(self.F, scaled(self.values), u)
 
     def section_changes(self, name: str, u: Array) -> Sections:
-        """Derivatives of cross-sections at points u, (points,), with respect to a parameter's coordinate."""
+        """Derivatives of `sections(u)` with respect to the coordinate of parameter `name`; u: (points,)."""
         slopes = {"taper": 1.0} if name == "taper" else self._slopes(name)
         return self.build.section_changes(self.sections(u), self.F, self.taper, slopes, u)
 
     def material_in_space(self, twist_stiffness: float, twist_drag: float) -> Material:
-        """Material of the rod, for motion in space; twist stiffness in k3, twist drag in gamma2 L^2."""
+        """Nonlinear balance of the uniform rod in space; twist stiffness in k3, twist drag in gamma2 L^2."""
         c1, c2, bending = self.material.compliance
         axial, normal, rotational = self.material.drag
         compliance = np.array([c1, c2, c2, 1 / twist_stiffness, bending, bending])
@@ -227,7 +229,7 @@ class Rod:
         return Material(compliance, drag, self.F, first_component(self.nu, 6))
 
     def material_change(self, name: str) -> Material:
-        """Derivative of the material with respect to a parameter's coordinate."""
+        """Derivative of `material` with respect to the coordinate of the parameter `name`."""
         slopes = self._slopes(name)
         F, nu, c2, gamma3 = self.direction(name)
         compliance = np.array([slopes.get("k1", 0.0), c2, 0.0])
@@ -235,12 +237,11 @@ class Rod:
         return Material(compliance, drag, F, first_component(nu, 3))
 
     def _slopes(self, name: str) -> dict[str, float]:
-        """Nonzero derivatives of force, compliances, drags with respect to a parameter's coordinate, by name.
+        """Nonzero derivatives of force, compliances and drags with respect to the coordinate of `name`.
 
-        Force, compliances and drags are products of coordinates, so the derivative is the product of the
-        other factors.
+        Keys are F, k1, k2, gamma1 and gamma3; a stiffness stands for its compliance. Force, compliances and
+        drags are products of coordinates, so a derivative is the product of the other factors.
         """
-        # A coordinate is linear in what it scales, so the slope is the product of the other factors.
         others = scaled({**self.values, name: 1.0})
         changing = PARAMETERS[name].scales or (name,)
         return {of: float(1 / others[of] if of in STIFFNESSES else others[of]) for of in changing}

@@ -1,4 +1,4 @@
-"""An arm in SI units as the keys of a rod: its dimensionless parameters, and its section `material`."""
+"""An arm in SI units as a dimensionless rod: values of the parameters, and keys of the section `material`."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ from .arm import SlenderArm
 
 
 def parameters_of(arm: SlenderArm) -> dict[str, float]:
-    """Parameters of an arm as a rod, by name; without F for an arm without load.
+    """Dimensionless parameters of the rod that represents `arm`, by name; without F for an arm without load.
 
     Raises InputError for a load relative to flutter, which needs a solve.
     """
@@ -19,7 +19,10 @@ def parameters_of(arm: SlenderArm) -> dict[str, float]:
 
 
 def material_of(arm: SlenderArm) -> dict[str, Any]:
-    """The keys of `material`, law, section and profile, that differ from their defaults."""
+    """Keys and values of the config section `material` for `arm`, without keys at their defaults.
+
+    Possible keys are law, section and profile.
+    """
     build = arm.build
     words = {"law": (build.law, STANDARD.law), "section": (build.section, STANDARD.section)}
     material: dict[str, Any] = {name: own for name, (own, default) in words.items() if own != default}

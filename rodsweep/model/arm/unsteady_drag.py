@@ -8,15 +8,17 @@ from numpy.typing import ArrayLike
 from ...arrays import Array
 
 LEAST_S = 1e-6
-"""Smallest frequency of the flow, in eta k^2/rho: rounding error would hide the phase, 1e-6, of a smaller."""
+"""Smallest frequency s of the flow, in eta k^2/rho. A smaller s is replaced by it, since rounding error would
+hide the phase lag, about 1e-6."""
 SECTIONS = 64
-"""Parts into which an interval of ln s is cut at once."""
+"""Number of subintervals into which `frequency_of_phase` divides its current interval of ln s."""
 SECTIONINGS = 10
-"""Number of cuts: 2^60 parts of an interval 20 to 30 wide, down to rounding error, by few calls on arrays."""
+"""Number of divisions in `frequency_of_phase`: 64^10 = 2^60 subintervals of an initial interval 20 to 30 wide
+reach rounding error with few calls on arrays."""
 
 
 def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
-    """Phase lag of the drag on a line of forces of wavenumber k in unsteady Stokes flow.
+    """Phase lag, in radians, of the drag on a line of forces of wavenumber k in unsteady Stokes flow.
 
     s = rho omega/(eta k^2), any shape. logarithm: Lambda = 4 pi eta/gamma2.
 
@@ -34,7 +36,10 @@ def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
 
 
 def frequency_of_phase(phase: float, logarithm: float) -> float:
-    """The s at which `unsteady_phase` equals `phase` < pi/2, by sections of ln s."""
+    """Frequency s at which `unsteady_phase` equals `phase` < pi/2, by repeated subdivision of ln s.
+
+    logarithm: Lambda = 4 pi eta/gamma2.
+    """
     low = log(LEAST_S)  # there the real part of the mobility is -1/2
     high = 2 * logarithm
     for _ in range(SECTIONINGS):

@@ -12,33 +12,33 @@ from numba.core.typing.typeof import typeof, typeof_impl
 
 
 class CompiledSettings:
-    """Base class of a frozen dataclass of numbers and tuples of numbers, made once for a module.
+    """Base class of a frozen dataclass of numbers and tuples of numbers, for a global constant of a module.
 
-    A compiled function may read the fields and properties of such a global value, but call no method. The
-    machine code contains the numbers, as it does for a global number, and is compiled again when a field that
-    it reads has changed.
+    A compiled function may read fields and properties of such a constant, but call no method. The machine
+    code contains the numbers, and is compiled again when the source changes a field that the function reads.
     """
 
     __slots__ = ()
     ranges: ClassVar[Mapping[str, tuple[float, float]]] = {}
-    """Limits between which a field must lie, for example for a proof to hold, by its name."""
+    """(lower, upper) exclusive bounds of a field's value by name of the field, for example for a proof to
+    hold."""
 
     def __post_init__(self) -> None:
-        """Raises ValueError for a field that does not lie between its limits."""
+        """Raises ValueError for a field outside its bounds in `ranges`."""
         for name, (low, high) in self.ranges.items():
             if not low < getattr(self, name) < high:
                 raise ValueError(f"{name} = {getattr(self, name)} does not lie between {low} and {high}")
 
 
 class _SettingsType(types.Type):
-    """The numba type of one settings object, which the type holds."""
+    """The numba type of one `CompiledSettings` object, with the object as attribute."""
 
     def __init__(self, settings: CompiledSettings) -> None:
         self.settings = settings
         super().__init__(name=repr(settings))
 
     def field(self, name: str) -> Any:
-        """(type, value) of a field; a whole number has its literal type, like a global number."""
+        """(numba type, value) of the field `name`; an integer has a literal type, like a global integer."""
         value = getattr(self.settings, name)
         return maybe_literal(value) or typeof(value), value
 
