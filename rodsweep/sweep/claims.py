@@ -1,10 +1,9 @@
-"""Claims of chunks of units: by the first rank from the handout, by further ranks through messages.
+"""How each rank claims its next chunk of units: the first rank from the `Handout`, other ranks by messages.
 
-The first rank computes like every rank. A thread of the first rank answers requests meanwhile, and no rank
-needs to wait for the end of a solve on the first rank. A solve may still delay the thread. Every rank
-therefore requests the next chunk when it begins a chunk, and gets the chunk while plenty of units are left. A
-rank with a stop signal notifies the first rank, which notifies all ranks; each rank stops after the current
-point.
+The first rank computes like every rank. A thread of the first rank answers requests meanwhile, so that no
+rank waits for the end of a solve on the first rank. A solve may still delay the thread. Every rank therefore
+requests the next chunk when the rank begins a chunk, and gets it early while plenty of units are left. A rank
+with a stop signal notifies the first rank, which notifies all ranks; each rank stops after the current point.
 """
 
 import threading
@@ -19,40 +18,47 @@ from .stop import StopRequest
 from .team import Team
 
 REQUEST_TAG = 71
+"""MPI tag of a rank's request for a chunk, a `RankReport`."""
 ANSWER_TAG = 72
+"""MPI tag of the answer to a request, an `IndexRange`."""
 STOP_TAG = 73
+"""MPI tag of a stop request, the name of the signal."""
 PLACE_TAG = 74
+"""MPI tag of a report of progress within a long point, a `SolvePosition`."""
 POLL_SECONDS = 2e-3
-"""Seconds between two polls by the thread of the first rank. Each poll takes 20 microseconds or more from the
-solve of that rank."""
+"""Seconds between two polls for messages by the thread of the first rank. Each poll takes 20 microseconds or
+more from the solve on that rank."""
 RELIEVED_POLL_SECONDS = 5e-3
-"""Seconds between two polls by the thread while the first rank itself answers between its points."""
+"""Seconds between two polls for messages by the thread while the first rank also answers between its
+points."""
 ASK_SECONDS = 1e-4
-"""First pause, in seconds, between two polls of a rank waiting for a chunk."""
+"""First pause, in seconds, between two polls of a rank that waits for a chunk."""
 LONGEST_ASK_SECONDS = 1e-2
-"""Longest pause, in seconds: an idle rank must not take processor time from solving ranks."""
+"""Longest pause, in seconds, between two polls of a rank that waits for a chunk: an idle rank must not take
+processor time from solving ranks."""
 ASK_GROWTH = 1.1
-"""Ratio of a pause to the previous pause. Slow growth prolongs a wait of a millisecond little."""
+"""Ratio of a waiting rank's pause to the previous pause. Slow growth hardly prolongs a wait of a
+millisecond."""
 WAIT_SECONDS = 0.05
 """Seconds for which the idle first rank waits for a change of the handout before a poll for messages."""
 
 
 class FirstRankClaims:
-    """Claims of the first rank, with a thread that serves all further ranks."""
+    """Claims chunks for the first rank, and answers the requests of all other ranks, also from a thread."""
 
     def __init__(self, team: Team, handout: Handout, stop: StopRequest, show: Callable[[str, float], None]):
-        """show: displays the progress of a long point, in words, and the work done of unfinished points."""
+        """show: displays (progress of a long point in words, work done of unfinished points in points)."""
         self.team = team
         self.handout = handout
         self.stop = stop
         self.show = show
         self.waiting: deque[int] = deque()
         self.ahead: set[int] = set()
-        """Ranks with an answer in advance to the next request."""
+        """Ranks that already have the answer to their next request."""
         self.working = set(range(1, team.size))
         self.status = team.MPI.Status()
         self.places: dict[int, SolvePosition] = {}
-        """Latest reported progress of each rank within a long point."""
+        """Latest reported progress within a long point, by rank."""
         self.serving = threading.Lock()
         self.served = 0.0
         self.thread: threading.Thread | None = None
@@ -62,7 +68,10 @@ class FirstRankClaims:
             self.thread.start()
 
     def claim(self, report: RankReport) -> IndexRange:
-        """The next chunk; waits until a chunk is available or the work is over."""
+        """The next chunk for the first rank, given the `report` on its last chunk; NO_WORK_LEFT at the end.
+
+        Waits until a chunk is available or no work is left.
+        """
         with self.serving:
             self._heed_stop()
         self.places.pop(0, None)
@@ -77,25 +86,25 @@ class FirstRankClaims:
         return chunk
 
     def close(self) -> None:
-        """Waits for the thread to end, after all other ranks have finished."""
+        """Waits until all other ranks have finished and the thread has ended."""
         if self.thread is not None:
             self.thread.join()
             self._hear_places()
 
     def report_place(self, place: SolvePosition) -> None:
-        """Shows the progress of this rank within a long point."""
+        """Displays the progress of the first rank within a long point."""
         self.places[0] = place
         self.show(place.words, self._begun())
 
     def _begun(self) -> float:
-        """Work done of all unfinished long points, in points."""
+        """Work done of all unfinished long points on all ranks, in points."""
         return sum(place.share or 0.0 for place in list(self.places.values()))
 
     def between_points(self) -> None:
-        """Answers requests of ranks; called between points.
+        """Answers requests of other ranks; the first rank calls it between two points.
 
         During a long point the thread answers. The thread alone would not be enough: a solve inside PETSc
-        keeps Python's lock, and the thread might get the lock only once a point for each step of the solve.
+        holds Python's global interpreter lock, and the thread might rarely get the lock.
         """
         if self.thread is not None:
             self._serve()
@@ -104,7 +113,7 @@ class FirstRankClaims:
             self._heed_stop()
 
     def _heed_stop(self) -> None:
-        """After a stop request to this rank, ends the handout and notifies all working ranks, once."""
+        """After a stop request to the first rank, ends the handout and notifies all working ranks, once."""
         if self.stop and not self.handout.stopped:
             self.handout.stop()
             for rank in self.working:
@@ -129,7 +138,7 @@ class FirstRankClaims:
                     self.working.discard(rank)
 
     def _hear_places(self) -> None:
-        """Receives the progress of the other ranks."""
+        """Receives all waiting reports of progress within long points."""
         comm = self.team.comm
         MPI = self.team.MPI
         while comm.Iprobe(source=MPI.ANY_SOURCE, tag=PLACE_TAG, status=self.status):
@@ -137,9 +146,9 @@ class FirstRankClaims:
             self.places[rank] = comm.recv(source=rank, tag=PLACE_TAG)
 
     def _hear(self, rank: int, report: RankReport) -> None:
-        """Handles a report of a rank: answers a request ahead at once, and queues any other request.
+        """Handles the report of a rank: answers a request in advance at once, and queues any other request.
 
-        After an answer in advance the rank has the next chunk already, and is not queued.
+        A rank whose request was answered in advance has its next chunk already, and is not queued.
         """
         if report.ahead:
             if (chunk := self.handout.take_ahead(rank)) is not None:
@@ -157,7 +166,7 @@ class FirstRankClaims:
             self.waiting.append(rank)
 
     def _serve_until_over(self) -> None:
-        """Serves the other ranks, in the thread, until all have finished."""
+        """Body of the thread: answers messages of the other ranks until all of them have finished."""
         with self.team.aborting_together():
             while self.working:
                 self._serve()
@@ -166,7 +175,7 @@ class FirstRankClaims:
 
 
 class OtherRankClaims:
-    """Claims of all ranks but the first, by messages to the first."""
+    """Claims chunks for a rank other than the first, by messages to the first rank."""
 
     def __init__(self, team: Team, stop: StopRequest):
         self.comm = team.comm
@@ -174,7 +183,10 @@ class OtherRankClaims:
         self.stop_exchanged = False
 
     def claim(self, report: RankReport) -> IndexRange:
-        """The next chunk; waits for the answer of the first rank, and requests the following chunk."""
+        """The next chunk for this rank, given the `report` on its last chunk; NO_WORK_LEFT at the end.
+
+        Waits for the answer of the first rank, and requests the following chunk in advance.
+        """
         self.comm.send(report, dest=0, tag=REQUEST_TAG)
         # A blocking receive would spin and take the processor from the ranks that compute.
         pause = ASK_SECONDS
@@ -192,7 +204,7 @@ class OtherRankClaims:
         self.comm.send(place, dest=0, tag=PLACE_TAG)
 
     def between_points(self) -> None:
-        """Sends a stop request to the first rank, or receives a stop request from there; once in all."""
+        """Exchanges at most one stop request with the first rank: sends this rank's, or receives one."""
         if not self.stop_exchanged and self.comm.Iprobe(source=0, tag=STOP_TAG):
             self.stop.take(self.comm.recv(source=0, tag=STOP_TAG))
             self.stop_exchanged = True

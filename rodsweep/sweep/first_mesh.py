@@ -1,4 +1,4 @@
-"""The mesh on which the rods of a sweep begin to be solved, of those that need most: for `check`."""
+"""The finest of the initial meshes of a sweep's rods, which `rodsweep check` reports."""
 
 from collections.abc import Callable, Iterator, Mapping
 from itertools import product
@@ -17,7 +17,7 @@ from .points.points import Points
 
 
 def spectrum_mesh(rod: Rod, modes: int, accuracy: float) -> Elements:
-    """The first mesh for the leading eigenvalues of a rod, to a relative accuracy of the mesh."""
+    """Initial mesh for the `modes` leading eigenvalues of a rod; accuracy: relative error due to the mesh."""
     if not rod.uniform:
         return arm_mesh(rod, modes, accuracy)
     _, wave = most_amplified_wave(rod.equivalent[0])
@@ -28,10 +28,10 @@ def spectrum_mesh(rod: Rod, modes: int, accuracy: float) -> Elements:
 def largest_first_mesh(
     points: Points, mesh_of: Callable[[Rod], Elements], ends: Mapping[str, Array] | None = None
 ) -> Elements | None:
-    """The finest of the first meshes of a sample of rods and of the rods at the corners of a grid; None
-    without a mesh.
+    """The finest initial mesh among sampled points of a sweep and the corners of its grid; None without rods.
 
-    ends: values, (n,), of parameters along which every rod is searched.
+    mesh_of: initial mesh of a rod. ends: values, (n,), of further parameters at which meshes are compared, by
+    name: the ends of the range over which every rod is searched.
     """
     indices = {*sampled(points).tolist(), *_corners(points)}
     rods = (rod for index in sorted(indices) for rod in _moved(points.rod(index), ends or {}))
@@ -39,8 +39,9 @@ def largest_first_mesh(
 
 
 def _moved(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod]:
-    """Yields the rod at all combinations of the values in `ends`. A force is lowered to just below crushing;
-    rods outside the model are left out.
+    """Yields the rod with every combination of the parameter values in `ends`, by name, (n,) each.
+
+    A force is lowered to just below the crushing force. Combinations outside the model are left out.
     """
     for values in product(*(column.tolist() for column in ends.values())):
         named = dict(zip(ends, values, strict=True))
@@ -56,7 +57,7 @@ def _moved(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod]:
 
 
 def _corners(points: Points) -> Iterator[int]:
-    """Flat indices of the corners of a grid that have a rod; none for a list."""
+    """Yields the flat indices of those corners of a grid that have a rod; nothing for a list of points."""
     ends = [sorted({0, size - 1}) for size in points.shape] if points.axes else []
     for corner in product(*ends):
         index = int(np.ravel_multi_index(corner, points.shape))

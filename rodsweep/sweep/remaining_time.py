@@ -1,33 +1,34 @@
-"""Remaining time of a sweep from the number of finished points over time, smoothed against jumps.
+"""Remaining time of a sweep from the number of finished points as a function of time, smoothed against jumps.
 
-Points differ in cost: the first point of a chain starts cold, later points start from a neighbour, a few
-points are hard. The pace is therefore measured over the latest half of the finished points, and never
-includes the first points, which started cold. The reported time follows the estimate slowly, with a time
-constant proportional to the time passed, and faster near the end. With long points the work done of
-unfinished points counts as well. The module reads no clock: the caller passes all times.
+Points differ in cost: the first point of a chain has no initial guess, later points start from a neighbour, a
+few points are hard. The time per point is therefore measured over the latest half of the finished points, and
+never includes the first points. The reported remaining time follows the estimate slowly, with a time constant
+proportional to the elapsed time, and faster toward the end. With long points the work done of unfinished
+points counts as well. The module reads no clock: the caller passes all times.
 """
 
 from math import exp
 
 PACE_FROM = 0.5
-"""The pace is measured from this fraction of the finished points to the latest."""
+"""The time per point is measured over the finished points after this fraction of them."""
 MIN_POINTS = 2
-"""Finished points after the first record that are needed for a pace."""
+"""Minimum number of points finished after the first record; with fewer points there is no time per point."""
 MIN_BEGUN = 0.1
-"""Least work of unfinished points, in points, for a first estimate; below, the start-up cost dominates."""
+"""Minimum work done of unfinished points, in points, for an estimate without finished points. Below, the cost
+of starting up dominates."""
 TIME_CONSTANT = 0.25
-"""Time constant of the reported remaining time, as a fraction of the shorter of time passed and left."""
+"""Time constant of the reported remaining time, divided by the smaller of elapsed and remaining time."""
 RECORD_RATIO = 1.02
-"""Ratio of finished points between two stored records: about 35 records for each doubling."""
+"""Ratio of the numbers of finished points in two successive stored records: about 35 records per doubling."""
 
 
 class Pace:
-    """Remaining time of `total` points; times are in s since the start."""
+    """Estimator of the remaining time of a sweep of `total` points; all times are in s since the start."""
 
     def __init__(self, total: int):
         self.total = total
         self.records: list[tuple[int, float]] = []
-        """(finished points, time), both increasing; the first and the latest report are always stored."""
+        """(number of finished points, time), both increasing; the first and the latest report are stored."""
         self.reported: tuple[float, float] | None = None
         """(time of the last report, remaining time reported then)."""
 
@@ -56,16 +57,16 @@ class Pace:
         return self.reported[1]
 
     def _record(self, done: int, now: float) -> None:
-        """Stores the latest record; earlier ones are thinned to about 35 for each doubling of the points."""
+        """Stores the record (done, now); thins earlier records to about 35 per doubling of the points."""
         if len(self.records) > 2 and self.records[-1][0] < RECORD_RATIO * self.records[-2][0]:
             self.records.pop()
         self.records.append((done, now))
 
     def _seconds_per_point(self, done: int, now: float, begun: float) -> float | None:
-        """Time per point over the latest finished points, longer if the current point takes longer.
+        """Time per point over the latest finished points, or since the latest record if that is longer.
 
-        Before MIN_POINTS points are finished the time follows from the work of unfinished points, or is None
-        if the work is too little.
+        Before MIN_POINTS points are finished the time follows from the work done of unfinished points, or is
+        None for work below MIN_BEGUN.
         """
         if not self.records or done < self.records[0][0] + MIN_POINTS:
             return now / (done + begun) if begun >= MIN_BEGUN else None
@@ -76,7 +77,7 @@ class Pace:
 
 
 def in_words(seconds: float) -> str:
-    """A time with at most two digits: 8 s, 1.5 min, 3.2 h, 12 d."""
+    """A duration as text with two significant digits: 8 s, 1.5 min, 3.2 h, 12 d."""
     for unit, length in (("d", 86400.0), ("h", 3600.0), ("min", 60.0)):
         if seconds >= 1.45 * length:
             return f"{float(f'{seconds / length:.2g}'):g} {unit}"
@@ -84,7 +85,10 @@ def in_words(seconds: float) -> str:
 
 
 def rate_in_words(done: int, seconds: float) -> str:
-    """Points per second, or time per point above one second; empty before the first point."""
+    """Rate of `done` points in `seconds` as text: points per second, or the time per point above one second.
+
+    Empty before the first point.
+    """
     if not done or not seconds:
         return ""
     rate = done / seconds

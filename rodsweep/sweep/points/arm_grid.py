@@ -1,4 +1,4 @@
-"""Grid over the quantities of an arm: each point has a separate rod, or a status but no rod."""
+"""Grid over the quantities of an arm: each point has its own rod, or a status that says why it has no rod."""
 
 from collections.abc import Callable, Mapping, Sequence
 from operator import attrgetter, methodcaller
@@ -19,11 +19,11 @@ from .flutter_forces import FlutterForce
 from .points import Points
 
 FlutterOf = Callable[[SlenderArm, float | None], FlutterForce]
-"""Function from an arm, and a taper in place of its own, to its first flutter with the likeliest drag."""
+"""Function from (arm, taper that replaces the arm's taper or None) to the force of first flutter."""
 Forces = NDArray[np.object_]
-"""Objects `FlutterForce` over (arms, 1, replaced parameters)."""
+"""Array of `FlutterForce` objects, (arms, 1, combinations of replaced parameters)."""
 UNCOVERED = FlutterForce(np.nan)
-"""Stands for the force of an arm without a rod."""
+"""Force of an arm without a rod, or without load: nan."""
 
 
 def grid_of_arms(
@@ -33,10 +33,11 @@ def grid_of_arms(
     flutter: FlutterOf,
     build: Build = STANDARD,
 ) -> Points:
-    """Grid over the arm's quantities, and over parameters of `beside` with several values.
+    """Points of a grid over an arm's quantities, and over the parameters in `beside` that have several
+    values.
 
-    beside: values of parameters, (n,), in place of the arm's. names: the parameters of the task. flutter:
-    force of flutter, for relative loads. Raises ValueError if no rod covers any point.
+    beside: values, (n,), of parameters that replace the arm's. names: the parameters of the task. flutter:
+    force of first flutter of an arm, for relative loads. Raises ValueError if no point has a rod.
     """
     arms, statuses = zip(*(_arm_or_status(section, values) for values in section.sections()), strict=True)
     loads = section.given[section.load_axis].array() if section.load_axis else np.zeros(1)
@@ -74,12 +75,12 @@ def grid_of_arms(
 
 
 def _of_each(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:
-    """A quantity of arms along the dimension of arms; NaN for arms without a valid rod."""
+    """Values of `quantity` of all arms, (arms, 1, 1); nan for None, an arm without a rod."""
     return _along(0, [quantity(arm) if arm else np.nan for arm in arms])
 
 
 def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
-    """(arm of a section without load, status); the arm is None without a rod."""
+    """(arm without load for these values of its quantities, status); the arm is None if it has no rod."""
     try:
         return section.made(values), SLENDER
     except UncoveredArm as error:
@@ -89,8 +90,7 @@ def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[Sl
 def _forces(
     section: ArmSection, arms: Sequence[SlenderArm | None], tapers: Array | None, flutter: FlutterOf
 ) -> Forces:
-    """F of a load of 1 on each arm. tapers: values that replace the arms' own taper, None for no
-    replacement."""
+    """F of a load of 1 on each arm. tapers: values that replace the arms' taper; None for no replacement."""
     beside = [None] if tapers is None or section.load_axis not in RELATIVE else tapers.ravel().tolist()
     forces = np.empty((len(arms), 1, len(beside)), object)
     for i, arm in enumerate(arms):
@@ -102,7 +102,7 @@ def _forces(
 def _force_of(
     section: ArmSection, arm: SlenderArm | None, taper: float | None, flutter: FlutterOf
 ) -> FlutterForce:
-    """F of a load of 1 on an arm; the load is in SI units or relative to flutter, or there is none."""
+    """F of a load of 1, in SI units or relative to flutter, on an arm; UNCOVERED without load or rod."""
     if arm is None or not section.load:
         return UNCOVERED
     if section.load_axis in RELATIVE:
@@ -111,21 +111,23 @@ def _force_of(
 
 
 def _with_flutter(coverage: Array, flutter: Array) -> Array:
-    """Codes of points, with the codes for a load relative to flutter. flutter: F at flutter, equal for all
-    loads."""
+    """Status codes `coverage`, with NO_FLUTTER and FLUTTER_UNKNOWN where a relative load has no value.
+
+    flutter: F at flutter; inf without flutter, nan if unknown. The shapes broadcast to (arms, loads, n).
+    """
     found = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
     codes: Array = np.where(coverage == SLENDER, found, coverage)
     return codes
 
 
 def _failures(coverage: Array, forces: Forces) -> dict[int, str]:
-    """Why no flutter is found, by flat index; coverage: codes over (arms, loads, replaced parameters)."""
+    """Reasons why the search for flutter failed, by flat index; coverage: status codes, (arms, loads, n)."""
     each = np.broadcast_to(forces, coverage.shape).ravel()
     return {int(index): each[index].failure for index in np.flatnonzero(coverage == FLUTTER_UNKNOWN)}
 
 
 def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bool, forces: Forces) -> None:
-    """Raises ValueError with the cause at the first point; no_flutter: whether some arm does not flutter."""
+    """Raises ValueError that says why no point has a rod; no_flutter: whether some arm does not flutter."""
     section.made(section.firsts, loaded=True)
     for force in forces.ravel():
         if force.failure:
@@ -140,5 +142,5 @@ def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bo
 
 
 def _along(dimension: int, values: Any) -> Array:
-    """Values, (n,), as an array along one of the three dimensions: arms, loads, replaced parameters."""
+    """Values, (n,), as an array along dimension 0 (arms), 1 (loads) or 2 (replaced parameters) of three."""
     return np.asarray(values).reshape([-1 if i == dimension else 1 for i in range(3)])

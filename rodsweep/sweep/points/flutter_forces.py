@@ -1,7 +1,8 @@
-"""First flutter of arms whose load is relative to it: known before the points are made, once for each rod.
+"""Forces of first flutter, for arms with a load relative to flutter, computed once for each rod.
 
-The search takes most of the time in which points are made, so the ranks of a run may share it. A search that
-fails gives its points a status. The solver is imported on demand.
+The forces are needed before the points of a sweep are made. The search takes most of the time in which points
+are made, so the ranks of a run may divide the rods. Points get a status if the search fails. The solver is
+imported on demand.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -20,25 +21,30 @@ from ...model.rod import Rod
 
 @dataclass(frozen=True, slots=True)
 class FlutterForce:
-    """F of first flutter at the likeliest drag: inf without flutter, NaN if the search fails, and why."""
+    """Force F of first flutter at the likeliest drag: inf without flutter, nan if the search fails.
+
+    failure: reason why the search failed, or empty.
+    """
 
     F: float
     failure: str = ""
 
 
 FlutterForces: TypeAlias = Mapping[Rod, FlutterForce]
-"""Flutter of rods that move in one plane, without load."""
+"""Force of first flutter by rod; the rods are without load and move in one plane."""
 Tapers: TypeAlias = Sequence[float | None]
-"""Tip radius over base radius beside a section, None where the arm has its own."""
+"""Tapers (tip radius over base radius) that replace an arm's taper; None keeps the arm's own taper."""
 OWN_TAPER: Tapers = (None,)
+"""No replacement: the arm keeps its own taper."""
 
 
 def rods_of_flutter(
     section: ArmSection | None, build: Build | None = None, tapers: Tapers = OWN_TAPER
 ) -> list[Rod]:
-    """The different rods whose flutter the points of a section need; none unless its load is relative.
+    """The distinct rods whose flutter forces the points of an arm need; none unless its load is relative.
 
-    build: law and profile beside the section. Raises InputError for an arm that is refused.
+    build: constitutive law and profile of the config section `material`, None without. Raises InputError for
+    an invalid arm.
     """
     if section is None or section.load_axis not in RELATIVE:
         return []
@@ -49,7 +55,7 @@ def rods_of_flutter(
 
 
 def _arms(section: ArmSection) -> Iterable[SlenderArm]:
-    """Arms of a section that a rod covers, without load."""
+    """Yields the arms of a config section to which the rod model applies, without load."""
     for values in section.sections():
         try:
             yield section.made(values)
@@ -60,7 +66,7 @@ def _arms(section: ArmSection) -> Iterable[SlenderArm]:
 
 
 def flutter_of_rod(rod: Rod) -> FlutterForce:
-    """Flutter of one rod; a failure is an outcome, not an exception."""
+    """Force of first flutter of one rod; a failed search is a `FlutterForce` too, not an exception."""
     from ...verdict.relative import FlutterUnknown, first_hopf_force
 
     try:
@@ -72,9 +78,10 @@ def flutter_of_rod(rod: Rod) -> FlutterForce:
 def flutter_of_arm(
     arm: SlenderArm, taper: float | None, known: FlutterForces, build: Build | None = None
 ) -> FlutterForce:
-    """Flutter of an arm, in its k3/L^2: the smallest over its planes, a failure if one of them fails.
+    """Force of first flutter of an arm, in the arm's k3/L^2: the smallest over its planes of motion.
 
-    taper: in place of the arm's. build: as in `rods_of_flutter`.
+    The result is a failure if the search failed in a plane. taper: replaces the arm's taper unless None.
+    known: forces of all rods of `rods_of_flutter`. build: as in `rods_of_flutter`.
     """
     from ...verdict.relative import plane_rods
 
