@@ -1,8 +1,8 @@
-"""Extension of a stored file to a larger config: whether possible, and which stored points stay.
+"""Extension of a result file to a larger config: whether it is possible, and which stored points are reused.
 
-A stored point stays only if a run of the whole larger config would give the same bits. The parameters must be
-the same bits, and every result asked for must be present. The same must hold for all previous points of a
-chain, or for all points of a stretch.
+A stored point is reused only if a run of the larger config would give results that are equal bit by bit: the
+parameters are equal bit by bit, and every requested result is present. The same must hold for all previous
+points of a chain, or for all points of a stretch.
 """
 
 from collections.abc import Iterator
@@ -27,23 +27,25 @@ from ..validation import ResultHeader
 from .identity import config_difference
 
 SAME_VALUE = 4 * np.finfo(float).eps
-"""Largest relative difference of two values on an axis that counts as rounding."""
+"""Relative difference of two values on an axis up to which the difference counts as rounding error."""
 Indices = NDArray[np.int64]
-"""Flat indices of points, or places on an axis, (n,); -1 for no place."""
+"""Flat indices of points, or positions on an axis, (n,); -1 for none."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoredPlaces:
-    """Places of the stored points among the new points: on each axis of a grid, or in a list."""
+    """Map from stored points to new points: by the positions on each axis of a grid, or in a list."""
 
     shape: tuple[int, ...]
-    """Shape of the stored points."""
+    """Shape of the stored grid or list."""
     new_shape: tuple[int, ...]
+    """Shape of the new grid or list."""
     places: tuple[Indices, ...]
-    """New place of every stored value on an axis, -1 if its points are computed again."""
+    """For each axis, the position of every stored value on the new axis, (n,); -1 if the points with this
+    value are computed again."""
 
     def __call__(self, index: Indices) -> Indices:
-        """New flat indices of stored flat indices, both (n,); -1 for points computed again."""
+        """New flat indices of the points with the stored flat indices `index`, (n,); -1 if computed again."""
         each = [place[i] for place, i in zip(self.places, np.unravel_index(index, self.shape), strict=True)]
         stays = np.min(each, axis=0) >= 0
         new = np.ravel_multi_index([np.maximum(place, 0) for place in each], self.new_shape)
@@ -52,19 +54,22 @@ class StoredPlaces:
 
 @dataclass(frozen=True, slots=True)
 class Extension:
-    """Points of a stored file that stay in the file of a larger config."""
+    """The stored points of a result file that the file of a larger config reuses.
+
+    path: stored file. old, new: layouts of both files.
+    """
 
     path: Path
     old: Layout
     new: Layout
     places: StoredPlaces
     grown: tuple[tuple[IncreaseRule, Any], ...]
-    """(option, former value) for every increased option."""
+    """(rule, former value) for every option that the new config increases."""
     nothing_stays: bool
     """Whether every stored point is computed again."""
 
     def kept(self) -> Iterator[np.ndarray]:
-        """Yields records, (n,) in the new layout, of the points that stay."""
+        """Yields records, (n,) in the new layout, of the stored points that are reused."""
         if self.nothing_stays:
             return
         for records in stored_points(self.path, self.old):
@@ -76,7 +81,10 @@ class Extension:
                 yield self._converted(records[stays], index[stays])
 
     def _converted(self, records: np.ndarray, index: Indices) -> np.ndarray:
-        """Records in the new layout; values that the old layout lacks are filled."""
+        """Stored records converted to the new layout, (n,), at new flat indices `index`, (n,).
+
+        Values that the old layout lacks are fill values.
+        """
         found = np.empty(len(records), self.new.record)
         found["index"] = index
         for variable in self.new.variables:
@@ -90,9 +98,9 @@ class Extension:
 
 
 def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
-    """Extension of a stored file with the given points to a larger plan.
+    """Extension of the stored file of `header`, with the points `points`, to the file of `plan`.
 
-    Raises InputError, naming the difference, if the plan lacks anything that the file was made for.
+    Raises InputError, naming the difference, if the plan lacks a point or a result of the stored file.
     """
     theirs = config_of(header.config).meaning
     ours = config_of(plan.config).meaning
@@ -122,7 +130,7 @@ def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
 
 
 def _refuse(header: ResultHeader, difference: str) -> None:
-    """Raises InputError for a difference, which no extension can bridge."""
+    """Raises InputError for a difference between file and config, unless it is empty."""
     if difference:
         raise InputError(
             f"{header.path} cannot be extended to this config ({difference}); choose another file with -o, "
@@ -131,7 +139,7 @@ def _refuse(header: ResultHeader, difference: str) -> None:
 
 
 def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPlaces:
-    """Places of the stored points in the plan; raises InputError if a stored point is not in the plan."""
+    """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a point."""
     new = plan.points
     if tuple(old.axes) != tuple(new.axes) or old.names != new.names:
         kinds = [
@@ -154,7 +162,7 @@ def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPlaces:
 
 
 def _places_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> Indices:
-    """New place of every old value on an axis, (n,), or -1 where rounding has changed the value.
+    """Position of every old value, (n,), on the new axis, (m,); -1 where the values differ by rounding.
 
     Raises InputError for an old value that is not on the new axis.
     """
@@ -170,14 +178,17 @@ def _places_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> 
 
 
 def _same_from_the_start(places: Indices, count: int, upward: bool) -> Indices:
-    """Places of the points of a chain, (n,), up to the first changed point; -1 from there on."""
+    """Positions `places` of the values along chains, (n,), up to the first changed position; then -1.
+
+    count: number of values on the new axis. upward: direction of the chains.
+    """
     ahead = places if upward else np.where(places < 0, -1, count - 1 - places)[::-1]
     stays = np.logical_and.accumulate(ahead == np.arange(len(ahead)))
     return np.where(stays if upward else stays[::-1], places, -1)
 
 
 def _same_stretches(places: Indices, count: int) -> NDArray[np.bool_]:
-    """Whether the stretch of each old point, (n,), has the same points on an axis of `count` values."""
+    """Whether the stretch of each old value, (n,), has the same values on a new axis of `count` values."""
     at = np.arange(len(places))
     first = at // STRETCH_POINTS * STRETCH_POINTS
     same_length = np.minimum(first + STRETCH_POINTS, len(places)) == np.minimum(first + STRETCH_POINTS, count)
@@ -186,7 +197,7 @@ def _same_stretches(places: Indices, count: int) -> NDArray[np.bool_]:
 
 
 def _places_in_list(header: ResultHeader, old: Points, new: Points) -> Indices:
-    """New place of every old point in the list, (n,); raises InputError for a point not listed."""
+    """Position of every old point in the new list, (n,); InputError for a point not in the new list."""
     # Adding 0.0 turns -0.0 into 0.0, so that equal rows have equal bytes.
     rows = [np.column_stack(points.columns) + 0.0 for points in (new, old)]
     known: dict[bytes, int] = {}
