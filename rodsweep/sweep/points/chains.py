@@ -33,7 +33,7 @@ ChainStep = Callable[[int, Any], tuple[Any, Any]]
 
 
 class ChainStates(Protocol):
-    """Store of checkpoints: (flat index of the last solved point, state after it) of each unfinished chain."""
+    """Store of checkpoints: (flat index of last solved point, state after it) of each unfinished chain."""
 
     def write(self, chain: int, index: int, state: State) -> None: ...
 
