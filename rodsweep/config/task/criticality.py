@@ -24,8 +24,8 @@ class CriticalityOptions(StrictSection):
 
 
 class CriticalityConfig(Config):
-    """The task criticality computes the normal form of every Hopf point of a rod: criticality, and how amplitude
-    and frequency of the cycles grow.
+    """The task criticality computes the normal form of every Hopf point of a rod: criticality, and
+    how amplitude and frequency of the cycles grow.
     """
 
     task: Literal["criticality"]

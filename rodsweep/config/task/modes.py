@@ -22,8 +22,8 @@ class ModesOptions(StrictSection):
 
 
 class ModesConfig(LinearConfig):
-    """The task modes computes the leading modes at every point, their adjoint modes, and the transient growth of
-    the non-normal operator.
+    """The task modes computes the leading modes at every point, their adjoint modes, and the
+    transient growth of the non-normal operator.
     """
 
     task: Literal["modes"]
