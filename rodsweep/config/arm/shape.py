@@ -76,7 +76,7 @@ def tapers_of(arm: "ArmSection") -> set[float]:
 
 
 def refuse_misused_shape(arm: "ArmSection", beside: dict[str, Any]) -> None:
-    """Raises ValueError if `length` is an axis although segments define it, or for `taper` beside a shape.
+    """Raises ValueError for an axis `length` of an arm with segments, and for `taper` with a cone or segments.
 
     beside: parameters given beside the arm.
     """

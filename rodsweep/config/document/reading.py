@@ -132,7 +132,7 @@ def text_of(config: Config) -> str:
 
 
 def _written(axis: Any) -> Any:
-    """A resolved axis, or all axes of an arm's section, as in a config file: a number, a list or a range."""
+    """The notation of a config file, a number, a list or a range, for a resolved axis or an arm's axes."""
     if not isinstance(axis, dict):
         return axis
     if "length" in axis:

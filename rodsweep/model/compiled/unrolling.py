@@ -25,7 +25,7 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 ALWAYS = {"range": range}
-"""Names, apart from the algebra, whose values are known during unrolling, with the values."""
+"""Values that are known during unrolling besides the algebra, by name."""
 
 
 class UnrolledOverAlgebra(Generic[P, R]):

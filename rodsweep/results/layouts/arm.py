@@ -67,8 +67,7 @@ FORCE_UNITS = {load: SIUnit(UNITS[load][0], (SCALE_OF[load],)) for load in LOADS
 LOAD_OF_UNIT = {each.unit: load for load, each in FORCE_UNITS.items()}
 """Name of the load, "pressure" or "force", by its SI unit."""
 EVENT_FREQUENCIES = {f"{event}_frequency": f"frequency_{event}_hz" for event in ("hopf", "restabilization")}
-"""Name of the variable in Hz by name of a frequency at a threshold, in the pattern of `pressure_hopf` for
-F_hopf."""
+"""Name of the variable in Hz, by name of the variable for the angular frequency at a threshold."""
 BRANCH_FORCES = ("special_at", "special_error")
 """Names of variables of the task branch that are forces for an arm, whose branches are followed in F only."""
 SI_DIMENSIONS = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))

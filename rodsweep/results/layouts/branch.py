@@ -77,7 +77,7 @@ def followed_variables(parameter: str) -> tuple[Variable, ...]:
 
 
 def special_variables(parameter: str) -> tuple[Variable, ...]:
-    """Variables of the special points on all branches; parameter: along which branches are followed."""
+    """Variables of the special points on all branches; parameter: the continuation parameter's name."""
     unit = PARAMETERS[parameter].unit
     return along_dimension(
         SPECIAL,

@@ -90,7 +90,10 @@ def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[Sl
 def _forces(
     section: ArmSection, arms: Sequence[SlenderArm | None], tapers: Array | None, flutter: FlutterOf
 ) -> Forces:
-    """F of a load of 1 on each arm. tapers: values that replace the arms' taper; None for no replacement."""
+    """Dimensionless force F that a load of size 1 exerts on each arm, see `_force_of`.
+
+    tapers: values, (n,), that replace the arms' taper; None for no replacement.
+    """
     beside = [None] if tapers is None or section.load_axis not in RELATIVE else tapers.ravel().tolist()
     forces = np.empty((len(arms), 1, len(beside)), object)
     for i, arm in enumerate(arms):
@@ -102,7 +105,10 @@ def _forces(
 def _force_of(
     section: ArmSection, arm: SlenderArm | None, taper: float | None, flutter: FlutterOf
 ) -> FlutterForce:
-    """F of a load of 1, in SI units or relative to flutter, on an arm; UNCOVERED without load or rod."""
+    """Dimensionless force F that a load of size 1 exerts on an arm; UNCOVERED without load or rod.
+
+    The load is 1 Pa or 1 N, or the load at first flutter for a load relative to flutter.
+    """
     if arm is None or not section.load:
         return UNCOVERED
     if section.load_axis in RELATIVE:
