@@ -16,22 +16,22 @@ Given = float | str
 """A quantity as the user writes it: a text with a unit, or a number in SI units."""
 NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.ASCII)
 """Matches a text of a number and a unit, like "10 cm". The unit may be empty."""
-OF_A_UNIT = re.compile(r"[A-Za-zµμ]+|(?:\^|\*\*)?-?[1-4](?!\d)|[²³⁴]|[\s*/]")
+UNIT_TOKEN = re.compile(r"[A-Za-zµμ]+|(?:\^|\*\*)?-?[1-4](?!\d)|[²³⁴]|[\s*/]")
 """Matches one token of a unit: a name, an exponent, a product or quotient sign. Text that is no sequence of
 such tokens must not reach pint, which would evaluate the text and might never return."""
-TOWER = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
+POWER_OF_POWER = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
 """Matches the start of a power of a power, like 2**2**2, which pint would evaluate."""
-LONGEST_UNIT = 40
+MAX_UNIT_LENGTH = 40
 """Maximum number of characters of a unit. Longer units are refused."""
-KEPT_UNITS = 1000
+CONVERSION_CACHE_SIZE = 1000
 """Maximum number of cached conversion factors. A config has about ten different units."""
-COMMON = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN", "kg/m^3", "g/cm^3", "mbar")
+COMMON_UNITS = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN", "kg/m^3", "g/cm^3", "mbar")
 """Units to suggest to a user whose text differs from the unit only in blanks or capital letters."""
-OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
+MULTIPLE_OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
 """Matches a load as a multiple of the flutter threshold, "1.2 of flutter" or "120 % of flutter"."""
-FROM_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
+PERCENT_FROM_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
 """Matches a load as a distance from the flutter threshold, "20 % above flutter"."""
-KINEMATIC = "is a kinematic viscosity; multiply it by the density of the fluid"
+KINEMATIC_VISCOSITY = "is a kinematic viscosity; multiply it by the density of the fluid"
 """End of the message on a viscosity in units of length^2/time."""
 
 
@@ -98,9 +98,9 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
     """
     if written.startswith(","):
         raise InputError(f"{subject} has a decimal comma; write a point")
-    if len(written) > LONGEST_UNIT or OF_A_UNIT.sub("", written) or TOWER.search(written):
+    if len(written) > MAX_UNIT_LENGTH or UNIT_TOKEN.sub("", written) or POWER_OF_POWER.search(written):
         raise InputError(
-            f"{subject} has the unit '{written[:LONGEST_UNIT]}', which is not understood; write {allowed}"
+            f"{subject} has the unit '{written[:MAX_UNIT_LENGTH]}', which is not understood; write {allowed}"
         )
     units = registry()
     from pint.errors import PintError
@@ -111,7 +111,7 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
         known = "from" in str(error)  # "Cannot convert from ..."
         why = f"is not measured in {unit}" if known else f"has the unknown unit '{written}'"
         if known and unit == "Pa*s" and units.Quantity(1.0, written).check("[length]**2/[time]"):
-            why = KINEMATIC
+            why = KINEMATIC_VISCOSITY
         raise InputError(f"{subject} {why}; {_suggestion(written, unit)}write {allowed}") from None
     except Exception as error:  # what pint's parser raises on nonsense is of many kinds
         raise InputError(
@@ -119,7 +119,7 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
         ) from error
 
 
-@lru_cache(KEPT_UNITS)
+@lru_cache(CONVERSION_CACHE_SIZE)
 def _ratio(written: str, unit: str) -> float:
     """Conversion factor from the unit `written` to `unit`, cached; raises the errors of pint."""
     return float(registry().Quantity(1.0, written).to(unit).magnitude)
@@ -128,7 +128,7 @@ def _ratio(written: str, unit: str) -> float:
 def _suggestion(written: str, unit: str) -> str:
     """The text "did you mean 'kPa'? " for a misspelt common unit with the dimension of `unit`; else ""."""
     squeezed = "".join(written.split()).casefold()
-    for common in COMMON:
+    for common in COMMON_UNITS:
         if "".join(common.split()).casefold() == squeezed and registry()(common).check(registry()(unit)):
             return f"did you mean '{common}'? "
     return ""
@@ -151,9 +151,9 @@ def share_of_flutter(given: Given) -> float | None:
     """
     if not isinstance(given, str):
         return None
-    if found := OF_FLUTTER.fullmatch(given):
+    if found := MULTIPLE_OF_FLUTTER.fullmatch(given):
         return float(found[1]) / (100.0 if found[2] else 1.0)
-    if (found := FROM_FLUTTER.fullmatch(given)) and (found[2] == "above" or float(found[1]) < 100):
+    if (found := PERCENT_FROM_FLUTTER.fullmatch(given)) and (found[2] == "above" or float(found[1]) < 100):
         return 1.0 + (1.0 if found[2] == "above" else -1.0) * float(found[1]) / 100.0
     return None
 
