@@ -17,7 +17,7 @@ from ..parameters import PARAMETERS
 from ..units import Given, share_of_flutter
 from .drag import DRAGS, Drag
 from .quantities import LOADS, UNITS, number_in_si, quoted
-from .refusals import refuse_crushed, refuse_other_sets, refuse_out_of_range, refuse_words
+from .refusals import refuse_crushed, refuse_out_of_range, refuse_words, refuse_wrong_combinations
 from .section import Circle, Rectangle, Section, Tube
 from .segments import ArmSegment, segment_texts, segments_of
 from .shape import Shape, Station, cone, in_segments
@@ -67,7 +67,7 @@ class SlenderArm:
         object.__setattr__(self, "segments", texts)
         object.__setattr__(self, "pieces", segments_of(texts or ()))
         refuse_words(self)
-        refuse_other_sets(self)
+        refuse_wrong_combinations(self)
         self.si.length = self.shape.length
         self.si.young = self.shape.base.young
         refuse_out_of_range(self)

@@ -77,7 +77,7 @@ def lighthill(viscosity: float, slenderness: float) -> tuple[float, float]:
     return 2 * pi * viscosity / logarithm, 4 * pi * viscosity / (logarithm + 0.5)
 
 
-def least_rotational(viscosity: float, half_height: float) -> float:
+def min_rotational_drag(viscosity: float, half_height: float) -> float:
     """Smallest estimate of rotational drag, gamma3 = pi eta a^2: each section turns about its diameter.
 
     The surface velocity -Omega x2 of a long cylinder is axial. The flow outside is harmonic and decays like
@@ -101,7 +101,7 @@ def range_of_drag(viscosity: float, length: float, radius: float, half_height: f
     lengths in m.
     """
     slenderness = length / radius
-    least = least_rotational(1.0, half_height)
+    least = min_rotational_drag(1.0, half_height)
     most = most_rotational(1.0, half_height)
     translations = (gray_hancock(1.0, slenderness), lighthill(1.0, slenderness))
     # All estimates are for viscosity 1: drag is proportional to it.

@@ -183,7 +183,7 @@ def weight(arm: SlenderArm, F: Array) -> Effect:
     heaviness = abs(arm.si.density_difference) * GRAVITY
     load = heaviness * arm.cross_section.area * arm.si.length
     uniform = load / (SELF_BUCKLING * arm.force_scale)
-    value = arm.shape.buckling_share(heaviness) if arm.shape.varies else uniform
+    value = arm.shape.relative_weight(heaviness) if arm.shape.varies else uniform
     return _independent_of_viscosity("weight", np.full(F.shape, value), WEIGHT_LIMIT)
 
 

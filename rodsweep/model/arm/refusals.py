@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 CRUSHED_FROM = 1 - 1e-14
 """Ratio of F to the crushing force from which an arm is refused as crushed; below 1 because unit conversion
 rounds."""
-SAME_LENGTH = 1e-9
+LENGTH_TOLERANCE = 1e-9
 """Relative difference between a given length and the sum of the segment lengths up to which both are equal:
 the difference is rounding error."""
 INCOMPRESSIBLE = 0.5
@@ -64,7 +64,7 @@ def refuse_words(arm: "SlenderArm") -> None:
         )
 
 
-def refuse_other_sets(arm: "SlenderArm") -> None:
+def refuse_wrong_combinations(arm: "SlenderArm") -> None:
     """Raises InputError unless the arm has a length, a modulus, a viscosity, one shape, at most one load."""
     if arm.segments is not None:
         _refuse_beside_segments(arm)
@@ -125,7 +125,7 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
                 f"segments, number {number}: young is missing; give it there, or young for all segments"
             )
     total = sum(piece.length for piece in pieces)
-    if arm.length is not None and not abs(arm.si.length - total) <= SAME_LENGTH * total:
+    if arm.length is not None and not abs(arm.si.length - total) <= LENGTH_TOLERANCE * total:
         unit = unit_of(arm.length, "m")
         summed = f"{written_in(total, unit, 'm'):.6g} {unit}"
         raise InputError(f"{arm.quoted('length')} is not the sum of the segments, {summed}; leave it out")

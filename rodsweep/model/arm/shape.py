@@ -16,10 +16,10 @@ from ..material.profile import FACTORS, RADIUS_POWERS, Profile
 from .drag import Drag, range_of_drag
 from .section import Circle, Section, Tube
 
-BUCKLING_POINTS = 400
+BUCKLING_NODE_COUNT = 400
 """Number of midpoint-rule nodes in the integrals for the buckling weight, whose relative error is then 5e-5
 for a uniform arm."""
-RADIUS_STEP = 1.3
+MAX_RADIUS_RATIO = 1.3
 """Largest ratio of a cone's radii at neighbouring u of its profile. The cubics between them approximate the
 logarithms of the drag to 3e-4 for tapers from 0.01 to 100."""
 
@@ -101,7 +101,7 @@ class Shape:
 
         drag: index of the estimate in DRAGS.
         """
-        pieces = max(2, ceil(abs(log(self.taper)) / log(RADIUS_STEP)))
+        pieces = max(2, ceil(abs(log(self.taper)) / log(MAX_RADIUS_RATIO)))
         # Equal ratios of neighbouring radii, since the drag depends on the logarithm of the radius.
         radii = self.taper ** (np.arange(pieces + 1) / pieces)
         u = (1 - radii) / (1 - self.taper)
@@ -133,7 +133,7 @@ class Shape:
             friction.rotational,
         )
 
-    def buckling_share(self, weight: float) -> float:
+    def relative_weight(self, weight: float) -> float:
         """Ratio of the weight of the upright arm to the weight at which it buckles.
 
         weight: weight per volume, in N/m^3. theta' = m/(E I) and m' = -W theta, with the weight W(u) beyond
@@ -153,13 +153,13 @@ class Shape:
     def _at_midpoints(self) -> tuple[Array, Array, Array]:
         """(h, A, E I) of short pieces of the arm, each (pieces,), in m, m^2, N m^2."""
         if self.taper != 1:
-            u = (np.arange(BUCKLING_POINTS) + 0.5) / BUCKLING_POINTS
+            u = (np.arange(BUCKLING_NODE_COUNT) + 0.5) / BUCKLING_NODE_COUNT
             radius = 1 - (1 - self.taper) * u
             base = self.base
             area = base.section.area * radius ** RADIUS_POWERS["k1"]
             stiffness = base.young * base.section.second_moment * radius ** RADIUS_POWERS["k3"]
             return np.full(len(u), self.length / len(u)), area, stiffness
-        each = max(4, BUCKLING_POINTS // len(self.stations))
+        each = max(4, BUCKLING_NODE_COUNT // len(self.stations))
         lengths = np.diff([0.0, *(station.end for station in self.stations)]) * self.length
         areas = [station.section.area for station in self.stations]
         stiffnesses = [station.young * station.section.second_moment for station in self.stations]

@@ -10,9 +10,9 @@ from ...arrays import Array
 LEAST_S = 1e-6
 """Smallest frequency s of the flow, in eta k^2/rho. A smaller s is replaced by it, since rounding error would
 hide the phase lag, about 1e-6."""
-SECTIONS = 64
+SUBINTERVAL_COUNT = 64
 """Number of subintervals into which `frequency_of_phase` divides its current interval of ln s."""
-SECTIONINGS = 10
+DIVISION_COUNT = 10
 """Number of divisions in `frequency_of_phase`: 64^10 = 2^60 subintervals of an initial interval 20 to 30 wide
 reach rounding error with few calls on arrays."""
 
@@ -42,8 +42,8 @@ def frequency_of_phase(phase: float, logarithm: float) -> float:
     """
     low = log(LEAST_S)  # there the real part of the mobility is -1/2
     high = 2 * logarithm
-    for _ in range(SECTIONINGS):
-        edges = np.linspace(low, high, SECTIONS + 1)
+    for _ in range(DIVISION_COUNT):
+        edges = np.linspace(low, high, SUBINTERVAL_COUNT + 1)
         below = np.count_nonzero(unsteady_phase(np.exp(edges[1:-1]), logarithm) < phase)  # the phase rises
         low = float(edges[below])
         high = float(edges[below + 1])

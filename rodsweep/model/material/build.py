@@ -12,7 +12,7 @@ from ...arrays import Array
 from .laws import LAWS, LINEAR, Law, law_of
 from .profile import FACTORS, RADIUS_POWERS, Profile
 
-AREA_SAMPLES = 256
+FACTOR_SAMPLE_COUNT = 256
 """Number of points between neighbouring u of a profile at which the smallest factor is searched for."""
 
 
@@ -205,7 +205,7 @@ def _smallest_factor(profile: Profile | None, taper: float, name: str) -> float:
     rows = [
         (1 - (1 - taper) * u) ** power * row[column] for u, row in zip(profile.u, profile.rows, strict=True)
     ]
-    inside = (np.arange(AREA_SAMPLES) + 0.5) / AREA_SAMPLES
+    inside = (np.arange(FACTOR_SAMPLE_COUNT) + 0.5) / FACTOR_SAMPLE_COUNT
     points = (profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * inside).ravel()
     between = (1 - (1 - taper) * points) ** power * profile.factors(points)[column]
     return min(*rows, float(between.min()))
