@@ -161,4 +161,4 @@ class Plane:
     def uncrushed(self, x: float, y: float) -> bool:
         """Whether the rod at scaled coordinates is not crushed."""
         values = {**self.rod.values} | {a.name: a.value(v) for a, v in zip(self.axes, (x, y), strict=True)}
-        return values["F"] < values["k1"] * self.rod.build.crushing_share(values["taper"])
+        return values["F"] < values["k1"] * self.rod.build.relative_crushing_force(values["taper"])

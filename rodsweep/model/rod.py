@@ -104,14 +104,14 @@ class Rod:
     @property
     def crushing_force(self) -> float:
         """The force that crushes the weakest section, in k3/L^2; inf if no force crushes it."""
-        return self.build.crushing_share(self.taper) * self.stretch_stiffness
+        return self.build.relative_crushing_force(self.taper) * self.stretch_stiffness
 
     @property
     def least_rotational_drag(self) -> float:
         """Smallest rotational drag along the arm, in gamma2 L^2."""
         if self.standard:
             return self.rotational_drag
-        return self.build.least_drag_share(self.taper) * self.rotational_drag
+        return self.build.relative_least_drag(self.taper) * self.rotational_drag
 
     @property
     def uniform(self) -> bool:

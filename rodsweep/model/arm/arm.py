@@ -131,7 +131,7 @@ class SlenderArm:
     @property
     def crushing_force(self) -> float:
         """Follower force that crushes the weakest cross-section, in k3/L^2; inf if no force crushes it."""
-        return self.build.crushing_share(self.taper) * self.k1
+        return self.build.relative_crushing_force(self.taper) * self.k1
 
     @property
     def load(self) -> str | None:

@@ -104,20 +104,20 @@ class Build:
         """Ends of the intervals of u on which coefficients are smooth, increasing from 0 to 1, (breaks,)."""
         return np.array([0.0, 1.0]) if self.profile is None else self.profile.breaks
 
-    def crushing_share(self, taper: float) -> float:
+    def relative_crushing_force(self, taper: float) -> float:
         """Force that crushes the weakest section of an arm of the taper `taper`, divided by k1 at the base.
 
         inf if no force crushes the arm.
         """
         return self.constitutive_law.largest_load * _smallest_factor(self.profile, taper, "k1")
 
-    def least_drag_share(self, taper: float) -> float:
+    def relative_least_drag(self, taper: float) -> float:
         """Smallest rotational drag along an arm of the taper `taper`, divided by its value at the base."""
         return _smallest_factor(self.profile, taper, "gamma3")
 
-    def crushing_shares(self, tapers: Array) -> Array:
-        """`crushing_share` for each value in `tapers`, of the shape of `tapers`, (...,)."""
-        shares = [self.crushing_share(taper) for taper in tapers.ravel().tolist()]
+    def relative_crushing_forces(self, tapers: Array) -> Array:
+        """`relative_crushing_force` for each value in `tapers`, of the shape of `tapers`, (...,)."""
+        shares = [self.relative_crushing_force(taper) for taper in tapers.ravel().tolist()]
         return np.array(shares).reshape(tapers.shape)
 
     def local(self, F: Any, at_base: Mapping[str, Any], u: Array) -> LocalCoefficients:

@@ -58,7 +58,7 @@ def grid_of_arms(
     table |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
     builds = tuple(arm.build if arm else STANDARD for arm in arms) if section.varies else ()
     if "F" in table:
-        shares = build.crushing_shares(table.get("taper", np.ones(1)))
+        shares = build.relative_crushing_forces(table.get("taper", np.ones(1)))
         if builds:
             shares = _of_each(arms, lambda arm: arm.crushing_force / arm.k1)
         crushed = np.broadcast_to(table["F"] >= CRUSHED_FROM * table["k1"] * shares, shape)

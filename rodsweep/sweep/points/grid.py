@@ -69,7 +69,7 @@ def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | 
     if not set(CRUSHING) <= axes.keys() or count > MOST_POINTS:
         return None
     along = {name: axes[name].reshape([-1 if each == name else 1 for each in axes]) for name in axes}
-    shares = build.crushing_shares(along.get("taper", np.ones(1)))
+    shares = build.relative_crushing_forces(along.get("taper", np.ones(1)))
     if axes["F"].max() < axes["k1"].min() * shares.min():
         return None
     shape = tuple(map(len, axes.values()))
@@ -109,7 +109,7 @@ def refuse_axes(axes: dict[str, Array], into_crushed: bool = False, build: Build
         refuse_outside(PARAMETERS[name].allowed, name, column)
     if not set(CRUSHING) <= axes.keys():
         return
-    shares = build.crushing_shares(axes.get("taper", np.ones(1)))
+    shares = build.relative_crushing_forces(axes.get("taper", np.ones(1)))
     if (shares == 1).all():
         _refuse_crushed(axes["F"], axes["k1"], into_crushed)
     elif into_crushed and axes["F"].min() >= axes["k1"].max() * shares.max():
