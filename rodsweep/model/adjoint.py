@@ -42,11 +42,11 @@ from math import sqrt, tan, tanh
 from .rod import Rod
 
 SERIES_BELOW = 1e-4
-"""abs(kappa^2) below which `slaving_layer` sums tanh(kappa)/kappa as a power series; the quotient loses
+"""abs(kappa^2) below which `tip_layer_factor` sums tanh(kappa)/kappa as a power series; the quotient loses
 digits."""
 
 
-def slaving_layer(rod: Rod) -> float:
+def tip_layer_factor(rod: Rod) -> float:
     """T = tanh(kappa)/kappa of the angle's boundary layer at the tip, for a uniform rod with gamma3 = 0 < c2.
 
     kappa^2 = g nu/c2. T = 0 for all other rods, which have no such layer.
@@ -61,10 +61,10 @@ def slaving_layer(rod: Rod) -> float:
     return tanh(kappa) / kappa if square > 0 else tan(kappa) / kappa
 
 
-def hermitian_tip(F: float, layer: float) -> tuple[float, float]:
+def hermitian_tip_coefficients(F: float, layer: float) -> tuple[float, float]:
     """Coefficients (p, r) of the tip term that turns the weak form of L into the weak form of (L + L+)/2.
 
     The term is p (a theta - b y) - r a y at u = 1, with test functions (a, b) and fields (y, theta).
-    p = F/2 in k3/L^2; r = (F^2/4) T in k3/L^3; `layer` is the T of `slaving_layer`.
+    p = F/2 in k3/L^2; r = (F^2/4) T in k3/L^3; `layer` is the T of `tip_layer_factor`.
     """
     return F / 2, F**2 / 4 * layer

@@ -11,7 +11,7 @@ from math import ceil, sqrt
 import numpy as np
 
 from ...arrays import Array
-from ...model.adjoint import slaving_layer
+from ...model.adjoint import tip_layer_factor
 from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
 from ..elements.quadrature import gauss, gauss_lobatto
@@ -40,7 +40,7 @@ def slaving_of(rod: Rod) -> float:
     if rod.rotational_drag > 0 or rod.c2 == 0:
         return 0.0
     if rod.standard:
-        return slaving_layer(rod)
+        return tip_layer_factor(rod)
     edges = _edges(rod)
     x, _ = gauss_lobatto(ORDER)
     points, weights = gauss(ORDER + 2)
