@@ -26,7 +26,7 @@ from .algebra import ALGEBRAS
 Values = NDArray[Any]
 """Components of a deformation, velocity or stress, real, or complex for complex-step derivatives."""
 
-IN_SPACE = [0, 1, 5]
+PLANE_COMPONENTS = [0, 1, 5]
 """Indices of the three components of se(2) among the six components of se(3)."""
 
 
@@ -102,7 +102,7 @@ class Material(NamedTuple):
 def in_space(plane: Values) -> Values:
     """Embedding in se(3) or its dual, (6, ...), of the element `plane` of se(2) or its dual, (3, ...)."""
     space = np.zeros((6, *plane.shape[1:]), plane.dtype)
-    space[IN_SPACE] = plane
+    space[PLANE_COMPONENTS] = plane
     return space
 
 

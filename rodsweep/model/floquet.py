@@ -1,7 +1,7 @@
 """Stability of a limit cycle from its Floquet multipliers and their errors."""
 
 
-def least_outside(count: int, multiplier: float, error: float) -> int:
+def min_unstable_multipliers(count: int, multiplier: float, error: float) -> int:
     """Lower bound on the number of Floquet multipliers outside the unit circle: 0 means stable, -1 undecided.
 
     count: number of multipliers outside, or -1 if a multiplier lies on the circle within its error.

@@ -173,9 +173,9 @@ OPTIONAL_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if pa
 """Names of the parameters that a result file contains only if the config names them."""
 SCALINGS = tuple((name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scales)
 """All pairs (parameter name, name of a stiffness or drag that the parameter multiplies)."""
-OF_TRANSVERSE_PROBLEM = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
+TRANSVERSE_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 """Names of all parameters, optional parameters included, that the transverse linear problem may contain."""
-ALLOWED = [(name, parameter.allowed.contains) for name, parameter in PARAMETERS.items()]
+RANGE_CHECKS = [(name, parameter.allowed.contains) for name, parameter in PARAMETERS.items()]
 """(name, range check) of each parameter, prepared once because sweeps create many rods."""
 CRUSHING = ("F", "k1")
 """Names of the force and of the stretch stiffness: the force F >= k1 crushes a rod of linear material."""

@@ -14,7 +14,7 @@ import numpy as np
 from ..arrays import Array
 from .balance import Material, first_component
 from .material.build import STANDARD, Build, LocalCoefficients, Sections
-from .parameters import ALLOWED, OF_TRANSVERSE_PROBLEM, PARAMETERS, STIFFNESSES, with_parameters
+from .parameters import PARAMETERS, RANGE_CHECKS, STIFFNESSES, TRANSVERSE_PARAMETERS, with_parameters
 from .scaling import compression_factor, scaled
 
 
@@ -66,7 +66,7 @@ class Rod:
 
     def __post_init__(self) -> None:
         values: dict[str, float] = {}
-        for name, contains in ALLOWED:
+        for name, contains in RANGE_CHECKS:
             values[name] = value = getattr(self, name)
             if not contains(value):
                 PARAMETERS[name].require(value)
@@ -145,7 +145,7 @@ class Rod:
         """The rod with equal parameters of the transverse linear problem, and defaults of all other
         parameters.
         """
-        return Rod(**{name: self.values[name] for name in OF_TRANSVERSE_PROBLEM}, build=self.build)
+        return Rod(**{name: self.values[name] for name in TRANSVERSE_PARAMETERS}, build=self.build)
 
     def coordinate(self, name: str) -> float:
         """Coordinate of a parameter of the rod: 1/k for a stiffness k, otherwise the value."""

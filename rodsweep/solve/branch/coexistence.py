@@ -184,7 +184,9 @@ def stretches_of(curve: BranchCurve) -> list[BranchStretch]:
     """Parts of a branch between consecutive special points."""
     stretches = []
     for one, other in zip(curve.special[:-1], curve.special[1:], strict=True):
-        signs = {point.least_outside for point in curve.points[one.after + 1 : other.after + 1]} - {-1}
+        signs = {
+            point.min_unstable_multipliers for point in curve.points[one.after + 1 : other.after + 1]
+        } - {-1}
         # Stability can change at special points only; cycles that disagree between two of them leave it open.
         stable = -1
         if signs == {0}:
