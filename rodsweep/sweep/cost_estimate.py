@@ -37,7 +37,7 @@ CERTIFICATE_MS = 0.15
 ARM_MS = 4.0
 """Time to evaluate D and certify one spectrum of an arm that is not uniform, in ms: median over 40 random
 arms."""
-FIRST_POINTS = 2.0
+FIRST_POINT_COST = 2.0
 """Time of the first point of a stretch, divided by the time of a point that is solved alone."""
 FOLLOWED_MS = 0.006
 """Time per point of a stretch, whose eigenvalues are continued from a neighbouring point, in ms."""
@@ -164,7 +164,7 @@ def estimate_followed(alone: Estimate, stretches: Stretches, standard: bool) -> 
     standard: whether all rods are uniform and of linear material.
     """
     points = math.prod(stretches.shape)
-    share = FIRST_POINTS * stretches.count / points
+    share = FIRST_POINT_COST * stretches.count / points
     each = FOLLOWED_MS if standard else FOLLOWED_ARM_MS
     return replace(alone, seconds=alone.seconds * min(1.0, share) + points * 1e-3 * each)
 

@@ -21,7 +21,7 @@ from ..schema import Config
 from ..tasks import CONFIGS, makes_diagram
 from ..values import Axis, axis_of, named, short
 from .parsing import MAX_DEPTH, parse, read_text
-from .refusals import KEY_SHOWN, dotted, nearest, sentence_of
+from .refusals import MAX_KEY_LENGTH, dotted, nearest, sentence_of
 
 LONGEST_HEADER = 10_000
 """Maximum number of characters of a CSV file's header. `read_points` refuses a file with a longer first
@@ -144,7 +144,7 @@ def _written(axis: Any) -> Any:
 
 def _override(tree: dict, override: str) -> None:
     """Sets, in place, the key in the parsed config `tree` that one "--set a.b=value" names; value: YAML."""
-    where = named(f"--set {override}", KEY_SHOWN)
+    where = named(f"--set {override}", MAX_KEY_LENGTH)
     if not override.isprintable():
         raise InputError(f"{where} has characters that cannot be printed")
     key, equals, value = override.partition("=")

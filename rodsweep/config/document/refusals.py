@@ -13,13 +13,13 @@ from ..axes import words
 from ..schema import Config
 from ..values import named, short
 
-KEY_SHOWN = 100
+MAX_KEY_LENGTH = 100
 """Maximum number of characters of a key in a message; longer keys are shortened."""
-LETTERS_A_SLIP = 3
+LETTERS_PER_TYPING_ERROR = 3
 """Minimum number of letters of a key per typing error; with more typing errors, no known key is suggested."""
-MOST_MEANT = 4
+MAX_SUGGESTIONS = 4
 """Maximum number of suggested keys. If more keys are equally similar, all known keys are listed instead."""
-LONG_PART = 4
+MIN_SUBSTRING_LENGTH = 4
 """Minimum number of letters of a substring that identifies a key, such as `density` for `fluid_density`."""
 
 
@@ -32,7 +32,7 @@ def sentence_of(config: type[Config], problem: Any) -> str:
     if kind == "extra_forbidden":
         fields = _section(config, location[:-1]).model_fields
         known = [*(n for n in PARAMETERS if n in fields), *(n for n in fields if n not in PARAMETERS)]
-        elsewhere = places_of(config, location)
+        elsewhere = full_names_of(config, location)
         hint = f"did you mean {elsewhere[0]}?" if elsewhere else hint_of(location[-1], known)
         return f"unknown key {key}; {hint}"
     if kind == "missing":
@@ -58,13 +58,13 @@ def nearest(key: str, known: Sequence[str]) -> list[str]:
     """The known keys that are most similar to an unknown key, in the given order; empty if no key is similar.
 
     A known key is similar if the unknown key differs only in capitals and underscores, is the beginning or a
-    substring of at least LONG_PART letters of the known key, or has at most one typing error in three
+    substring of at least MIN_SUBSTRING_LENGTH letters of the known key, or has at most one typing error in three
     letters.
     """
     near = [(slips, name) for name in known if (slips := _slips(_plain(key), _plain(name))) is not None]
     least = min((slips for slips, _ in near), default=0)
     nearest_ones = [name for slips, name in near if slips == least]
-    return nearest_ones if key and len(nearest_ones) <= MOST_MEANT else []
+    return nearest_ones if key and len(nearest_ones) <= MAX_SUGGESTIONS else []
 
 
 def _plain(key: str) -> str:
@@ -75,13 +75,13 @@ def _slips(key: str, name: str) -> float | None:
     """Number of typing errors between a key and a name, 0.5 for a substring; None for dissimilar words."""
     if key == name:
         return 0
-    if name.startswith(key) or (len(key) >= LONG_PART and key in name):
+    if name.startswith(key) or (len(key) >= MIN_SUBSTRING_LENGTH and key in name):
         return 0.5
     longest = max(len(key), len(name))
-    if LETTERS_A_SLIP * abs(len(key) - len(name)) > longest:  # the edit distance is no smaller
+    if LETTERS_PER_TYPING_ERROR * abs(len(key) - len(name)) > longest:  # the edit distance is no smaller
         return None
     distance = _edits(key, name)
-    return distance if LETTERS_A_SLIP * distance <= longest else None
+    return distance if LETTERS_PER_TYPING_ERROR * distance <= longest else None
 
 
 def _edits(a: str, b: str) -> int:
@@ -98,7 +98,7 @@ def _edits(a: str, b: str) -> int:
     return rows[-1][-1]
 
 
-def places_of(config: type[Config], location: Sequence[str]) -> list[str]:
+def full_names_of(config: type[Config], location: Sequence[str]) -> list[str]:
     """Full names, like "parameters.F", of keys in other sections with the name of an unknown key."""
     task = str(get_args(config.model_fields["task"].annotation)[0])
     found = []
@@ -110,7 +110,7 @@ def places_of(config: type[Config], location: Sequence[str]) -> list[str]:
 
 def dotted(location: Sequence[str]) -> str:
     """Full name of a key, like "parameters.F.num", from the names of its sections and its own name."""
-    return named(".".join(location), KEY_SHOWN)
+    return named(".".join(location), MAX_KEY_LENGTH)
 
 
 def _section(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]:
