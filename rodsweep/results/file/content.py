@@ -34,7 +34,7 @@ NUMBERS = "iuf"
 """NumPy type kinds allowed for variables of a result file: integers and floating-point numbers."""
 BYTES_A_READ = 1 << 18
 """Number of bytes per read of a variable, which bounds the memory."""
-FILLED_WITH_NAN = ("_FillValue", "[nan]")
+XARRAY_FILL_ATTRIBUTE = ("_FillValue", "[nan]")
 """(name, value as text) of an attribute that xarray adds when it writes a file, and that has no effect."""
 Digests = dict[str, dict[str, str]]
 """Digests by name of the attribute or variable, under the keys `attributes` and `variables`."""
@@ -168,7 +168,7 @@ def _plain_attributes(attributes: Mapping[str, Any]) -> dict[str, Any]:
     """Attributes as lists of numbers or texts by name, without attributes of HDF5, netCDF and the user."""
     names = (name for name in attributes if name not in BOOKKEEPING and not is_users(name))
     plain = {name: _plain(attributes[name]) for name in names}
-    return {name: value for name, value in plain.items() if (name, str(value)) != FILLED_WITH_NAN}
+    return {name: value for name, value in plain.items() if (name, str(value)) != XARRAY_FILL_ATTRIBUTE}
 
 
 def _plain(value: Any) -> Any:

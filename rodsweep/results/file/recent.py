@@ -67,7 +67,7 @@ def journalled_reasons(header: ResultHeader) -> dict[str, str]:
     return reasons_added(lines, header.attributes)
 
 
-def put_in(values: np.ndarray, name: str, records: np.ndarray) -> None:
+def insert_records(values: np.ndarray, name: str, records: np.ndarray) -> None:
     """Copies the variable `name` of records, (n,), into `values`, its array over all points, in place."""
     values.reshape(-1, *records[name].shape[1:])[records["index"]] = records[name]
 

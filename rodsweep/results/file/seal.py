@@ -23,7 +23,7 @@ FORMER_HEAD = b"\nrodsweep seal 1 "
 """First bytes of the checksum in files of format 4 and before, which are refused for their format."""
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 """First bytes of every HDF5 file."""
-END_AT = {0: 40, 1: 44, 2: 28, 3: 28}
+END_OFFSETS = {0: 40, 1: 44, 2: 28, 3: 28}
 """Offset of the eight bytes with HDF5's end of the file, by version of HDF5's superblock."""
 LONGEST_FRAME = 100_000
 """Maximum size, in bytes, of the text with the checksum and the byte ranges that the checksum omits."""
@@ -85,9 +85,9 @@ def _end(stream: BinaryIO) -> int:
     """Offset of HDF5's own end of the file, in bytes, from the superblock."""
     stream.seek(0)
     head = stream.read(64)
-    if not head.startswith(HDF5_SIGNATURE) or len(head) < 64 or head[8] not in END_AT:
+    if not head.startswith(HDF5_SIGNATURE) or len(head) < 64 or head[8] not in END_OFFSETS:
         raise BrokenSeal("it is not HDF5")
-    at = END_AT[head[8]]
+    at = END_OFFSETS[head[8]]
     return int.from_bytes(head[at : at + 8], "little")
 
 

@@ -14,7 +14,7 @@ from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import PARAMETERS
 from ..layouts.variables import TYPED_UNIT
 from .content import is_users
-from .recent import journalled_points, journalled_reasons, put_in, read_unfolded
+from .recent import insert_records, journalled_points, journalled_reasons, read_unfolded
 from .validation import cleaned, open_whole, reading, refuse_absent
 
 LARGEST_CHECKED = 10**9
@@ -37,7 +37,7 @@ class Variables(Mapping[str, np.ndarray]):
             with reading(self.path):
                 values = self.file[name][...]
                 if len(self.recent) and name in self.recent.dtype.fields:
-                    put_in(values, name, self.recent)
+                    insert_records(values, name, self.recent)
                 self.read[name] = values
         return self.read[name]
 

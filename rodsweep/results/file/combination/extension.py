@@ -26,7 +26,7 @@ from ..points import stored_points
 from ..validation import ResultHeader
 from .identity import config_difference
 
-SAME_VALUE = 4 * np.finfo(float).eps
+ROUNDING_TOLERANCE = 4 * np.finfo(float).eps
 """Relative difference of two values on an axis up to which the difference counts as rounding error."""
 Indices = NDArray[np.int64]
 """Flat indices of points, or positions on an axis, (n,); -1 for none."""
@@ -171,7 +171,7 @@ def _places_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> 
     with np.errstate(invalid="ignore"):
         nearest = np.where(np.abs(new[left] - old) < np.abs(new[right] - old), left, right)
         apart = np.abs(new[nearest] - old)
-        near = (new[nearest] == old) | (np.isfinite(apart) & (apart <= SAME_VALUE * np.abs(old)))
+        near = (new[nearest] == old) | (np.isfinite(apart) & (apart <= ROUNDING_TOLERANCE * np.abs(old)))
     if not near.all():
         _refuse(header, f"parameters.{name} = {old[~near][0]:.15g} is in the file and not in the config")
     return np.where(new[nearest] == old, nearest, -1).astype(np.int64)

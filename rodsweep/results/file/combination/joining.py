@@ -25,10 +25,10 @@ from ..creation import Plan
 from ..points import parameters_of, points_at, stored_points, write_points
 from ..provenance import LONGEST_ATTRIBUTE, kernels_of
 from ..validation import ResultHeader
-from .extension import SAME_VALUE, StoredPlaces
+from .extension import ROUNDING_TOLERANCE, StoredPlaces
 from .identity import config_difference
 
-OF_ONE_FILE = (
+NOT_INHERITED = (
     "program", "format", "fingerprint", "config_resolved", "coordinates", "finished", "snapshot",
     SEAL_ATTRIBUTE,
 )  # fmt: skip
@@ -145,7 +145,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPlaces]]:
     axes = []
     for name in grids[0].names:
         axis = np.unique(np.concatenate([grid.by_name[name] for grid in grids]))
-        close = np.flatnonzero(np.diff(axis) <= SAME_VALUE * np.abs(axis[:-1]))
+        close = np.flatnonzero(np.diff(axis) <= ROUNDING_TOLERANCE * np.abs(axis[:-1]))
         if len(close):
             values = " and ".join(repr(float(value)) for value in axis[close[0] : close[0] + 2])
             raise InputError(
@@ -231,5 +231,5 @@ def _with_attributes(plan: Plan, first: ResultHeader, config: Config) -> Plan:
         described = file["status"].attrs
         pairs = zip(described["flag_values"], str(described["flag_meanings"]).split(), strict=True)
         flags = tuple((int(value), word) for value, word in pairs if value != MISSING)
-    kept = {name: value for name, value in first.attributes.items() if name not in OF_ONE_FILE}
+    kept = {name: value for name, value in first.attributes.items() if name not in NOT_INHERITED}
     return replace(plan, attributes=kept | {"config": text}, flags=flags)
