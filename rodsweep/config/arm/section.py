@@ -57,7 +57,7 @@ class ArmSection(StrictSection):
     """Viscosity of the fluid. The parameters do not depend on the viscosity; times are proportional to the
     viscosity."""
     fluid_density: Annotated[Quantities | None, Allowed] = None
-    """Density of the fluid, by default water's. It decides whether the model applies."""
+    """Density of the fluid, by default water's. The density decides whether the model applies."""
     density_difference: Annotated[Quantities | None, Allowed] = None
     """Density of the arm minus density of the fluid, for whether the model applies. Without it, weight is
     neglected."""

@@ -76,7 +76,7 @@ def tapers_of(arm: "ArmSection") -> set[float]:
 
 
 def refuse_misused_shape(arm: "ArmSection", beside: dict[str, Any]) -> None:
-    """Raises ValueError for an axis `length` of an arm with segments, and for `taper` with a cone or segments.
+    """Raises ValueError for an axis `length` beside segments, and for `taper` beside a cone or segments.
 
     beside: parameters given beside the arm.
     """

@@ -184,8 +184,7 @@ def _task(tree: dict) -> str:
 
 
 def with_files_read(tree: Any, directory: Path) -> Any:
-    """A parsed config with the contents of the files that it names: profile, and columns of the list of
-    points.
+    """A parsed config, with the profile from its file, and `parameters.columns` from the header of the list.
 
     directory: folder of relative file names. Raises InputError for a profile that is no table of numbers.
     """

@@ -58,8 +58,8 @@ def nearest(key: str, known: Sequence[str]) -> list[str]:
     """The known keys that are most similar to an unknown key, in the given order; empty if no key is similar.
 
     A known key is similar if the unknown key differs only in capitals and underscores, is the beginning or a
-    substring of at least MIN_SUBSTRING_LENGTH letters of the known key, or has at most one typing error in three
-    letters.
+    substring of MIN_SUBSTRING_LENGTH or more letters of the known key, or has at most one typing error
+    in three letters.
     """
     near = [(slips, name) for name in known if (slips := _slips(_plain(key), _plain(name))) is not None]
     least = min((slips for slips, _ in near), default=0)

@@ -47,8 +47,9 @@ ERRORS = (
 
 
 def followed_variables(parameter: str) -> tuple[Variable, ...]:
-    """Variables of the cycles on all branches, branch by branch; parameter: along which branches are
-    followed.
+    """Variables of the cycles on all branches, branch by branch.
+
+    parameter: name of the continuation parameter.
     """
     unit = PARAMETERS[parameter].unit
     return along_dimension(

@@ -224,7 +224,8 @@ def criticality_variables(line: str, row: str) -> dict[str, Variable]:
 def bautin_curve_variables(line: str, row: str, third: str) -> dict[str, Variable]:
     """Variables of the curves of generalised Hopf points, by name, for `phase_diagram.bautin_along`.
 
-    third: the parameter along the curves, besides the two of the diagram.
+    line, row: names of the diagram's two parameters. third: name of the third parameter, which varies along
+    the curves.
     """
     names = (line, row, third)
     at = "bautin_step"

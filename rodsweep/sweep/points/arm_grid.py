@@ -127,7 +127,10 @@ def _with_flutter(coverage: Array, flutter: Array) -> Array:
 
 
 def _failures(coverage: Array, forces: Forces) -> dict[int, str]:
-    """Reasons why the search for flutter failed, by flat index; coverage: status codes, (arms, loads, n)."""
+    """Reasons why the search for flutter failed, by flat index of the point.
+
+    coverage: status codes, (arms, loads, combinations of replaced parameters).
+    """
     each = np.broadcast_to(forces, coverage.shape).ravel()
     return {int(index): each[index].failure for index in np.flatnonzero(coverage == FLUTTER_UNKNOWN)}
 
