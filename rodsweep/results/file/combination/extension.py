@@ -33,7 +33,7 @@ Indices = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
-class StoredPlaces:
+class StoredPointMap:
     """Map from stored points to new points: by the positions on each axis of a grid, or in a list."""
 
     shape: tuple[int, ...]
@@ -62,7 +62,7 @@ class Extension:
     path: Path
     old: Layout
     new: Layout
-    places: StoredPlaces
+    places: StoredPointMap
     grown: tuple[tuple[IncreaseRule, Any], ...]
     """(rule, former value) for every option that the new config increases."""
     nothing_stays: bool
@@ -138,7 +138,7 @@ def _refuse(header: ResultHeader, difference: str) -> None:
         )
 
 
-def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPlaces:
+def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPointMap:
     """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a point."""
     new = plan.points
     if tuple(old.axes) != tuple(new.axes) or old.names != new.names:
@@ -148,7 +148,7 @@ def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPlaces:
         ]
         _refuse(header, config_difference(kinds[0], kinds[1], "parameters"))
     if not old.axes:
-        return StoredPlaces(old.shape, new.shape, (_places_in_list(header, old, new),))
+        return StoredPointMap(old.shape, new.shape, (_places_in_list(header, old, new),))
     places = [_places_on_axis(header, name, axis, new.axes[name]) for name, axis in old.axes.items()]
     if plan.chains:
         axis = plan.chains.axis
@@ -158,7 +158,7 @@ def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPlaces:
         before = stretches_along_longest_axis(old.shape, old.moved)
         same = _same_stretches(places[axis], new.shape[axis])
         places[axis] = np.where(same & (before is not None and before.axis == axis), places[axis], -1)
-    return StoredPlaces(old.shape, new.shape, tuple(places))
+    return StoredPointMap(old.shape, new.shape, tuple(places))
 
 
 def _places_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> Indices:

@@ -25,10 +25,10 @@ from ..creation import Plan
 from ..points import parameters_of, points_at, stored_points, write_points
 from ..provenance import LONGEST_ATTRIBUTE, kernels_of
 from ..validation import ResultHeader
-from .extension import ROUNDING_TOLERANCE, StoredPlaces
+from .extension import ROUNDING_TOLERANCE, StoredPointMap
 from .identity import config_difference
 
-NOT_INHERITED = (
+NOT_INHERITED_ATTRIBUTES = (
     "program", "format", "fingerprint", "config_resolved", "coordinates", "finished", "snapshot",
     SEAL_ATTRIBUTE,
 )  # fmt: skip
@@ -46,7 +46,7 @@ class JoinedFile:
 
     plan: Plan
     sources: Sequence[ResultHeader]
-    places: Sequence[StoredPlaces]
+    places: Sequence[StoredPointMap]
 
     def write(self, path: Path) -> list[ResultHeader]:
         """Writes the points of all sources into the file at `path`; returns the sources of stored points.
@@ -137,7 +137,7 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: Planner) -> JoinedF
     return JoinedFile(_with_attributes(plan, first, config), sources, places)
 
 
-def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPlaces]]:
+def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]:
     """(grid with all values of all grids on every axis, map from each grid to it).
 
     Raises InputError if points of the large grid are in no grid, or if values differ by rounding only.
@@ -158,7 +158,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPlaces]]:
     for grid in grids:
         each = [np.searchsorted(axis, column) for axis, column in zip(axes, grid.columns, strict=True)]
         covered[np.ix_(*each)] = True
-        places.append(StoredPlaces(grid.shape, whole.shape, tuple(each)))
+        places.append(StoredPointMap(grid.shape, whole.shape, tuple(each)))
     if not covered.all():
         raise InputError(
             f"together the files do not form a full grid: {np.count_nonzero(~covered)} of {covered.size} "
@@ -168,7 +168,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPlaces]]:
     return whole, places
 
 
-def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPlaces]]:
+def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]:
     """(list of the points of all lists, each point once; map from each list to it)."""
     known: dict[bytes, int] = {}
     rows = [np.column_stack(points.columns) + 0.0 for points in lists]
@@ -178,7 +178,9 @@ def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPlaces]]:
         whole[place] = each
     joined = Points(lists[0].names, tuple(np.ascontiguousarray(whole.T)), is_grid=False)
     shapes = (points.shape for points in lists)
-    return joined, [StoredPlaces(shape, joined.shape, (p,)) for shape, p in zip(shapes, places, strict=True)]
+    return joined, [
+        StoredPointMap(shape, joined.shape, (p,)) for shape, p in zip(shapes, places, strict=True)
+    ]
 
 
 def _joined_config(first: ResultHeader, meant: dict[str, Any], points: Points) -> Config:
@@ -231,5 +233,5 @@ def _with_attributes(plan: Plan, first: ResultHeader, config: Config) -> Plan:
         described = file["status"].attrs
         pairs = zip(described["flag_values"], str(described["flag_meanings"]).split(), strict=True)
         flags = tuple((int(value), word) for value, word in pairs if value != MISSING)
-    kept = {name: value for name, value in first.attributes.items() if name not in NOT_INHERITED}
+    kept = {name: value for name, value in first.attributes.items() if name not in NOT_INHERITED_ATTRIBUTES}
     return replace(plan, attributes=kept | {"config": text}, flags=flags)
