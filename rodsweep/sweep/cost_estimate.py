@@ -34,7 +34,7 @@ SPARSE_MS = 8e-3
 """Time of the solve of a spectrum with a sparse factorisation, in ms per unknown."""
 CERTIFICATE_MS = 0.15
 """Time to certify one spectrum by winding numbers, in ms."""
-ARM_MS = 4.0
+ARM_SPECTRUM_MS = 4.0
 """Time to evaluate D and certify one spectrum of an arm that is not uniform, in ms: median over 40 random
 arms."""
 FIRST_POINT_COST = 2.0
@@ -44,12 +44,12 @@ FOLLOWED_MS = 0.006
 FOLLOWED_ARM_MS = 0.4
 """Time per point of a stretch of arms that are not uniform, in ms: median over 24 random arms, the first
 point included."""
-LINE_MS = 24.0
+SEARCH_MS = 24.0
 """Time to search one rod for crossings along one parameter, in ms: mean over 72 rods, of which a few take
 four times as long."""
-LINE_CERTIFICATE_MS = 16.0
+SEARCH_CERTIFICATE_MS = 16.0
 """Time to certify that a search along one parameter missed no crossing, in ms: mean over the 72 rods."""
-LINE_OF_ARM_MS = 200.0
+ARM_SEARCH_MS = 200.0
 """Time to search an arm that is not uniform for crossings along F, in ms: mean over 64 random arms, of which
 half take 40 ms and a few soft arms 2000 ms."""
 CURVES_OF_ARMS_SECONDS = 4.5
@@ -114,8 +114,8 @@ def estimate_lines(lines: int, certify: bool, of_arms: bool) -> Estimate:
 
     certify: whether each search is certified. of_arms: whether some arms are not uniform.
     """
-    uniform = LINE_MS + (LINE_CERTIFICATE_MS if certify else 0)
-    return Estimate(lines * 1e-3 * (LINE_OF_ARM_MS if of_arms else uniform))
+    uniform = SEARCH_MS + (SEARCH_CERTIFICATE_MS if certify else 0)
+    return Estimate(lines * 1e-3 * (ARM_SEARCH_MS if of_arms else uniform))
 
 
 def estimate_diagram(rows: int, certify: bool, of_arms: bool, curves: bool, criticality: bool) -> Estimate:
@@ -132,7 +132,7 @@ def estimate_diagram(rows: int, certify: bool, of_arms: bool, curves: bool, crit
 def estimate_criticality(rods: int, certify: bool, of_arms: bool) -> Estimate:
     """Cost of the Hopf points, with normal forms, of `rods` rods; of_arms: some rods are not uniform."""
     search = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
-    each = HOPF_POINTS_MS + (LINE_OF_ARM_MS if of_arms else search)
+    each = HOPF_POINTS_MS + (ARM_SEARCH_MS if of_arms else search)
     return Estimate(rods * 1e-3 * each)
 
 
@@ -186,7 +186,7 @@ def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool)
     n = np.minimum(np.array(sizes, dtype=float), RESOLUTION.most_unknowns)
     dense = FIXED_MS + LINEAR_MS * n + CUBIC_MS * n**3
     each = np.where(n <= SPARSE_FROM, dense, SPARSE_MS * n) + (CERTIFICATE_MS if certify else 0)
-    each += varied * ARM_MS
+    each += varied * ARM_SPECTRUM_MS
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
     too_large = int((np.array(sizes) > RESOLUTION.most_unknowns).sum())
     return Estimate(float(each.mean()) * 1e-3 * points.count, memory, (min(sizes), max(sizes)), too_large)
