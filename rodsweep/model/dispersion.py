@@ -19,14 +19,14 @@ from .rod import Rod
 
 SAMPLES = 64
 """Number of samples of K = kappa^2, at equal ratios. Neighbours differ by 13 %, enough for an estimate."""
-PIECE_SAMPLES = 33
+SAMPLES_PER_INTERVAL = 33
 """Number of points in each interval between two breaks of an arm's profile at which local waves are
 evaluated."""
-KEPT = 16
+CACHED_ARM_COUNT = 16
 """Number of arms, or builds, whose latest results the caches of this module hold."""
-LOWEST = 1e-4
+MIN_FRACTION = 1e-4
 """Smallest sample of K = kappa^2, divided by F g. Every wave with K > F g decays."""
-FRACTIONS: Array = LOWEST ** (1 - np.arange(SAMPLES) / SAMPLES)
+FRACTIONS: Array = MIN_FRACTION ** (1 - np.arange(SAMPLES) / SAMPLES)
 """Samples of K = kappa^2 divided by F g, increasing, (SAMPLES,)."""
 
 
@@ -56,23 +56,23 @@ class SampledArm(NamedTuple):
     local: LocalCoefficients
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=CACHED_ARM_COUNT)
 def sampled(rod: Rod) -> SampledArm:
     """Sample points of the arm `rod` and its local coefficients there, cached by rod."""
     points, weights = _points_of(rod.build)
     return SampledArm(points, weights, rod.local(points))
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=CACHED_ARM_COUNT)
 def _points_of(build: Build) -> tuple[Array, Array]:
     """`points` and `weights` of `SampledArm`, both (points,), for all arms of one build."""
     lengths = np.diff(build.breaks)
-    inside = (np.arange(PIECE_SAMPLES) + 0.5) / PIECE_SAMPLES
+    inside = (np.arange(SAMPLES_PER_INTERVAL) + 0.5) / SAMPLES_PER_INTERVAL
     points = (build.breaks[:-1, None] + lengths[:, None] * inside).ravel()
-    return points, np.repeat(lengths / PIECE_SAMPLES, PIECE_SAMPLES)
+    return points, np.repeat(lengths / SAMPLES_PER_INTERVAL, SAMPLES_PER_INTERVAL)
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=CACHED_ARM_COUNT)
 def local_growth(rod: Rod) -> tuple[Array, Array]:
     """(growth rates, wave numbers) of the most amplified wave at each point of `sampled(rod)`: (points,).
 
