@@ -65,7 +65,7 @@ def sampled(rod: Rod) -> SampledArm:
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)
 def _points_of(build: Build) -> tuple[Array, Array]:
-    """`points` and `weights` of `SampledArm`, both (points,), for all arms of one build."""
+    """(midpoints, lengths) of short intervals of u between the breaks of a build's profile, both (points,)."""
     lengths = np.diff(build.breaks)
     inside = (np.arange(SAMPLES_PER_INTERVAL) + 0.5) / SAMPLES_PER_INTERVAL
     points = (build.breaks[:-1, None] + lengths[:, None] * inside).ravel()

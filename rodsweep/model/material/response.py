@@ -34,7 +34,7 @@ class Stress(NamedTuple):
 
 
 class Tangent(NamedTuple):
-    """Derivatives of N and M: N1 = dN/dq1, N3 = dN/dq3, M1 = dM/dq1, M3 = dM/dq3."""
+    """Derivatives of axial force N and moment M: N1 = dN/dq1, N3 = dN/dq3, M1 = dM/dq1, M3 = dM/dq3."""
 
     N1: float
     N3: float

@@ -151,7 +151,10 @@ def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
 
 
 def refuse_misfit(file: h5py.File, layout: Layout) -> None:
-    """Raises one of DAMAGES unless every variable of the layout is contiguous, of right type and shape."""
+    """Raises one of the exceptions DAMAGES unless the file has the variables of a layout.
+
+    Every variable must be contiguous and have the type and shape of the layout.
+    """
     shape = tuple(len(file[name]) for name in layout.dimensions(is_list="point" in file))
     expected = {v.name: (shape + layout.inner(v), np.dtype(v.dtype)) for v in layout.variables}
     expected |= {name: ((extent,), file[name].dtype) for name, extent in layout.extents.items()}
