@@ -14,7 +14,7 @@ from ..config.values import short
 from ..errors import InputError
 from ..model.arm.quantities import ALL_QUANTITIES
 from ..results.file.content import SEAL_ATTRIBUTE, attribute_digests, variable_digest
-from ..results.file.recent import journalled_points, journalled_reasons, put_in, read_unfolded
+from ..results.file.recent import insert_records, journalled_points, journalled_reasons, read_unfolded
 from ..results.file.validation import ResultHeader, cleaned, open_whole, reading, reason_of
 from ..results.file.view import View
 from ..results.layouts import beside_points, layout_of
@@ -58,7 +58,7 @@ def _opened(path: Path) -> xr.Dataset:
     if journal_directory(path).is_dir():
         recent = journalled_points(header, data["status"].values.ravel())
         for name in data.variables.keys() & recent.dtype.fields.keys():
-            put_in(data[name].values, str(name), recent)
+            insert_records(data[name].values, str(name), recent)
         data.attrs |= journalled_reasons(header)
         data = with_checksums(data)
     return with_arm_selection(data)

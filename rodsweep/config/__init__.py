@@ -1,4 +1,4 @@
-"""Reads a YAML config and validates it into a frozen `Config`. Knows the parameters' names, no physics."""
+"""Reads a YAML config and validates it into a frozen `Config`. Knows the names of parameters, no physics."""
 
 from .document.reading import load_config
 from .schema import Config

@@ -12,13 +12,15 @@ from .arm.section import ArmSection
 from .values import Axis, Number, StrictSection, Text, Values
 
 BEYOND_LINEAR = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
+"""Names of the parameters on which only limit cycles depend, not the linear problem."""
 REQUIRED = tuple(p.name for p in PARAMETERS.values() if p.default is None and p.name != "F")
-"""Names of the parameters without default, except F: a config must give them for every rod."""
+"""Names of the parameters besides F that have no default."""
 DEFAULTS = {p.name: p.default for p in PARAMETERS.values() if p.default is not None and not p.optional}
+"""Default of each parameter that has one, by name, without the optional parameters."""
 
 
 def _section(base: type[StrictSection], names: tuple[str, ...], kind: Any) -> Any:
-    """Subclass of `base` with an additional optional key of type `kind` for each of `names`."""
+    """Subclass of `base` with a further key of the type `kind`, which may be missing, for each name."""
     fields: dict[str, Any] = dict.fromkeys(names, (kind | None, None))
     return create_model("Section", __base__=base, **fields)
 
@@ -27,7 +29,7 @@ LinearAxes: Any = _section(StrictSection, (*LINEAR_PARAMETERS, *OPTIONAL_PARAMET
 
 
 class Axes(LinearAxes):
-    """Axes of the parameters of a grid, the name of a CSV file that lists points, or an arm."""
+    """The section `parameters`: axes of a grid of parameters, the name of a CSV file of points, or an arm."""
 
     points: Annotated[Text | None, Field(min_length=1, description="the name of a CSV file")] = None
     """CSV file with a list of points, instead of axes. Its header names the parameters."""
@@ -40,14 +42,14 @@ class Axes(LinearAxes):
     """An arm in SI units. A parameter given beside the arm replaces the arm's value."""
 
     of_arm: ClassVar[tuple[str, ...]] = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
-    """Parameters that an arm, or axes beside the arm, may provide."""
+    """Names of the parameters that the task takes from an arm, or from axes given beside the arm."""
     in_diagram: ClassVar[bool] = False
-    """Whether the points are rows of a phase diagram, which need a grid of parameters."""
+    """Whether the points are the rows of a phase diagram, which needs a grid of parameters."""
 
     @model_validator(mode="before")
     @classmethod
     def _with_defaults(cls, given: Any) -> Any:
-        """Adds defaults of parameters to a grid. Files of points and arms have values of their own."""
+        """Adds the defaults of missing parameters to a grid; a file of points or an arm needs no defaults."""
         if not isinstance(given, dict) or given.get("points") is not None or given.get("arm") is not None:
             return given
         return {name: DEFAULTS[name] for name in cls.of_arm if name in DEFAULTS} | given
@@ -60,13 +62,13 @@ class Axes(LinearAxes):
 
     @property
     def optional(self) -> tuple[str, ...]:
-        """Names of the optional parameters that the config gives as an axis or as a column of a list."""
+        """Names of the optional parameters that are given as an axis or as a column of a list."""
         given = (*self.given_axes, *(self.columns or ()))
         return tuple(name for name in OPTIONAL_PARAMETERS if name in given)
 
     @property
     def axes(self) -> dict[str, Axis]:
-        """Axes of a grid of parameters by name, including axes made from an arm; else the given axes."""
+        """Axes of parameters by name: given axes and, for a grid of parameters, axes made from the arm."""
         if self.arm is None or self.over:
             return self.given_axes
         axes = self.arm.grid_axes() | self.given_axes
@@ -74,7 +76,7 @@ class Axes(LinearAxes):
 
     @cached_property
     def given_axes(self) -> dict[str, Axis]:
-        """Parameters that the config gives as an axis, by name."""
+        """Axes of parameters that the config gives, by name of the parameter."""
         return {name: value for name, value in self._given.items() if isinstance(value, Axis)}
 
     @property
@@ -84,7 +86,7 @@ class Axes(LinearAxes):
 
     @property
     def over(self) -> tuple[str, ...]:
-        """Names of the axes of a grid over an arm's quantities; empty for a grid of parameters or a list."""
+        """Names of the axes of a grid over an arm's quantities; empty for other points."""
         if self.arm is None:
             return ()
         given = self.arm.given | self.given_axes
@@ -92,7 +94,7 @@ class Axes(LinearAxes):
 
     @property
     def alone(self) -> dict[str, int]:
-        """Number of values on each axis that changes exactly one parameter, by name of the parameter."""
+        """Number of values by parameter, for axes along which no other parameter changes."""
         if self.arm is None or not self.over:
             return {name: axis.size for name, axis in self.axes.items()}
         given = self.arm.given | self.given_axes
@@ -100,7 +102,7 @@ class Axes(LinearAxes):
 
     @property
     def numbers(self) -> dict[str, float]:
-        """Parameters that have one value in the whole sweep instead of an axis, by name."""
+        """Values of the parameters that have a single number for the whole sweep, not an axis, by name."""
         return {name: value for name, value in self._given.items() if isinstance(value, float)}
 
     @property
@@ -108,7 +110,10 @@ class Axes(LinearAxes):
         return {name: getattr(self, name, None) for name in PARAMETERS}
 
     def require(self, names: tuple[str, ...], or_points: bool = True) -> None:
-        """Raises ValueError unless the axes `names`, an arm or, if `or_points`, a file are given."""
+        """Raises ValueError unless the section defines points: by axes of all `names`, an arm, or a file.
+
+        or_points: whether the message suggests a file of points.
+        """
         if self.points is not None and self.arm is not None:
             raise ValueError("parameters.points and parameters.arm are both given; give one of them")
         if self.points is not None and self.axes:
@@ -123,7 +128,10 @@ class Axes(LinearAxes):
             raise ValueError(f"parameters.{missing[0]} is missing; give {words(names, 'and')}{hint}")
 
     def _require_arm(self, arm: ArmSection, forced: bool) -> None:
-        """Raises ValueError unless the arm, together with the parameters beside it, defines points."""
+        """Raises ValueError unless the arm, with the parameters given beside it, defines points.
+
+        forced: whether F is a parameter of the task.
+        """
         arm.refuse_unfit()
         arm.refuse_misuse(forced, self.given_axes)
         beside = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
@@ -142,23 +150,24 @@ AllAxes: Any = _section(Axes, BEYOND_LINEAR, Values)
 
 
 class LinearParameters(AxesAndNumbers):
-    """Parameters of the linear problem as axes; a parameter that only cycles depend on may be given as one
-    number.
+    """Section `parameters` of a task on the linear problem, whose parameters are axes.
+
+    A parameter on which only limit cycles depend may be given as a single number.
     """
 
 
 class DiagramParameters(LinearParameters):
-    """Parameters of a phase diagram."""
+    """Section `parameters` of the task phase_diagram."""
 
     in_diagram: ClassVar[bool] = True
 
 
 class NonlinearParameters(AllAxes):
-    """Parameters of the nonlinear rod."""
+    """Section `parameters` of a task on the nonlinear rod, all of whose parameters may be axes."""
 
     of_arm: ClassVar[tuple[str, ...]] = tuple(PARAMETERS)
 
 
 def words(names: tuple[str, ...], last: str) -> str:
-    """Joins names for a sentence: "a, b and c" with `last` = "and"."""
+    """Names joined for a sentence, like "a, b and c"; last: the word before the last name."""
     return f"{', '.join(names[:-1])} {last} {names[-1]}" if names[1:] else names[0]

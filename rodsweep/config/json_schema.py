@@ -26,19 +26,18 @@ from .values import Axis, StrictSection
 
 Schema = dict[str, Any]
 QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc{percent}]"
-"""Regular expression, with fields `sign` and `percent`, for a number followed by the first letter of a unit.
-"""
+"""Template of a regular expression for a number followed by the beginning of a unit."""
 BOUNDS_OF_ARM: dict[str, Schema] = {
     **{name: {"exclusiveMinimum": 0} for name in ALL_BUT_LOAD if not QUANTITIES[name].signed},
     "poisson": {"exclusiveMinimum": -1, "maximum": 0.5},
     **{name: {"minimum": 0} for name in RELATIVE},
 }
-"""Bounds of the quantities of an arm, by name."""
+"""Bounds of each quantity of an arm, as JSON schema keywords, by name of the quantity."""
 DIALECT = "http://json-schema.org/draft-07/schema#"
-"""Draft 7 of JSON schema, which most editors support."""
+"""Address of draft 7 of JSON schema, which most editors support."""
 BOUNDS = {"ge": "minimum", "le": "maximum", "gt": "exclusiveMinimum", "lt": "exclusiveMaximum"}
-"""JSON schema keyword by pydantic's name of a bound. Pydantic does not convert bounds of types with a
-validator."""
+"""JSON schema keyword by pydantic's name of a bound. pydantic leaves bounds unconverted for values that pass
+through a validator function."""
 
 
 def json_schema() -> dict[str, Any]:
@@ -69,7 +68,7 @@ def json_schema() -> dict[str, Any]:
 
 
 def sections_of(config: type[BaseModel]) -> Iterator[type[BaseModel]]:
-    """Classes of the sections of a config class, nested sections included."""
+    """Yields the classes of the sections of a config, including nested sections."""
     for field in config.model_fields.values():
         kind = model_of(field)
         if isinstance(kind, type) and issubclass(kind, StrictSection) and not issubclass(kind, Axis):
@@ -78,7 +77,7 @@ def sections_of(config: type[BaseModel]) -> Iterator[type[BaseModel]]:
 
 
 def meanings_of(section: type[BaseModel]) -> dict[str, str]:
-    """Docstring of every key of a section, base classes included."""
+    """Docstring of every key of a section, by key, including keys of base classes."""
     found: dict[str, str] = {}
     for kind in reversed(section.__mro__):
         if not (issubclass(kind, BaseModel) and kind.__module__.startswith("rodsweep.")):
@@ -98,7 +97,7 @@ def meanings_of(section: type[BaseModel]) -> dict[str, str]:
 
 
 def _describe_keys(schema: dict[str, Any], section: type[BaseModel]) -> None:
-    """Adds the docstrings of the keys as descriptions and removes pydantic's titles, which repeat the key."""
+    """Adds the keys' docstrings as descriptions to `schema`, in place; removes pydantic's titles."""
     parameters = {name: f"{p.long_name}, in {p.unit}" for name, p in PARAMETERS.items()}
     meanings = parameters | meanings_of(section)
     for name, key in schema["properties"].items():
@@ -108,22 +107,22 @@ def _describe_keys(schema: dict[str, Any], section: type[BaseModel]) -> None:
 
 
 def given(name: str) -> Schema:
-    """JSON schema that requires the key `name` with a value other than null."""
+    """JSON schema of the condition that the key `name` is present and not null."""
     return {"required": [name], "properties": {name: {"not": {"type": "null"}}}}
 
 
 def none_of(names: Iterable[str]) -> Schema:
-    """JSON schema that forbids all keys in `names`; null is allowed."""
+    """JSON schema of the condition that no key in `names` is given."""
     return {"not": {"anyOf": [given(name) for name in names]}}
 
 
 def all_of(names: Iterable[str], *more: Schema) -> Schema:
-    """JSON schema that requires all keys in `names` and all further schemas."""
+    """JSON schema of the condition that all keys in `names` are given, and the schemas `more` hold."""
     return {"allOf": [*map(given, names), *more]}
 
 
 def bounded(schema: Schema, bound: Mapping[str, float], words: tuple[str, ...] = ()) -> Schema:
-    """Copy of a schema of numbers with bounds on every number, and only `words` as names of numbers."""
+    """Copy of the JSON schema of an axis, with bounds on every number; words: allowed spellings of inf."""
     copy = deepcopy(schema)
     for node in nodes_of(copy):
         kinds = node.get("anyOf", [])
@@ -136,7 +135,10 @@ def bounded(schema: Schema, bound: Mapping[str, float], words: tuple[str, ...] =
 
 
 def with_bounds(properties: Schema, axis: Schema) -> None:
-    """Adds, in place, the bounds of the parameters in a section; `axis`: schema of any axis."""
+    """Adds, in place, the bounds of parameters to the keys `properties` of a section.
+
+    axis: JSON schema of an axis without bounds.
+    """
     for name, parameter in PARAMETERS.items():
         if name in properties:
             kinds = [axis if "$ref" in kind else kind for kind in properties[name]["anyOf"]]
@@ -145,10 +147,10 @@ def with_bounds(properties: Schema, axis: Schema) -> None:
 
 
 def restrict_arm(section: Schema, axis: Schema) -> None:
-    """Adds the conditions of an arm to the schema in place: positive quantities with a unit, a single
-    section, at most one load.
+    """Adds the conditions of an arm to its JSON schema `section`, in place.
 
-    axis: schema of an axis of numbers.
+    Quantities are positive and have a unit; there is one cross-section, and at most one load. axis: JSON
+    schema of an axis without bounds.
     """
     for name, key in section["properties"].items():
         bound = BOUNDS_OF_ARM.get(name, {})
@@ -174,10 +176,10 @@ def restrict_arm(section: Schema, axis: Schema) -> None:
 
 
 def points_of(needed: Iterable[str], lists: bool) -> Schema:
-    """Schema of parameters that define points: all axes `needed`, an arm, or a file if the task takes
-    `lists`.
+    """JSON schema of the condition that `parameters` defines points: by axes, an arm, or a file of points.
 
-    If F is needed, the arm has a load or F stands beside it; otherwise neither may be given.
+    needed: names of the parameters of the task. lists: whether the task accepts a file of points. If F is
+    needed, the arm has a load or F is given too; otherwise neither may be given.
     """
     axes = tuple(name for name in needed if PARAMETERS[name].default is None)
     loads = [all_of([name]) for name in LOAD_AXES]
@@ -192,7 +194,7 @@ def points_of(needed: Iterable[str], lists: bool) -> Schema:
 
 
 def nodes_of(schema: Any) -> Iterable[Schema]:
-    """Yields all mappings nested in a JSON schema, including the schema."""
+    """Yields all mappings within a JSON schema, including the schema."""
     if isinstance(schema, dict):
         yield schema
     if isinstance(schema, dict | list):

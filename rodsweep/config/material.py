@@ -13,9 +13,9 @@ from ..model.material.profile import FACTORS, Profile
 from .values import Number, StrictSection, cell_number, short
 
 MOST_ROWS = 1000
-"""Maximum number of rows of a profile; a longer profile is refused."""
+"""Maximum number of rows of a profile; longer profiles are refused."""
 LARGEST_FILE = 1_000_000
-"""Largest number of characters in a profile's file."""
+"""Maximum number of characters in the CSV file of a profile; longer files are refused."""
 LawName = Literal["linear", "neo_hookean"]
 SectionName = Literal["fixed", "swelling"]
 Column = Annotated[
@@ -43,7 +43,7 @@ class ProfileTable(StrictSection):
 
     @cached_property
     def profile(self) -> Profile:
-        """Converts the table to a `Profile` of the model; ValueError for an invalid table."""
+        """The `Profile` of this table; ValueError for an invalid table."""
         given = {name: getattr(self, name) for name in FACTORS}
         columns = {name: [1.0] * len(self.u) if column is None else column for name, column in given.items()}
         for name, column in columns.items():
@@ -58,7 +58,7 @@ class ProfileTable(StrictSection):
 
 
 def _or_file(schema: dict[str, Any]) -> None:
-    """Adds the name of a file to the JSON schema of a profile; `with_profile_read` replaces it by columns."""
+    """Allows, in the JSON schema of a profile, the name of a CSV file instead of a table of columns."""
     schema["anyOf"] = [{"type": "string"}, *schema["anyOf"]]
 
 
@@ -79,7 +79,7 @@ class MaterialSection(StrictSection):
 
     @cached_property
     def build(self) -> Build:
-        """Converts the section to a `Build` (law and profile); ValueError if the law has no such section."""
+        """Constitutive law and profile; ValueError for a section that the law does not have."""
         return Build(self.law, self.section, self.profile.profile if self.profile else None)
 
     @model_validator(mode="after")
@@ -91,7 +91,7 @@ class MaterialSection(StrictSection):
 
 
 def with_profile_read(tree: Any, directory: Path) -> Any:
-    """A config's tree with the file name in `material.profile` replaced by the columns of the file.
+    """A parsed config with the file name in `material.profile` replaced by the columns of the file.
 
     directory: folder of a relative file name. Raises InputError for a file that is no table of numbers.
     """
@@ -104,7 +104,7 @@ def with_profile_read(tree: Any, directory: Path) -> Any:
 
 
 def read_profile(path: Path) -> dict[str, list[float]]:
-    """The columns of a profile's CSV file, by the names in the header; InputError without a header."""
+    """Columns of the CSV file of a profile, by name in the header; InputError for an invalid file."""
     where = f"material.profile: {path}"
     try:
         if not path.is_file():

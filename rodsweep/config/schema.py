@@ -1,6 +1,6 @@
-"""Keys common to the configs of all tasks, and keys shared by the options of several tasks.
+"""Config keys common to all tasks, and types of options that several tasks share.
 
-Only the form is checked here. Physical ranges (F < k1, positive stiffness) are checked where points are made.
+Only the form is checked here. Physical ranges (F < k1, positive stiffness) are checked when points are made.
 """
 
 from collections.abc import Mapping
@@ -38,33 +38,33 @@ class Config(StrictSection):
     of_cycles: ClassVar[bool] = False
     """Whether the task solves the nonlinear motion of the rods."""
     into_crushed: ClassVar[bool] = False
-    """Whether a grid may contain crushed rods, because the task has a state `crushed` for them."""
+    """Whether a grid may contain crushed rods, because the task has a state `crushed`."""
 
     others_may_be_needed: ClassVar[bool] = False
-    """Whether the needed parameters depend on the options of the task."""
+    """Whether the parameters that the task needs depend on its options."""
     of_several_rods: ClassVar[bool] = False
-    """Whether the task needs several rods."""
+    """Whether the task needs a grid of several rods, so that a list of points is refused."""
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the parameters of every point: required by the task, or optional and given."""
+        """Names of the parameters of a point: those that the task needs, and optional parameters."""
         return (*self.taken_of_a_rod({}), *self.added)
 
     @property
     def added(self) -> tuple[str, ...]:
-        """Names of the optional parameters that the config gives, directly or through the shape of an arm."""
+        """Names of the optional parameters in the config, given by name or implied by the arm's shape."""
         arm = self.parameters.arm
         made = () if arm is None else arm.tapering
         return tuple(n for n in OPTIONAL_PARAMETERS if n in self.parameters.optional or n in made)
 
     @property
     def stated_build(self) -> Build | None:
-        """Law and profile in the section `material`; None if the config has no such section."""
+        """Constitutive law and profile in the section `material`; None without such a section."""
         return None if self.material is None else self.material.build
 
     @property
     def build(self) -> Build:
-        """Law and profile of the rods: from the section `material`, else from the arm, else STANDARD."""
+        """Constitutive law and profile of the rods: of the section `material`, or of the arm."""
         if self.stated_build is not None:
             return self.stated_build
         return STANDARD if self.parameters.arm is None else self.parameters.arm.build
@@ -81,16 +81,16 @@ class Config(StrictSection):
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        """Names of the parameters of a rod on which results of the task with these options depend."""
+        """Names of the parameters of a rod that the task uses with these options."""
         return NONLINEAR_PARAMETERS
 
     @property
     def unused(self) -> dict[str, str]:
-        """Options without effect in this config, by name, with the setting required for an effect."""
+        """Options without effect in this config: by name, the setting that would give them an effect."""
         return {}
 
     def refuse_unused(self) -> None:
-        """Raises ValueError if an option without effect is given."""
+        """Raises ValueError if the config gives an option that has no effect."""
         for option, remedy in self.unused.items():
             if option in getattr(self, self.task).model_fields_set:
                 raise ValueError(
@@ -101,8 +101,8 @@ class Config(StrictSection):
     def meaning(self) -> dict[str, Any]:
         """All settings on which the results depend, except the points, as JSON-compatible values.
 
-        The key `together`, if present, changes only variables determined by all points together. Two configs
-        with equal meanings and equal points give the same results.
+        Settings under the key `together` change only variables that are computed from all points together.
+        Two configs with equal meanings and equal points give the same results.
         """
         options = getattr(self, self.task).model_dump(mode="json", exclude=set(self.unused))
         numbers = dict(self.parameters.numbers)
@@ -118,7 +118,9 @@ class Config(StrictSection):
         return meant | {"arm": self.parameters.arm.meaning}
 
     def refuse_found(self, name: str, why: str) -> None:
-        """Raises ValueError with the reason `why` if `name`, which the task finds, is given."""
+        """Raises ValueError, with the reason `why`, if the parameter `name`, which the task solves for, is
+        given.
+        """
         if name in self.parameters.given_axes:
             raise ValueError(f"parameters.{name} is given but the task {self.task} {why}")
 
@@ -143,7 +145,7 @@ class LinearConfig(Config):
     parameters: LinearParameters
 
     beyond: ClassVar[tuple[str, ...]] = ()
-    """Parameters absent from the linear problem that the task can use with some options."""
+    """Names of the parameters of the nonlinear rod only that the task can use with some options."""
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:

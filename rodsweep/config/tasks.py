@@ -23,6 +23,6 @@ CONFIGS: dict[str, type[Config]] = {
 
 
 def makes_diagram(task: str) -> bool:
-    """Whether the points of a task are the rows of a diagram over two parameters."""
+    """Whether the points of the task named `task` are the rows of a phase diagram over two parameters."""
     parameters: Any = CONFIGS[task].model_fields["parameters"].annotation
     return bool(parameters.in_diagram)

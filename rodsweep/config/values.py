@@ -9,7 +9,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSeriali
 from ..arrays import Array
 
 MOST_VALUES = 1_000_000_000
-"""Maximum number of values on one axis."""
+"""Maximum number of values on an axis; a range with more values is refused."""
 
 
 class StrictSection(BaseModel):
@@ -19,7 +19,7 @@ class StrictSection(BaseModel):
 
 
 def as_number(value: Any) -> float:
-    """A YAML number, or the words inf and -inf; raises ValueError with a sentence otherwise."""
+    """Float from a YAML number or the words inf and -inf; ValueError, with a sentence, for other values."""
     if isinstance(value, str) and value.strip().lower() in ("inf", "+inf", "-inf"):
         return float(value)
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -34,7 +34,7 @@ def as_number(value: Any) -> float:
 
 
 def overflows(text: str) -> bool:
-    """Whether a text is a decimal number too large for a float, such as 1e400."""
+    """Whether a text is a decimal number that is too large for a float, such as 1e400."""
     try:
         return any(c.isdigit() for c in text) and not text.lstrip("+-").isdigit() and isinf(float(text))
     except ValueError:
@@ -42,14 +42,14 @@ def overflows(text: str) -> bool:
 
 
 def cell_number(cell: str) -> float:
-    """Converts a cell of a CSV file to a number; ValueError for text that is no number."""
+    """Float from the text in a cell of a CSV file; ValueError for a text that is no number."""
     if "_" in cell or not cell.isascii() or overflows(cell):
         raise ValueError
     return as_number(float(cell))
 
 
 def short(value: Any) -> str:
-    """`repr` of a value for a message, truncated to 60 characters."""
+    """`repr` of a value for messages, cut to 60 characters."""
     try:
         text = repr(value)
     except (ValueError, RecursionError):  # an integer of thousands of digits, or a tree too deep
@@ -66,13 +66,12 @@ def named(name: object, most: int = 200) -> str:
 
 
 def printable(text: str) -> str:
-    """Text with control characters escaped, for example as `\\x1b`, because a terminal would obey
-    control characters."""
+    """The text with control characters, which a terminal would obey, escaped, for example as `\\x1b`."""
     return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
 
 
 def as_text(value: Any) -> Any:
-    """Returns `value` unchanged; ValueError for text with control characters or lone surrogates."""
+    """The value unchanged; ValueError for a text with control characters or lone surrogates."""
     if isinstance(value, str) and not all(c.isprintable() or c == " " for c in value):
         raise ValueError(f"{short(value)} has characters that cannot be printed")
     return value
@@ -84,7 +83,7 @@ Number = Annotated[
     BeforeValidator(as_number),
     PlainSerializer(lambda number: str(number) if isinf(number) else number, when_used="json"),
 ]
-"""Type of a number in a config. JSON output stores infinite numbers as text."""
+"""Type of a number in a config: a float. JSON stores infinite numbers as text."""
 NUMBER_SCHEMA: dict[str, Any] = {"anyOf": [{"type": "number"}, {"enum": ["inf", "+inf", "-inf"]}]}
 """JSON schema of one value on an axis: a number or a word for infinity."""
 AXIS_SCHEMA: dict[str, Any] = {
@@ -105,9 +104,10 @@ AXIS_SCHEMA: dict[str, Any] = {
         },
     ],
 }
-"""JSON schema of the values taken by `as_axis`."""
+"""JSON schema of the values that `as_axis` accepts."""
 DIGITS_OF_QUANTITY = 15
-"""Number of significant digits to which SI quantities are rounded; unit conversion changes the 16th digit."""
+"""Number of significant digits to which quantities in SI units are rounded: unit conversion changes the
+16th."""
 
 
 class Axis(StrictSection):
@@ -124,9 +124,10 @@ class Axis(StrictSection):
     num: int = 0
     spacing: Literal["linear", "log"] = "linear"
     factor: Annotated[float, Field(exclude=True)] = 1.0
-    """Multiplier of all values of a range, such as the ratio of the parameter F to a pressure in Pa."""
+    """Factor that multiplies all values of a range, such as the ratio of the parameter F to a pressure in
+    Pa."""
     written: Annotated[Any, Field(exclude=True)] = None
-    """Values in the user's notation, if the user gave units; else None."""
+    """The values as the user wrote them, for values with units; otherwise None."""
 
     @property
     def size(self) -> int:
@@ -134,7 +135,7 @@ class Axis(StrictSection):
 
     @property
     def logarithmic(self) -> bool:
-        """Whether the axis is logarithmic: by its spacing, or as a list over more than a decade."""
+        """Whether the axis has log spacing, or is a list of positive values over more than a decade."""
         if self.values is None:
             return self.spacing == "log"
         finite = [value for value in self.values if value < inf]
@@ -142,13 +143,13 @@ class Axis(StrictSection):
 
     @property
     def resolved(self) -> dict[str, Any]:
-        """Axis as JSON-compatible keys and values; `factor` is applied to the ends of a range."""
+        """The axis as JSON-compatible keys and values, with `factor` applied to start and stop of a range."""
         tree = self.model_dump(mode="json", exclude_none=True)
         ends = {} if self.values is not None else {"start": self.start, "stop": self.stop}
         return tree | {name: self.factor * value for name, value in ends.items()}
 
     def scaled(self, scale: float) -> "Axis":
-        """Copy of the axis with all values multiplied by `scale`."""
+        """The axis with all values multiplied by `scale`."""
         if self.values is not None:
             return Axis(values=tuple(scale * value for value in self.values))
         # The ends stay unscaled, so that a longer range contains exactly the same values.
@@ -159,7 +160,7 @@ class Axis(StrictSection):
         return self.size == other.size and np.allclose(self.array(), other.array(), rtol=1e-12, atol=0)
 
     def array(self) -> Array:
-        """Values in increasing order, shape (size,)."""
+        """Values of the axis in increasing order, (size,)."""
         if self.values is not None:
             values = np.array(self.values)
         elif self.spacing == "log":
@@ -173,7 +174,7 @@ class Axis(StrictSection):
 
 
 def as_axis(value: Any) -> Axis:
-    """Converts a number, list or mapping {start, stop, num, spacing} to an Axis; ValueError otherwise."""
+    """The `Axis` of a number, a list or a mapping {start, stop, num, spacing}; ValueError otherwise."""
     if isinstance(value, Axis):
         return value
     if isinstance(value, dict):
@@ -218,7 +219,7 @@ def _range(value: dict) -> Axis:
 
 
 def axis_of(resolved: dict[str, Any]) -> Axis:
-    """Converts the value of an axis in a resolved config to an Axis; ValueError or TypeError if invalid."""
+    """The `Axis` from its keys and values in a resolved config; ValueError or TypeError if invalid."""
     values = resolved.get("values")
     return Axis(**resolved | ({} if values is None else {"values": tuple(map(as_number, values))}))
 

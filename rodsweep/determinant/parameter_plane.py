@@ -178,4 +178,4 @@ class Plane:
     def is_uncrushed(self, x: float, y: float) -> bool:
         """Whether the force at scaled coordinates (x, y) is below the force that crushes the rod."""
         values = {**self.rod.values} | {a.name: a.value(v) for a, v in zip(self.axes, (x, y), strict=True)}
-        return values["F"] < values["k1"] * self.rod.build.crushing_share(values["taper"])
+        return values["F"] < values["k1"] * self.rod.build.relative_crushing_force(values["taper"])

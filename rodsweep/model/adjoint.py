@@ -42,25 +42,29 @@ from math import sqrt, tan, tanh
 from .rod import Rod
 
 SERIES_BELOW = 1e-4
-"""kappa^2 below which tanh(kappa)/kappa is summed as a series."""
+"""abs(kappa^2) below which `tip_layer_factor` sums tanh(kappa)/kappa as a power series; the quotient loses
+digits."""
 
 
-def slaving_layer(rod: Rod) -> float:
-    """T = tanh(kappa)/kappa of the tip layer of a uniform rod with gamma3 = 0 < c2; 0 for all other rods."""
+def tip_layer_factor(rod: Rod) -> float:
+    """T = tanh(kappa)/kappa of the angle's boundary layer at the tip, for a uniform rod with gamma3 = 0 < c2.
+
+    kappa^2 = g nu/c2. T = 0 for all other rods, which have no such layer.
+    """
     if rod.rotational_drag > 0 or rod.c2 == 0:
         return 0.0
     square = rod.g * rod.nu / rod.c2
-    # For imaginary kappa tanh becomes tan; the series joins both.
+    # For imaginary kappa tanh becomes tan. The series holds for either sign of kappa^2.
     if abs(square) < SERIES_BELOW:
         return 1 - square / 3 + 2 * square**2 / 15
     kappa = sqrt(abs(square))
     return tanh(kappa) / kappa if square > 0 else tan(kappa) / kappa
 
 
-def hermitian_tip(F: float, layer: float) -> tuple[float, float]:
+def hermitian_tip_coefficients(F: float, layer: float) -> tuple[float, float]:
     """Coefficients (p, r) of the tip term that turns the weak form of L into the weak form of (L + L+)/2.
 
     The term is p (a theta - b y) - r a y at u = 1, with test functions (a, b) and fields (y, theta).
-    p = F/2 in k3/L^2; r = (F^2/4) T in k3/L^3; `layer` is T.
+    p = F/2 in k3/L^2; r = (F^2/4) T in k3/L^3; `layer` is the T of `tip_layer_factor`.
     """
     return F / 2, F**2 / 4 * layer

@@ -11,17 +11,17 @@ the rod is a loop over the nonzero constants.
 from typing import NamedTuple
 
 Term = tuple[int, int, int, float]
-"""A nonzero structure constant: (a, b, c, s_abc)."""
+"""A nonzero structure constant s_abc of a Lie algebra with its indices, (a, b, c, s_abc)."""
 Pattern = tuple[tuple[bool, ...], ...]
-"""A sparsity pattern: [row][column] is True where the entry may be nonzero."""
+"""Sparsity pattern of a matrix: pattern[row][column] is True where the matrix element may be nonzero."""
 
 
 class Algebra(NamedTuple):
     """Structure constants of a Lie algebra, and the sparsity patterns of ad and ad*.
 
-    components: indices of the components. terms: nonzero structure constants. forward: [a][c] is True if
-    (ad_E V)_a contains V_c. backward: [c][b] is True if (ad*_E Sigma)_c contains Sigma_b or E_b, and
-    therefore depends on Sigma_b.
+    components: indices of the components. terms: nonzero structure constants. forward: pattern of ad;
+    forward[a][c] is True if (ad_E V)_a contains V_c. backward: pattern of ad*; backward[c][b] is True if
+    (ad*_E Sigma)_c contains Sigma_b, or E_b, which depends on Sigma_b through the compliance.
     """
 
     components: range
@@ -31,17 +31,18 @@ class Algebra(NamedTuple):
 
     @property
     def dimension(self) -> int:
+        """Dimension of the algebra: 3 for se(2), 6 for se(3)."""
         return len(self.components)
 
     @property
     def pairs(self) -> list[tuple[int, int]]:
-        """All ordered pairs (a, b) of two different components."""
+        """All ordered pairs (a, b) of indices of components of the algebra with a != b."""
         return [(a, b) for a in self.components for b in self.components if a != b]
 
 
 def algebra(size: int, terms: list[Term]) -> Algebra:
-    """The algebra of `size` components whose nonzero structure constants are `terms`."""
-    # Which blocks of the Jacobian can be nonzero for any E: loops skip the others.
+    """The Lie algebra of dimension `size` whose nonzero structure constants are `terms`."""
+    # Blocks of the Jacobian that can be nonzero for some E. Loops skip all other blocks.
     leads = {(a, c) for a, _, c, _ in terms}
     bends = {(c, other) for a, b, c, _ in terms for other in (a, b)}
     forward, backward = (
@@ -51,10 +52,10 @@ def algebra(size: int, terms: list[Term]) -> Algebra:
 
 
 def _cross(out: int, left: int, right: int) -> list[Term]:
-    """Structure constants of a cross product.
+    """Structure constants of a cross product of two triples of components in ad_E V.
 
-    The factors are the triples of components that begin at `left` (of E) and `right` (of V); the product is
-    added to the triple that begins at `out`.
+    The components of E from index `left` on are the first factor, the components of V from index `right` on
+    the second factor, and the components of ad_E V from index `out` on the product.
     """
     cyclic = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
     positive = [(out + a, left + b, right + c, 1.0) for a, b, c in cyclic]
@@ -62,8 +63,8 @@ def _cross(out: int, left: int, right: int) -> list[Term]:
 
 
 SE2 = algebra(3, [(0, 1, 2, 1.0), (0, 2, 1, -1.0), (1, 2, 0, 1.0), (1, 0, 2, -1.0)])
-"""ad_E V = (h2 Omega - kappa v2, kappa v1 - h1 Omega; 0)."""
+"""The algebra se(2) of plane motions: ad_E V = (h2 Omega - kappa v2, kappa v1 - h1 Omega; 0)."""
 SE3 = algebra(6, _cross(0, 3, 0) + _cross(0, 0, 3) + _cross(3, 3, 3))
-"""ad_E V = (kappa x v + h x Omega; kappa x Omega)."""
+"""The algebra se(3) of motions in space: ad_E V = (kappa x v + h x Omega; kappa x Omega)."""
 ALGEBRAS = {3: SE2, 6: SE3}
-"""SE2 and SE3 by their number of components."""
+"""The algebras se(2) and se(3), by dimension."""

@@ -24,23 +24,24 @@ from numpy.typing import NDArray
 from .algebra import ALGEBRAS
 
 Values = NDArray[Any]
-"""Real array, or complex array for a derivative by complex step."""
+"""Components of a deformation, velocity or stress, real, or complex for complex-step derivatives."""
 
-IN_SPACE = [0, 1, 5]
-"""Indices of the plane's components among the six components in space."""
+PLANE_COMPONENTS = [0, 1, 5]
+"""Indices of the three components of se(2) among the six components of se(3)."""
 
 
 def ad(E: Values, V: Values) -> Values:
-    """ad_E V of two elements of se(2) or se(3), (3, ...) or (6, ...)."""
+    """ad_E V of two elements E and V of se(2) or se(3), (3, ...) or (6, ...); the shapes broadcast."""
     out = np.zeros(np.broadcast(E, V).shape, np.result_type(E, V))
     for a, b, c, sign in ALGEBRAS[len(E)].terms:
-        # With an output argument that is a view also for single elements, which out[a] alone is not.
+        # The index with ... makes the output argument a view for scalar components too; out[a] would be a
+        # copy.
         (np.add if sign > 0 else np.subtract)(out[a], E[b] * V[c], out[a, ...])
     return out
 
 
 def coad(E: Values, Sigma: Values) -> Values:
-    """ad*_E Sigma of an element E of the algebra and an element Sigma of the dual, (3, ...) or (6, ...)."""
+    """ad*_E Sigma of a deformation E and a stress Sigma, both (3, ...) in the plane or (6, ...) in space."""
     out = np.zeros(np.broadcast(E, Sigma).shape, np.result_type(E, Sigma))
     for a, b, c, sign in ALGEBRAS[len(E)].terms:
         # Minus the transpose of `ad`: work of the stress is invariant under rigid motions.
@@ -49,14 +50,18 @@ def coad(E: Values, Sigma: Values) -> Values:
 
 
 def elastic_force(E: Values, Sigma: Values, dSigma: Values) -> Values:
-    """Force per length D*_E Sigma from Sigma and dSigma = Sigma', in k3/L^3 (moments: k3/L^2)."""
+    """Elastic force and moment per length, D*_E Sigma = dSigma + ad*_E Sigma, in k3/L^3 and k3/L^2.
+
+    E: deformation; Sigma: stress; dSigma: derivative of Sigma with respect to u; each (3, ...) or (6, ...).
+    """
     return dSigma + coad(E, Sigma)
 
 
 class Material(NamedTuple):
-    """Diagonals of C and Gamma, the tip force F, and `rest`, the deformation E of the straight loaded rod.
+    """Coefficients of the nonlinear balance of one rod under its tip force F.
 
-    Shapes are (3,) or (6,) for a uniform rod; (3, nodes + 1) for other rods.
+    compliance: diagonal of C. drag: diagonal of Gamma. rest: deformation E of the straight loaded rod. Each
+    array has the shape (3,) or (6,) for a uniform rod, and (3, nodes + 1) for other rods.
     """
 
     compliance: Values
@@ -75,36 +80,39 @@ class Material(NamedTuple):
         return first_component(-self.F, len(self.drag))
 
     def strain(self, Sigma: Values) -> Values:
-        """Deformation E = Ebar + C Sigma under the stress Sigma."""
+        """Deformation E = Ebar + C Sigma under the stress Sigma, (3, ...) or (6, ...)."""
         return _along(self.straight, Sigma) + _along(self.compliance, Sigma) * Sigma
 
     def velocity(self, Sigma: Values, dSigma: Values) -> Values:
-        """V = Gamma^-1 D*_E Sigma, for nonzero drags; dSigma is the derivative of Sigma along the rod."""
+        """Velocity V = Gamma^-1 D*_E Sigma, (3, ...) or (6, ...), for nonzero drags.
+
+        Sigma: stress; dSigma: derivative of Sigma with respect to u.
+        """
         return elastic_force(self.strain(Sigma), Sigma, dSigma) / _along(self.drag, Sigma)
 
     def energy(self, Sigma: Values) -> Values:
-        """The density of U, Sigma C Sigma/2, in k3/L^2."""
+        """Elastic energy per length, Sigma C Sigma/2, in k3/L^2; Sigma: stress, (3, ...) or (6, ...)."""
         return (_along(self.compliance, Sigma) * Sigma * Sigma).sum(axis=0) / 2
 
     def dissipation(self, V: Values) -> Values:
-        """The density of the power lost to the fluid, V Gamma V, in k3/(L^2 tau2)."""
+        """Power per length lost to the fluid, V Gamma V, in k3/(L^2 tau2); V: velocity, (3 or 6, ...)."""
         return (_along(self.drag, V) * V * V).sum(axis=0)
 
 
 def in_space(plane: Values) -> Values:
-    """Embedding of an element of se(2) or its dual, (3, ...), in se(3) or its dual, (6, ...)."""
+    """Embedding in se(3) or its dual, (6, ...), of the element `plane` of se(2) or its dual, (3, ...)."""
     space = np.zeros((6, *plane.shape[1:]), plane.dtype)
-    space[IN_SPACE] = plane
+    space[PLANE_COMPONENTS] = plane
     return space
 
 
 def first_component(number: float, size: int) -> Values:
-    """The vector (number, 0, 0, ...), (size,)."""
+    """The vector (number, 0, ..., 0) of length `size`."""
     element = np.zeros(size)
     element[0] = number
     return element
 
 
 def _along(diagonal: Values, field: Values) -> Values:
-    """Reshapes a diagonal, (d,) or (d, nodes), to broadcast against a field, (d, ..., nodes)."""
+    """The diagonal of C or Gamma, (d,) or (d, nodes), reshaped to broadcast with `field`, (d, ..., nodes)."""
     return diagonal.reshape(len(diagonal), *(1,) * (field.ndim - diagonal.ndim), *diagonal.shape[1:])

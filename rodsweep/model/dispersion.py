@@ -17,23 +17,24 @@ from ..arrays import Array
 from .material.build import Build, LocalCoefficients
 from .rod import Rod
 
-SAMPLE_COUNT = 64
-"""Number of samples of K in geometric progression; the ratio 1.15 is fine enough for an estimate."""
+SAMPLES = 64
+"""Number of samples of K = kappa^2, at equal ratios. Neighbours differ by 13 %, enough for an estimate."""
 SAMPLES_PER_INTERVAL = 33
-"""Number of points, per interval of u on which coefficients are smooth, at which local waves are evaluated.
-"""
+"""Number of points in each interval between two breaks of an arm's profile at which local waves are
+evaluated."""
 CACHED_ARM_COUNT = 16
-"""Number of arms whose samples are cached."""
-MIN_K_FRACTION = 1e-4
-"""Smallest sample of K, in units of F g. Every wave with K > F g decays."""
-K_FRACTIONS: Array = MIN_K_FRACTION ** (1 - np.arange(SAMPLE_COUNT) / SAMPLE_COUNT)
-"""Samples of K = kappa^2, in units of F g, (SAMPLE_COUNT,)."""
+"""Number of arms, or builds, whose latest results the caches of this module hold."""
+MIN_FRACTION = 1e-4
+"""Smallest sample of K = kappa^2, divided by F g. Every wave with K > F g decays."""
+FRACTIONS: Array = MIN_FRACTION ** (1 - np.arange(SAMPLES) / SAMPLES)
+"""Samples of K = kappa^2 divided by F g, increasing, (SAMPLES,)."""
 
 
 def most_amplified_wave(rod: Rod) -> tuple[float, float]:
     """(growth rate in 1/tau2, wave number in 1/L) of the most amplified wave; (0, 0) if all waves decay.
 
-    Not compiled, so that `check` need not load numba.
+    The wave travels on an infinitely long rod with the coefficients of the uniform `rod`. The function is not
+    compiled, so that `rodsweep check` need not load numba.
     """
     F, nu, c2, gamma3 = rod.coefficients
     top = F * rod.g
@@ -45,9 +46,9 @@ def most_amplified_wave(rod: Rod) -> tuple[float, float]:
 
 
 class SampledArm(NamedTuple):
-    """Sample points of an arm in u, their quadrature weights (lengths), and the local coefficients.
+    """Midpoints of short intervals of u along an arm, with the local coefficients at the midpoints.
 
-    points, weights: (points,).
+    points: midpoints, (points,), none of them a break of the profile. weights: interval lengths, (points,).
     """
 
     points: Array
@@ -57,14 +58,14 @@ class SampledArm(NamedTuple):
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)
 def sampled(rod: Rod) -> SampledArm:
-    """Sample points, weights and local coefficients of an arm; cached."""
+    """Sample points of the arm `rod` and its local coefficients there, cached by rod."""
     points, weights = _points_of(rod.build)
     return SampledArm(points, weights, rod.local(points))
 
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)
 def _points_of(build: Build) -> tuple[Array, Array]:
-    """`points` and `weights` of `SampledArm` for the arms of a build."""
+    """(midpoints, lengths) of short intervals of u between the breaks of a build's profile, both (points,)."""
     lengths = np.diff(build.breaks)
     inside = (np.arange(SAMPLES_PER_INTERVAL) + 0.5) / SAMPLES_PER_INTERVAL
     points = (build.breaks[:-1, None] + lengths[:, None] * inside).ravel()
@@ -73,9 +74,9 @@ def _points_of(build: Build) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)
 def local_growth(rod: Rod) -> tuple[Array, Array]:
-    """Growth rates and wave numbers of the most amplified waves at the samples u of an arm, both (points,).
+    """(growth rates, wave numbers) of the most amplified wave at each point of `sampled(rod)`: (points,).
 
-    Each point is treated as a uniform rod with the local coefficients.
+    A local wave travels on an infinitely long uniform rod with the coefficients of the arm at the point.
     """
     nu, c2, c3, gamma2, gamma3, g = sampled(rod).local
     top = np.maximum(rod.F * c3 * g, 0.0)
@@ -86,9 +87,10 @@ def local_growth(rod: Rod) -> tuple[Array, Array]:
 
 
 def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:
-    """(K, growth rates) of the sampled waves, (..., SAMPLE_COUNT), at k3 = gamma2 = 1; 0: decaying.
+    """(K, growth rates) of the sampled waves, both (..., SAMPLES), for k3 = gamma2 = 1.
 
-    top: F g. relaxation: g nu. All arguments are numbers, or arrays (n, 1) for n rods.
+    A decaying wave has the growth rate 0. top: F g. relaxation: g nu. All arguments are numbers, or arrays
+    (n, 1) for n rods.
     """
     square = c2 * gamma3
     K = top * K_FRACTIONS
@@ -97,8 +99,8 @@ def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Arra
         drive = K * (top - K)
         linear = (c2 + gamma3) * K + relaxation
         spread = np.sqrt(linear**2 + 4 * square * drive)
-        # The root of square r^2 + linear r = drive; each formula is free of cancellation for one sign of
-        # `linear`.
+        # The positive root r of square r^2 + linear r = drive. Each of the two formulas is free of
+        # cancellation for one sign of `linear`.
         rates = 2 * drive / (linear + spread)
         if not (linear > 0).all():
             slow = np.where(square > 0, (spread - linear) / (2 * square), 0.0)

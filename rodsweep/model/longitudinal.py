@@ -1,4 +1,7 @@
-"""Longitudinal eigenvalues in closed form; longitudinal and transverse modes are decoupled (Sec. VI)."""
+"""Longitudinal eigenvalues of the straight rod in closed form.
+
+Longitudinal and transverse modes are decoupled (Sec. VI).
+"""
 
 import numpy as np
 
@@ -6,7 +9,7 @@ from ..arrays import Array
 
 
 def longitudinal_rates(k1: float, gamma1: float, modes: int) -> Array:
-    """Rates lambda_n = -(k1/gamma1) (pi (n - 1/2))^2 for n = 1..modes, in 1/tau2, shape (modes,).
+    """Longitudinal eigenvalues -(k1/gamma1) (pi (n - 1/2))^2 for n = 1..modes, in 1/tau2, shape (modes,).
 
     Raises ValueError for an inextensible rod (k1 = inf), which has no longitudinal motion.
     """

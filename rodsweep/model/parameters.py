@@ -11,7 +11,7 @@ from typing import TypeVar
 
 Decorated = TypeVar("Decorated")
 STIFFNESSES = ("k1", "k2")
-"""Parameters that the equations contain as a compliance, 1/value."""
+"""Names of the stiffnesses. The equations contain each stiffness as its compliance, 1/value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,16 +21,20 @@ class Range:
     contains: Callable[[float], bool]
     phrase: str
     bound: Mapping[str, float] = field(default_factory=dict)
-    """Bounds by JSON schema keyword, like {"minimum": 0}; empty if every finite number is allowed."""
+    """Bounds of the range by JSON schema keyword, like {"minimum": 0}; empty if every finite number is
+    allowed."""
 
     def first_outside(self, values: Iterable[float]) -> float | None:
-        """The first value outside the range; None if the range contains all values."""
+        """The first number in `values` outside the range; None if the range contains all values."""
         return next((value for value in map(float, values) if not self.contains(value)), None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parameter:
-    """One parameter of the rod."""
+    """One parameter of the rod, an element of the table `PARAMETERS`.
+
+    unit: unit of the value. meaning: phrase for messages, files and figures. allowed: range of the value.
+    """
 
     name: str
     symbol: str
@@ -38,20 +42,20 @@ class Parameter:
     unit: str
     meaning: str
     remark: str = ""
-    """Text that result files add to the meaning."""
+    """Text that result files append to the meaning of the parameter."""
     allowed: Range
     linear: bool = True
     """Whether the transverse linear problem contains the parameter."""
     rigid: str = ""
-    """Adjective for a rod with the value inf, like "inextensible"; empty if inf is not allowed."""
+    """Adjective for a rod whose parameter is inf, like "inextensible"; empty if inf is not allowed."""
     optional: bool = False
-    """Whether sweeps have and store the parameter only if the config names it."""
+    """Whether a result file contains the parameter only if the config names the parameter."""
     default: float | None = None
-    """Value for grids that do not name the parameter; None for a parameter that every grid must name."""
+    """Value of a parameter that the config does not name; None for a parameter that a grid must name."""
     scales: tuple[str, ...] = ()
-    """Stiffnesses or drags that the value multiplies; empty for a load, a stiffness or a drag. A parameter
-    scales either stiffnesses or drags, so that the equations are affine in its coordinate, as the covering of
-    a path requires."""
+    """Names of the stiffnesses or drags that the value multiplies; empty for a load, a stiffness or a drag. A
+    parameter scales either stiffnesses or drags, so that the equations are affine in the parameter's
+    coordinate, as the covering of a path requires."""
 
     def __post_init__(self) -> None:
         """Raises ValueError if the parameter scales both stiffnesses and drags."""
@@ -62,42 +66,43 @@ class Parameter:
 
     @property
     def by_compliance(self) -> bool:
-        """Whether the coordinate is 1/value, which may be 0, instead of the value."""
+        """Whether the parameter enters the equations as 1/value, which may be 0, and not as the value."""
         return bool(self.rigid or set(self.scales) & set(STIFFNESSES))
 
     def coordinate(self, value: float) -> float:
-        """The coordinate of a value: the equations are affine in it. 1/value for a stiffness, 0 at inf."""
+        """The quantity in which the equations are affine: 1/value for a stiffness, otherwise the value."""
         return 1 / value if self.by_compliance else value
 
     def value(self, coordinate: float) -> float:
-        """The value at a coordinate; inf for the coordinate 0 of a stiffness."""
+        """Value of the parameter from its `coordinate`: 1/coordinate for a stiffness, inf at coordinate 0."""
         if self.by_compliance:
             return 1 / coordinate if coordinate else inf
         return coordinate
 
     @property
     def neutral(self) -> float:
-        """The default; without a default, the value at coordinate 0, which is valid for every rod."""
+        """The parameter's default; without a default, the value at coordinate 0, valid for every rod."""
         return self.value(0.0) if self.default is None else self.default
 
     @property
     def long_name(self) -> str:
-        """The meaning and remark, as the attribute `long_name` of result files."""
+        """Meaning and remark of the parameter, for the attribute `long_name` in result files."""
         return self.meaning + self.remark
 
     def require(self, value: float) -> None:
-        """Raises ValueError for a value outside the range; `Rod` checks F < k1."""
+        """Raises ValueError for a value outside the parameter's range. The check F < k1 is left to `Rod`."""
         if not self.allowed.contains(value):
             raise ValueError(f"{self.name} = {value} is not {self.allowed.phrase}")
 
 
 SMALLEST_TAPER = 0.01
 LARGEST_TAPER = 100.0
-"""Range of the taper. Taper 0 is excluded: a pointed tip has no stiffness against the force."""
+"""Largest taper; SMALLEST_TAPER is the smallest. Taper 0 is excluded: a pointed tip has no stiffness against
+the force."""
 
 
 def stiffness(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
-    """Makes the table entry of a stiffness; rigid: adjective for a rod whose stiffness is infinite."""
+    """Table row of a stiffness, which may be inf; `rigid`: adjective for a rod of infinite stiffness."""
     return Parameter(
         name=name,
         symbol=symbol,
@@ -158,31 +163,31 @@ PARAMETERS = {
         ),
     )
 }
-"""All parameters by name, in the order of configs, files and tables."""
+"""All parameters of the rod by name, in the order of configs, result files and tables."""
 
 NONLINEAR_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if not parameter.optional)
-"""Names of the parameters of the nonlinear rod, without optional ones."""
+"""Names of the parameters of the nonlinear rod, without the optional parameters."""
 LINEAR_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if PARAMETERS[name].linear)
-"""Names of the parameters of the linear problem, without optional ones."""
+"""Names of the parameters of the transverse linear problem, without the optional parameters."""
 OPTIONAL_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.optional)
-"""Names of the optional parameters."""
+"""Names of the parameters that a result file contains only if the config names them."""
 SCALINGS = tuple((name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scales)
-"""(parameter, multiplied stiffness or drag) for every parameter with `scales`."""
-OF_TRANSVERSE_PROBLEM = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
-"""Names of all parameters that the transverse problem may contain."""
-ALLOWED = [(name, parameter.allowed.contains) for name, parameter in PARAMETERS.items()]
+"""All pairs (parameter name, name of a stiffness or drag that the parameter multiplies)."""
+TRANSVERSE_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
+"""Names of all parameters, optional parameters included, that the transverse linear problem may contain."""
+RANGE_CHECKS = [(name, parameter.allowed.contains) for name, parameter in PARAMETERS.items()]
 """(name, range check) of each parameter, prepared once because sweeps create many rods."""
 CRUSHING = ("F", "k1")
-"""Names of the force and of the stiffness that decides on crushing: the rod is crushed if F >= k1."""
+"""Names of the force and of the stretch stiffness: the force F >= k1 crushes a rod of linear material."""
 
 
 def all_but(varied: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
-    """The parameters except `varied`; by default parameters of the linear problem."""
+    """The parameter names in `names` except `varied`; by default those of the transverse linear problem."""
     return tuple(name for name in names if name != varied)
 
 
 def with_parameters(cls: type[Decorated]) -> type[Decorated]:
-    """Class decorator: adds all of PARAMETERS as fields, with the order and defaults of the table."""
+    """Class decorator: adds each parameter in `PARAMETERS` as a field with its default, in this order."""
     own = dict(cls.__annotations__)
     cls.__annotations__ = dict.fromkeys(PARAMETERS, float) | {
         n: a for n, a in own.items() if n not in PARAMETERS

@@ -14,20 +14,20 @@ import numpy as np
 from ..arrays import Array
 from .balance import Material, first_component
 from .material.build import STANDARD, Build, LocalCoefficients, Sections
-from .parameters import ALLOWED, OF_TRANSVERSE_PROBLEM, PARAMETERS, STIFFNESSES, with_parameters
+from .parameters import PARAMETERS, RANGE_CHECKS, STIFFNESSES, TRANSVERSE_PARAMETERS, with_parameters
 from .scaling import compression_factor, scaled
 
 
 class Crushed(ValueError):
-    """The force is not below the force that crushes the rod."""
+    """The follower force is not below the force that crushes the rod."""
 
 
 class NotUniform(ValueError):
-    """Constant coefficients were requested for an arm that varies or whose law is not linear."""
+    """A formula for uniform rods was applied to an arm that varies or has a nonlinear constitutive law."""
 
 
 class Coefficients(NamedTuple):
-    """Coefficients of the transverse operator, the argument of compiled functions."""
+    """Coefficients of the transverse operator of a uniform rod, as an argument of compiled functions."""
 
     F: float
     nu: float
@@ -36,7 +36,7 @@ class Coefficients(NamedTuple):
 
 
 def coefficients_of(values: Mapping[str, Any]) -> Coefficients:
-    """The coefficients for parameter values by name: floats, or arrays (n,) for n rods. Checks no range."""
+    """Coefficients for parameter values by name, floats or arrays (n,) for n rods; checks no range."""
     own = scaled(values)
     F = own["F"]
     k1 = own["k1"]
@@ -66,7 +66,7 @@ class Rod:
 
     def __post_init__(self) -> None:
         values: dict[str, float] = {}
-        for name, contains in ALLOWED:
+        for name, contains in RANGE_CHECKS:
             values[name] = value = getattr(self, name)
             if not contains(value):
                 PARAMETERS[name].require(value)
@@ -90,12 +90,12 @@ class Rod:
         return self._coefficients
 
     def local(self, u: Array) -> LocalCoefficients:
-        """Coefficients of the transverse operator at points u, (points,), none of them a break."""
+        """Coefficients of the transverse operator at points u, (points,), none a break of the profile."""
         return self.build.local(self.F, scaled(self.values), u)
 
     @staticmethod
     def local_of_all(rods: Sequence["Rod"], u: Array) -> LocalCoefficients:
-        """Local coefficients, (n, *u.shape), of n rods with equal `build`, in one array operation."""
+        """`local` of n rods with the same build at points u; each array has the shape (n, *u.shape)."""
         if len(rods) == 1:
             return LocalCoefficients(*(x[None] for x in rods[0].local(u)))
         shape = (len(rods), *(1,) * u.ndim)
@@ -107,14 +107,14 @@ class Rod:
     @property
     def crushing_force(self) -> float:
         """The force that crushes the weakest section, in k3/L^2; inf if no force crushes it."""
-        return self.build.crushing_share(self.taper) * self.stretch_stiffness
+        return self.build.relative_crushing_force(self.taper) * self.stretch_stiffness
 
     @property
     def least_rotational_drag(self) -> float:
         """Smallest rotational drag along the arm, in gamma2 L^2."""
         if self.standard:
             return self.rotational_drag
-        return self.build.least_drag_share(self.taper) * self.rotational_drag
+        return self.build.relative_least_drag(self.taper) * self.rotational_drag
 
     @property
     def uniform(self) -> bool:
@@ -130,8 +130,8 @@ class Rod:
     def equivalent(self) -> tuple["Rod", float]:
         """(rod of linear material, rate): eigenvalues of this rod are `rate` times those of the linear rod.
 
-        With K = B(nu), the linear rod has the coefficients (F/K, nu, c2 K, gamma3), and rate = K. Raises
-        NotUniform for an arm that varies.
+        With the bending factor K = B(nu) of this rod's law, the linear rod has the coefficients
+        (F/K, nu, c2 K, gamma3), and rate = K. Raises NotUniform for an arm that varies.
         """
         if not self.uniform:
             raise NotUniform(f"{self} is not uniform")
@@ -145,19 +145,21 @@ class Rod:
 
     @property
     def linear(self) -> "Rod":
-        """Rod with the same transverse linear problem; parameters that affect only cycles have defaults."""
-        return Rod(**{name: self.values[name] for name in OF_TRANSVERSE_PROBLEM}, build=self.build)
+        """The rod with equal parameters of the transverse linear problem, and defaults of all other
+        parameters.
+        """
+        return Rod(**{name: self.values[name] for name in TRANSVERSE_PARAMETERS}, build=self.build)
 
     def coordinate(self, name: str) -> float:
         """Coordinate of a parameter of the rod: 1/k for a stiffness k, otherwise the value."""
         return float(PARAMETERS[name].coordinate(getattr(self, name)))
 
     def with_coordinate(self, name: str, coordinate: float) -> "Rod":
-        """Copy of the rod with the parameter `name` at `coordinate`; ValueError outside the allowed range."""
+        """The rod with another coordinate of the parameter `name`; ValueError for an invalid value."""
         return self.changed(**{name: PARAMETERS[name].value(coordinate)})
 
     def changed(self, **values: float) -> "Rod":
-        """Copy of the rod with other parameter values; ValueError for values outside the allowed range."""
+        """The rod with other parameter values, given by name; ValueError for an invalid value."""
         # `dataclasses.replace` takes a third longer.
         return Rod(**{**self.values, **values}, build=self.build)
 
@@ -168,17 +170,17 @@ class Rod:
 
     @property
     def c1(self) -> float:
-        """Stretch compliance; 0 for an inextensible rod."""
+        """Stretch compliance 1/k1 at the base, in L^2/k3; 0 for an inextensible rod."""
         return 1 / self.stretch_stiffness
 
     @property
     def c2(self) -> float:
-        """Shear compliance; 0 for an unshearable rod."""
+        """Shear compliance 1/k2 at the base, in L^2/k3; 0 for an unshearable rod."""
         return 1 / float(scaled(self.values)["k2"])
 
     @property
     def nu(self) -> float:
-        """Compression of the straight state, nu = 1 - F c1 (Sec. V)."""
+        """Stretch of the straight uniform rod under its force, nu = 1 - F c1 (Sec. V)."""
         return self.coefficients.nu
 
     @property
@@ -197,7 +199,7 @@ class Rod:
         return float(scaled(self.values)["gamma1"])
 
     def direction(self, name: str) -> Coefficients:
-        """Derivative of the coefficients, which are affine, with respect to a parameter's coordinate."""
+        """Derivative of the affine `coefficients` with respect to the coordinate of the parameter `name`."""
         slopes = self._slopes(name)
         F = slopes.get("F", 0.0)
         c1 = slopes.get("k1", 0.0)
@@ -207,22 +209,22 @@ class Rod:
 
     @property
     def material(self) -> Material:
-        """Compliances, drags, force and straight state of the rod, for motion in the plane."""
+        """Coefficients of the nonlinear balance of the uniform rod, for motion in the plane."""
         compliance = np.array([self.c1, self.c2, 1.0])
         drag = np.array([self.axial_drag, 1.0, self.rotational_drag])
         return Material(compliance, drag, self.F, first_component(self.nu, 3))
 
     def sections(self, u: Array) -> Sections:
-        """Cross-sections at points u, (points,), none of them a break."""
+        """Compliances, drags and stretch at points u, (points,); no point may be a break of the profile."""
         return self.build.sections(self.F, scaled(self.values), u)
 
     def section_changes(self, name: str, u: Array) -> Sections:
-        """Derivatives of cross-sections at points u, (points,), with respect to a parameter's coordinate."""
+        """Derivatives of `sections(u)` with respect to the coordinate of parameter `name`; u: (points,)."""
         slopes = {"taper": 1.0} if name == "taper" else self._slopes(name)
         return self.build.section_changes(self.sections(u), self.F, self.taper, slopes, u)
 
     def material_in_space(self, twist_stiffness: float, twist_drag: float) -> Material:
-        """Material of the rod, for motion in space; twist stiffness in k3, twist drag in gamma2 L^2."""
+        """Nonlinear balance of the uniform rod in space; twist stiffness in k3, twist drag in gamma2 L^2."""
         c1, c2, bending = self.material.compliance
         axial, normal, rotational = self.material.drag
         compliance = np.array([c1, c2, c2, 1 / twist_stiffness, bending, bending])
@@ -230,7 +232,7 @@ class Rod:
         return Material(compliance, drag, self.F, first_component(self.nu, 6))
 
     def material_change(self, name: str) -> Material:
-        """Derivative of the material with respect to a parameter's coordinate."""
+        """Derivative of `material` with respect to the coordinate of the parameter `name`."""
         slopes = self._slopes(name)
         F, nu, c2, gamma3 = self.direction(name)
         compliance = np.array([slopes.get("k1", 0.0), c2, 0.0])
@@ -238,12 +240,11 @@ class Rod:
         return Material(compliance, drag, F, first_component(nu, 3))
 
     def _slopes(self, name: str) -> dict[str, float]:
-        """Nonzero derivatives of force, compliances, drags with respect to a parameter's coordinate, by name.
+        """Nonzero derivatives of force, compliances and drags with respect to the coordinate of `name`.
 
-        Force, compliances and drags are products of coordinates, so the derivative is the product of the
-        other factors.
+        Keys are F, k1, k2, gamma1 and gamma3; a stiffness stands for its compliance. Force, compliances and
+        drags are products of coordinates, so a derivative is the product of the other factors.
         """
-        # A coordinate is linear in what it scales, so the slope is the product of the other factors.
         others = scaled({**self.values, name: 1.0})
         changing = PARAMETERS[name].scales or (name,)
         return {of: float(1 / others[of] if of in STIFFNESSES else others[of]) for of in changing}

@@ -1,6 +1,6 @@
-"""Loads, stiffnesses and drags of the equations, from the values of the parameters.
+"""The rod's force, stiffnesses and drags at the base, from the values of the parameters.
 
-A parameter may scale others, as the table says; nu is the axial stretch of the straight rod under its force.
+A parameter may multiply stiffnesses or drags, as `PARAMETERS` states in the field `scales`.
 """
 
 from collections.abc import Mapping
@@ -13,7 +13,11 @@ from .parameters import SCALINGS
 
 
 def scaled(values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Loads, stiffnesses and drags by name: each value in `values` times the parameters that scale it."""
+    """Force, stiffnesses and drags at the base, by name, from the parameter `values` by name.
+
+    Each is the value of the parameter of the same name times the values of the parameters that scale it, see
+    `Parameter.scales`.
+    """
     if not SCALINGS:
         return values
     own = dict(values)
@@ -23,7 +27,10 @@ def scaled(values: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def compression_factor(F: Any, k1: Any) -> Any:
-    """nu = 1 - F/k1 without cancellation for F close to k1; floats or arrays."""
+    """Stretch nu = 1 - F/k1 of the straight rod of linear material, for floats or arrays (...,).
+
+    There is no cancellation as F approaches k1. nu = 1 for k1 = inf.
+    """
     if isinstance(k1, np.ndarray):
         with np.errstate(invalid="ignore"):  # inf/inf where k1 = inf
             return np.where(np.isinf(k1), 1.0, (k1 - F) / k1)

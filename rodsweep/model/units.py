@@ -13,43 +13,31 @@ if TYPE_CHECKING:
     from pint import UnitRegistry
 
 Given = float | str
-"""A quantity from the user: text with a unit, or a number in SI."""
+"""A quantity as the user writes it: a text with a unit, or a number in SI units."""
 NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.ASCII)
-"""Matches a number and its unit, which may be empty."""
+"""Matches a text of a number and a unit, like "10 cm". The unit may be empty."""
 UNIT_TOKEN = re.compile(r"[A-Za-zµμ]+|(?:\^|\*\*)?-?[1-4](?!\d)|[²³⁴]|[\s*/]")
-"""Matches one token of a valid unit: letters, exponent or operator. Other text must not reach pint, which
-evaluates text and may never return."""
-NESTED_POWER = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
-"""Matches the start of a power of a power, which pint would evaluate."""
-LONGEST_UNIT = 40
-"""Largest number of characters of a unit."""
-CACHED_CONVERSION_COUNT = 1000
-"""Number of cached unit conversions; a config needs about ten."""
-SUGGESTED_UNITS = (
-    "cm",
-    "mm",
-    "kPa",
-    "MPa",
-    "GPa",
-    "Pa s",
-    "mPa s",
-    "kPa s",
-    "mN",
-    "kg/m^3",
-    "g/cm^3",
-    "mbar",
-)
-"""Units suggested for a misspelt unit that differs only in blanks or capital letters."""
-OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
+"""Matches one token of a unit: a name, an exponent, a product or quotient sign. Text that is no sequence of
+such tokens must not reach pint, which would evaluate the text and might never return."""
+POWER_OF_POWER = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
+"""Matches the start of a power of a power, like 2**2**2, which pint would evaluate."""
+MAX_UNIT_LENGTH = 40
+"""Maximum number of characters of a unit. Longer units are refused."""
+CONVERSION_CACHE_SIZE = 1000
+"""Maximum number of cached conversion factors. A config has about ten different units."""
+COMMON_UNITS = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN", "kg/m^3", "g/cm^3", "mbar")
+"""Units to suggest to a user whose text differs from the unit only in blanks or capital letters."""
+MULTIPLE_OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
 """Matches a load as a multiple of the flutter threshold, "1.2 of flutter" or "120 % of flutter"."""
-FROM_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
+PERCENT_FROM_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
 """Matches a load as a distance from the flutter threshold, "20 % above flutter"."""
-KINEMATIC = "is a kinematic viscosity; multiply it by the density of the fluid"
+KINEMATIC_VISCOSITY = "is a kinematic viscosity; multiply it by the density of the fluid"
+"""End of the message on a viscosity in units of length^2/time."""
 
 
 @cache
 def registry() -> "UnitRegistry":
-    """pint's table of units, loaded once; EnvironmentIncomplete without pint."""
+    """pint's registry of units, loaded at first use; EnvironmentIncomplete if pint is not installed."""
     try:
         from pint import UnitRegistry
     except ModuleNotFoundError:
@@ -66,7 +54,7 @@ def split_quantity(given: str) -> tuple[float, str]:
 
 
 def in_si(name: str, given: Given, unit: str, example: str) -> float:
-    """Value of the quantity `name` in the SI unit `unit`.
+    """Value of the quantity `name`, which the user wrote as `given`, in the SI unit `unit`.
 
     example: a valid text, for messages. Raises InputError, beginning with the name, for an invalid quantity.
     """
@@ -86,7 +74,7 @@ def in_si(name: str, given: Given, unit: str, example: str) -> float:
 
 
 def _number(name: str, given: Any, unit: str, allowed: str) -> float:
-    """A number in SI, or a pint quantity, as a number in `unit`; InputError for other objects."""
+    """Value in the SI unit `unit` of a number in SI or of a pint quantity; InputError for other objects."""
     if hasattr(given, "to_base_units"):
         return _number(name, given.magnitude, unit, allowed) * factor(
             f"{name} = '{given!s:.60}'", f"{given.units:C}", unit, allowed
@@ -103,16 +91,16 @@ def _number(name: str, given: Any, unit: str, allowed: str) -> float:
 
 
 def factor(subject: str, written: str, unit: str, allowed: str) -> float:
-    """Factor that converts a value in the unit `written` to the unit `unit`.
+    """Number by which a value in the unit `written` is multiplied to get the value in `unit`.
 
-    subject, allowed: quantity and remedy for messages. Raises InputError for an unknown unit or another
-    dimension.
+    subject, allowed: beginning and end of messages. Raises InputError for an unknown unit and for a unit of
+    another dimension.
     """
     if written.startswith(","):
         raise InputError(f"{subject} has a decimal comma; write a point")
-    if len(written) > LONGEST_UNIT or UNIT_TOKEN.sub("", written) or NESTED_POWER.search(written):
+    if len(written) > MAX_UNIT_LENGTH or UNIT_TOKEN.sub("", written) or POWER_OF_POWER.search(written):
         raise InputError(
-            f"{subject} has the unit '{written[:LONGEST_UNIT]}', which is not understood; write {allowed}"
+            f"{subject} has the unit '{written[:MAX_UNIT_LENGTH]}', which is not understood; write {allowed}"
         )
     units = registry()
     from pint.errors import PintError
@@ -123,7 +111,7 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
         known = "from" in str(error)  # "Cannot convert from ..."
         why = f"is not measured in {unit}" if known else f"has the unknown unit '{written}'"
         if known and unit == "Pa*s" and units.Quantity(1.0, written).check("[length]**2/[time]"):
-            why = KINEMATIC
+            why = KINEMATIC_VISCOSITY
         raise InputError(f"{subject} {why}; {_suggestion(written, unit)}write {allowed}") from None
     except Exception as error:  # what pint's parser raises on nonsense is of many kinds
         raise InputError(
@@ -131,46 +119,49 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
         ) from error
 
 
-@lru_cache(CACHED_CONVERSION_COUNT)
+@lru_cache(CONVERSION_CACHE_SIZE)
 def _ratio(written: str, unit: str) -> float:
-    """Size of the unit `written` in units of `unit`, cached; raises the errors of pint."""
+    """Conversion factor from the unit `written` to `unit`, cached; raises the errors of pint."""
     return float(registry().Quantity(1.0, written).to(unit).magnitude)
 
 
 def _suggestion(written: str, unit: str) -> str:
-    """A suggestion "did you mean 'kPa'? " for a misspelt common unit; empty without a suggestion."""
+    """The text "did you mean 'kPa'? " for a misspelt common unit with the dimension of `unit`; else ""."""
     squeezed = "".join(written.split()).casefold()
-    for common in SUGGESTED_UNITS:
+    for common in COMMON_UNITS:
         if "".join(common.split()).casefold() == squeezed and registry()(common).check(registry()(unit)):
             return f"did you mean '{common}'? "
     return ""
 
 
 def unit_of(given: Given, default: str) -> str:
-    """The unit of a quantity in the user's notation; `default` for a number without a unit."""
+    """The unit in the text of a quantity; `default` for a number or a text without a unit."""
     return (split_quantity(given)[1] or default) if isinstance(given, str) else default
 
 
 def written_in(value: float, unit: str, si: str) -> float:
-    """Converts a value from the SI unit `si` to `unit`."""
+    """The value in `unit` of a quantity that is `value` in the SI unit `si`."""
     return value / factor("", unit, si, "")
 
 
 def share_of_flutter(given: Given) -> float | None:
-    """Load divided by the flutter load, from a text like "1.2 of flutter"; None for other quantities."""
+    """Load divided by the flutter load, from a text like "1.2 of flutter" or "20 % above flutter".
+
+    None for a load that is not given relative to flutter.
+    """
     if not isinstance(given, str):
         return None
-    if found := OF_FLUTTER.fullmatch(given):
+    if found := MULTIPLE_OF_FLUTTER.fullmatch(given):
         return float(found[1]) / (100.0 if found[2] else 1.0)
-    if (found := FROM_FLUTTER.fullmatch(given)) and (found[2] == "above" or float(found[1]) < 100):
+    if (found := PERCENT_FROM_FLUTTER.fullmatch(given)) and (found[2] == "above" or float(found[1]) < 100):
         return 1.0 + (1.0 if found[2] == "above" else -1.0) * float(found[1]) / 100.0
     return None
 
 
 def compact(value: float, unit: str) -> tuple[float, str]:
-    """(factor, prefixed unit): `value` of the SI unit `unit` is factor * value of a readable prefixed unit.
+    """(factor, prefixed unit) such that `value` in the SI unit `unit` is factor * value in the prefixed unit.
 
-    compact(0.002, "m") is (1000.0, "mm").
+    The prefix makes the number readable: compact(0.002, "m") is (1000.0, "mm").
     """
     if not value or not math.isfinite(value):
         return 1.0, unit

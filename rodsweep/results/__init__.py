@@ -1,4 +1,4 @@
-"""Result files: a table as schema, a store that survives kills, and provenance.
+"""Result files: the table of their variables, a store that survives kills, and provenance.
 
 This package is the only importer of h5py. Solvers are unknown here.
 """

@@ -1,4 +1,5 @@
-"""Sweeps over many points: coordinates, distribution over ranks, and the loop that solves the points.
+"""Sweeps over many points: parameter values, distribution over MPI ranks, and the loop that solves the
+points.
 
 This package is the only sender of MPI messages. HDF5 is unknown here: the caller passes a function that
 stores finished points.
@@ -19,7 +20,7 @@ class _CalledPackage(ModuleType):
 
     @property
     def __wrapped__(self) -> Any:
-        """The function `rodsweep.api.sweeping.sweep`, whose signature `help` and tab completion show."""
+        """The function `rodsweep.api.sweeping.sweep`; `help` and completion read the arguments here."""
         return import_module("rodsweep.api.sweeping").sweep  # by name: `api` imports `sweep`, not the reverse
 
     def __call__(self, *words: Any, **keywords: Any) -> Any:

@@ -1,10 +1,9 @@
-"""Requests for chunks of units: the first rank asks the handout directly, other ranks send MPI messages.
+"""How each rank claims its next chunk of units: the first rank from the `Handout`, other ranks by messages.
 
-The first rank computes like every rank. A thread of the first rank answers requests meanwhile, and no rank
-needs to wait for the end of a solve on the first rank. A solve may still delay the thread. Every rank
-therefore requests the next chunk when it begins a chunk, and gets the chunk while plenty of units are left. A
-rank with a stop signal notifies the first rank, which notifies all ranks; each rank stops after the current
-point.
+The first rank computes like every rank. A thread of the first rank answers requests meanwhile, so that no
+rank waits for the end of a solve on the first rank. A solve may still delay the thread. Every rank therefore
+requests the next chunk when the rank begins a chunk, and gets it early while plenty of units are left. A rank
+with a stop signal notifies the first rank, which notifies all ranks; each rank stops after the current point.
 """
 
 import threading
@@ -19,43 +18,47 @@ from .stop import StopRequest
 from .team import Team
 
 REQUEST_TAG = 71
+"""MPI tag of a rank's request for a chunk, a `RankReport`."""
 ANSWER_TAG = 72
+"""MPI tag of the answer to a request, an `IndexRange`."""
 STOP_TAG = 73
-PROGRESS_TAG = 74
+"""MPI tag of a stop request, the name of the signal."""
+PLACE_TAG = 74
+"""MPI tag of a report of progress within a long point, a `SolvePosition`."""
 POLL_SECONDS = 2e-3
-"""Seconds between two polls for MPI messages by the thread of the first rank. Each poll delays the solve on
-that rank by at least 20 microseconds."""
+"""Seconds between two polls for messages by the thread of the first rank. Each poll takes 20 microseconds or
+more from the solve on that rank."""
 RELIEVED_POLL_SECONDS = 5e-3
-"""Seconds between two polls by the thread of the first rank while its main thread also polls after each
-point."""
-FIRST_CHUNK_POLL_SECONDS = 1e-4
-"""Initial pause, in seconds, between two polls by a rank that waits for the answer to its request for a
-chunk."""
-LONGEST_CHUNK_POLL_SECONDS = 1e-2
-"""Longest pause, in seconds, between two such polls. An idle rank must not take processor time from solving
-ranks."""
-CHUNK_POLL_GROWTH = 1.1
-"""Ratio of a pause between polls to the previous pause; a small ratio delays short waits little."""
+"""Seconds between two polls for messages by the thread while the first rank also answers between its
+points."""
+FIRST_PAUSE_SECONDS = 1e-4
+"""First pause, in seconds, between two polls of a rank that waits for a chunk."""
+LONGEST_PAUSE_SECONDS = 1e-2
+"""Longest pause, in seconds, between two polls of a rank that waits for a chunk: an idle rank must not take
+processor time from solving ranks."""
+PAUSE_RATIO = 1.1
+"""Ratio of a waiting rank's pause to the previous pause. Slow growth hardly prolongs a wait of a
+millisecond."""
 WAIT_SECONDS = 0.05
 """Seconds for which an idle first rank waits for the handout to change before it polls for MPI messages."""
 
 
 class FirstRankClaims:
-    """Requests of the first rank for chunks, and a thread that answers the requests of all other ranks."""
+    """Claims chunks for the first rank, and answers the requests of all other ranks, also from a thread."""
 
     def __init__(self, team: Team, handout: Handout, stop: StopRequest, show: Callable[[str, float], None]):
-        """show: displays progress within a long point, in words, and work done on unfinished points."""
+        """show: displays (progress of a long point in words, work done of unfinished points in points)."""
         self.team = team
         self.handout = handout
         self.stop = stop
         self.show = show
         self.waiting: deque[int] = deque()
         self.ahead: set[int] = set()
-        """Ranks with an answer in advance to the next request."""
+        """Ranks that already have the answer to their next request."""
         self.working = set(range(1, team.size))
         self.status = team.MPI.Status()
         self.places: dict[int, SolvePosition] = {}
-        """Latest reported progress of each rank within a long point."""
+        """Latest reported progress within a long point, by rank."""
         self.serving = threading.Lock()
         self.served = 0.0
         self.thread: threading.Thread | None = None
@@ -65,7 +68,10 @@ class FirstRankClaims:
             self.thread.start()
 
     def claim(self, report: RankReport) -> IndexRange:
-        """Returns the next chunk for the first rank; waits until a chunk is free or all work is done."""
+        """The next chunk for the first rank, given the `report` on its last chunk; NO_WORK_LEFT at the end.
+
+        Waits until a chunk is available or no work is left.
+        """
         with self.serving:
             self._heed_stop()
         self.places.pop(0, None)
@@ -80,25 +86,25 @@ class FirstRankClaims:
         return chunk
 
     def close(self) -> None:
-        """Waits for the thread to end, after all other ranks have finished."""
+        """Waits until all other ranks have finished and the thread has ended."""
         if self.thread is not None:
             self.thread.join()
             self._hear_places()
 
     def report_place(self, place: SolvePosition) -> None:
-        """Displays how far the first rank has come within a long point."""
+        """Displays the progress of the first rank within a long point."""
         self.places[0] = place
         self.show(place.words, self._begun())
 
     def _begun(self) -> float:
-        """Work done on all unfinished long points of all ranks, as a sum of fractions of a point."""
+        """Work done of all unfinished long points on all ranks, in points."""
         return sum(place.share or 0.0 for place in list(self.places.values()))
 
     def between_points(self) -> None:
-        """Answers the requests of the other ranks; the first rank calls this after each of its points.
+        """Answers requests of other ranks; the first rank calls it between two points.
 
         During a long point the thread answers. The thread alone would not be enough: a solve inside PETSc
-        keeps Python's lock, and the thread might get the lock only once a point for each step of the solve.
+        holds Python's global interpreter lock, and the thread might rarely get the lock.
         """
         if self.thread is not None:
             self._serve()
@@ -107,7 +113,7 @@ class FirstRankClaims:
             self._heed_stop()
 
     def _heed_stop(self) -> None:
-        """After a stop request to the first rank: stops the handout and notifies working ranks, once."""
+        """After a stop request to the first rank, ends the handout and notifies all working ranks, once."""
         if self.stop and not self.handout.stopped:
             self.handout.stop()
             for rank in self.working:
@@ -132,7 +138,7 @@ class FirstRankClaims:
                     self.working.discard(rank)
 
     def _hear_places(self) -> None:
-        """Receives and displays how far the other ranks have come within long points."""
+        """Receives all waiting reports of progress within long points."""
         comm = self.team.comm
         MPI = self.team.MPI
         while comm.Iprobe(source=MPI.ANY_SOURCE, tag=PROGRESS_TAG, status=self.status):
@@ -140,9 +146,9 @@ class FirstRankClaims:
             self.places[rank] = comm.recv(source=rank, tag=PROGRESS_TAG)
 
     def _hear(self, rank: int, report: RankReport) -> None:
-        """Handles a report of a rank: answers a request ahead at once, and queues any other request.
+        """Handles the report of a rank: answers a request in advance at once, and queues any other request.
 
-        After an answer in advance the rank has the next chunk already, and is not queued.
+        A rank whose request was answered in advance has its next chunk already, and is not queued.
         """
         if report.ahead:
             if (chunk := self.handout.take_ahead(rank)) is not None:
@@ -160,7 +166,7 @@ class FirstRankClaims:
             self.waiting.append(rank)
 
     def _serve_until_over(self) -> None:
-        """Serves the other ranks, in the thread, until all have finished."""
+        """Body of the thread: answers messages of the other ranks until all of them have finished."""
         with self.team.aborting_together():
             while self.working:
                 self._serve()
@@ -169,7 +175,7 @@ class FirstRankClaims:
 
 
 class OtherRankClaims:
-    """Requests for chunks by a rank other than the first, sent as MPI messages to the first rank."""
+    """Claims chunks for a rank other than the first, by messages to the first rank."""
 
     def __init__(self, team: Team, stop: StopRequest):
         self.comm = team.comm
@@ -177,14 +183,17 @@ class OtherRankClaims:
         self.stop_exchanged = False
 
     def claim(self, report: RankReport) -> IndexRange:
-        """Waits for the next chunk from the first rank, requests a further chunk, and returns the next."""
+        """The next chunk for this rank, given the `report` on its last chunk; NO_WORK_LEFT at the end.
+
+        Waits for the answer of the first rank, and requests the following chunk in advance.
+        """
         self.comm.send(report, dest=0, tag=REQUEST_TAG)
         # A blocking receive would spin and take the processor from the ranks that compute.
-        pause = FIRST_CHUNK_POLL_SECONDS
+        pause = FIRST_PAUSE_SECONDS
         while not self.comm.Iprobe(source=0, tag=ANSWER_TAG):
             self.between_points()
             time.sleep(pause)
-            pause = min(CHUNK_POLL_GROWTH * pause, LONGEST_CHUNK_POLL_SECONDS)
+            pause = min(PAUSE_RATIO * pause, LONGEST_PAUSE_SECONDS)
         chunk: IndexRange = self.comm.recv(source=0, tag=ANSWER_TAG)
         if chunk != NO_WORK_LEFT:
             self.comm.send(RankReport(ahead=True), dest=0, tag=REQUEST_TAG)
@@ -195,7 +204,7 @@ class OtherRankClaims:
         self.comm.send(place, dest=0, tag=PROGRESS_TAG)
 
     def between_points(self) -> None:
-        """Sends a stop request to the first rank, or adopts a stop request of the first rank, once."""
+        """Exchanges at most one stop request with the first rank: sends this rank's, or receives one."""
         if not self.stop_exchanged and self.comm.Iprobe(source=0, tag=STOP_TAG):
             self.stop.take(self.comm.recv(source=0, tag=STOP_TAG))
             self.stop_exchanged = True

@@ -1,4 +1,4 @@
-"""Cost of a sweep before the start: time, and for spectra memory and unknowns, from a sample of points.
+"""Estimated cost of a sweep before its start: time, and for spectra memory and unknowns, from sampled points.
 
 Times are for a single core like the core of docs/performance.md.
 """
@@ -19,66 +19,67 @@ from .points.stretches import Stretches
 
 MAX_SAMPLE = 200
 """Largest number of points whose meshes are computed for an estimate."""
-COSTLIER_IF_LARGER = frozenset({"k1", "F"})
-"""Parameters for which branches of cycles cost most at large values; for all other parameters, at small
-values."""
+HARDER_IF_LARGER = frozenset({"k1", "F"})
+"""Parameters whose large values make branches of cycles expensive. For all other parameters, small values
+do."""
 FIXED_MS = 0.03
-"""Fixed part of the time of one spectrum, independent of the mesh, in ms; measured."""
+"""Measured time of the solve of a spectrum that does not depend on the number of unknowns, in ms."""
 LINEAR_MS = 2.2e-3
-"""Time of the orthogonalisation of Krylov vectors for one spectrum, in ms per unknown; measured."""
+"""Measured time of the orthogonalisation in the solve of a spectrum, in ms per unknown."""
 CUBIC_MS = 1.5e-7
-"""Time of a dense factorisation, in ms, divided by the cube of the number of unknowns; measured."""
+"""Measured time of the dense factorisation in the solve of a spectrum, in ms per cubed number of unknowns."""
 SPARSE_FROM = 300
 """Number of unknowns above which the solver factorises sparse matrices instead of dense matrices."""
 SPARSE_MS = 8e-3
-"""Time of one spectrum with a sparse factorisation, in ms per unknown."""
+"""Time of the solve of a spectrum with a sparse factorisation, in ms per unknown."""
 CERTIFICATE_MS = 0.15
-"""Time of the certificate of a spectrum, in ms."""
-ARM_MS = 4.0
-"""Time of D and of the certificate of an arm that is not uniform, in ms: median over 40 random arms."""
-FIRST_POINTS = 2.0
-"""Time of the first point of a stretch, divided by the time of the same point solved alone."""
+"""Time to certify one spectrum by winding numbers, in ms."""
+ARM_SPECTRUM_MS = 4.0
+"""Time to evaluate D and certify one spectrum of an arm that is not uniform, in ms: median over 40 random
+arms."""
+FIRST_POINT_COST = 2.0
+"""Time of the first point of a stretch, divided by the time of a point that is solved alone."""
 FOLLOWED_MS = 0.006
-"""Time per point of a stretch of uniform rods, whose eigenvalues are followed from the neighbouring point, in
-ms."""
+"""Time per point of a stretch, whose eigenvalues are continued from a neighbouring point, in ms."""
 FOLLOWED_ARM_MS = 0.4
-"""Time of every point of a stretch of arms that are not uniform, in ms: median over 24 random arms, the first
+"""Time per point of a stretch of arms that are not uniform, in ms: median over 24 random arms, the first
 point included."""
-LINE_MS = 24.0
-"""Time of a search for crossings along one parameter, in ms: mean over 72 rods, of which a few take four
-times as long."""
-LINE_CERTIFICATE_MS = 16.0
-"""Time of the certificate of a search, in ms: mean over the 72 rods."""
-LINE_OF_ARM_MS = 200.0
-"""Time of a search along F of an arm that is not uniform, in ms: mean over 64 random arms, of which half take
-40 and a few soft ones 2000."""
+SEARCH_MS = 24.0
+"""Time to search one rod for crossings along one parameter, in ms: mean over 72 rods, of which a few take
+four times as long."""
+SEARCH_CERTIFICATE_MS = 16.0
+"""Time to certify that a search along one parameter missed no crossing, in ms: mean over the 72 rods."""
+ARM_SEARCH_MS = 200.0
+"""Time to search an arm that is not uniform for crossings along F, in ms: mean over 64 random arms, of which
+half take 40 ms and a few soft arms 2000 ms."""
 CURVES_OF_ARMS_SECONDS = 4.5
-"""Time of the boundaries of a diagram of arms that are not uniform, with some 100 points in all: 3.3, 4.6 and
-5.3 s in diagrams of cones, rubber and rubber segments. It hardly depends on the number of rows."""
+"""Time of the stability boundaries in a phase diagram of arms that are not uniform, with about 100 boundary
+points in all: 3.3, 4.6 and 5.3 s for cones, rubber and rubber segments. The time hardly depends on the number
+of rows."""
 CRITICALITY_OF_ARMS_SECONDS = 2.5
-"""Time of the normal forms along the Hopf curves of a diagram of arms: 0.7 to 3.8 s for some 50 points."""
+"""Time of the normal forms along the Hopf curves of a phase diagram of arms that are not uniform: 0.7 to 3.8
+s for about 50 points."""
 HOPF_SEARCH_MS = 25.0
-"""Time of a search for the Hopf points of a rod, in ms: mean over 90 rods."""
+"""Time to search one rod for Hopf points, in ms: mean over 90 rods."""
 HOPF_CERTIFICATE_MS = 3.0
-"""Time of the certificate of the Hopf points, in ms: mean over the 90 rods."""
+"""Time to certify that no Hopf point of a rod is missing, in ms: mean over the 90 rods."""
 HOPF_POINTS_MS = 18.0
 """Time of the normal forms of the two or three Hopf points of a rod, in ms: mean over the 90 rods."""
 COST_OF_TWO_MESHES = 8.0
-"""Time of a spectrum on two meshes, in units of a spectrum that begins on one: mean over 800 rods."""
+"""Time of a spectrum by Krylov-Schur on two meshes, divided by the time by roots of D: mean over 800 rods."""
 FINER_MESH = 4 / 3
-"""Ratio of the unknowns of the second mesh to the unknowns of the first."""
+"""Number of unknowns of the second mesh divided by that of the first, in a spectrum by Krylov-Schur."""
 MODES_MS = 1.5
-"""Time of the eigenvectors, in ms per squared number of modes, because the mesh grows with that number: mean
-over 24 rods."""
+"""Time of the eigenvectors at one point, in ms per squared number of modes, because the mesh grows with the
+number of modes: mean over 24 rods."""
 GROWTH_MS = 20.0
-"""Time of the transient growth of a rod, in ms: mean over the 24 rods."""
+"""Time of the transient growth of one rod, in ms: mean over the 24 rods."""
 CYCLE_SECONDS = 0.1
-"""Time of a limit cycle that starts from the leading mode, in s; the benchmark measures about the same."""
+"""Time of a limit cycle computed from the leading mode, about as in the benchmark."""
 CHAINED_CYCLE_SECONDS = 0.01
-"""Time of a limit cycle that starts from the cycle of a neighbouring point, in s; the benchmark measures
-about the same."""
+"""Time of a limit cycle computed from the cycle of a neighbouring point, about as in the benchmark."""
 MARCHED_CYCLE_SECONDS = 0.25
-"""Time of a limit cycle by time integration alone to a relative accuracy of 1e-5, in s: mean over 40 rods."""
+"""Time of a limit cycle by time integration alone to a relative accuracy of 1e-5: mean over 40 rods."""
 BRANCH_SECONDS = 0.004
 """All branches of a rod take BRANCH_SECONDS F (accuracy/1e-7)^BRANCH_ACCURACY (1 + F/k2)^BRANCH_BENDING, in
 seconds, where F is the largest force of the range, or k1. Fourteen random rods (F up to 60 to 200, k2 from 12
@@ -89,7 +90,7 @@ BRANCH_ACCURACY = -0.17
 BRANCH_BENDING = 1.5
 """Exponent of 1 + F/k2 in the formula of BRANCH_SECONDS."""
 MEMORY_PER_UNKNOWN = 40_000
-"""Memory of a rank, in bytes per unknown of the largest mesh."""
+"""Memory of a rank per unknown of its largest mesh, in bytes."""
 BASE_MEMORY = 200_000_000
 """Memory of a rank without any mesh, in bytes."""
 
@@ -99,40 +100,46 @@ class Estimate:
     """Estimated cost of a sweep on a single core like the core of docs/performance.md."""
 
     seconds: float
-    """Time of the whole sweep on one rank."""
+    """Time of the whole sweep on one rank, in s."""
     memory: int = BASE_MEMORY
-    """Memory, in bytes per rank."""
+    """Memory of a rank, in bytes."""
     unknowns: tuple[int, int] | None = None
-    """Smallest and largest number of unknowns in the sample; None without a mesh."""
+    """Smallest and largest number of unknowns of the sampled points' meshes; None for a task without mesh."""
     too_large: int = 0
     """Number of sampled points whose mesh would need more than RESOLUTION.max_unknowns unknowns."""
 
 
 def estimate_lines(lines: int, certify: bool, of_arms: bool) -> Estimate:
-    """Cost of a search for crossings on `lines` rods; of_arms: whether any rod is not uniform."""
-    uniform = LINE_MS + (LINE_CERTIFICATE_MS if certify else 0)
-    return Estimate(lines * 1e-3 * (LINE_OF_ARM_MS if of_arms else uniform))
+    """Cost of searching `lines` rods for crossings, each along one parameter.
+
+    certify: whether each search is certified. of_arms: whether some arms are not uniform.
+    """
+    uniform = SEARCH_MS + (SEARCH_CERTIFICATE_MS if certify else 0)
+    return Estimate(lines * 1e-3 * (ARM_SEARCH_MS if of_arms else uniform))
 
 
 def estimate_diagram(rows: int, certify: bool, of_arms: bool, curves: bool, criticality: bool) -> Estimate:
-    """Cost of a phase diagram without its cycles. The cost of the curves of uniform rods is neglected."""
+    """Cost of a phase diagram of `rows` rows, without its limit cycles.
+
+    Boundary curves and criticality count for non-uniform arms (`of_arms`) only: for uniform rods they are
+    cheap.
+    """
     lines = estimate_lines(rows, certify, of_arms)
     more = CURVES_OF_ARMS_SECONDS * curves + CRITICALITY_OF_ARMS_SECONDS * criticality
     return replace(lines, seconds=lines.seconds + more * of_arms)
 
 
 def estimate_criticality(rods: int, certify: bool, of_arms: bool) -> Estimate:
-    """Cost of Hopf points and their normal forms for `rods` rods; of_arms: whether any rod is not uniform."""
+    """Cost of the Hopf points, with normal forms, of `rods` rods; of_arms: some rods are not uniform."""
     search = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
-    each = HOPF_POINTS_MS + (LINE_OF_ARM_MS if of_arms else search)
+    each = HOPF_POINTS_MS + (ARM_SEARCH_MS if of_arms else search)
     return Estimate(rods * 1e-3 * each)
 
 
 def estimate_branches(points: Points, along: str, reach: tuple[float, float], accuracy: float) -> Estimate:
-    """Cost of the branches of cycles of all rods.
+    """Cost of the branches of limit cycles of all rods in `points`, along the parameter `along`.
 
-    points: the rods, without a column for the continuation parameter `along`. reach: smallest and largest
-    value of `along`. accuracy: relative accuracy of the cycles.
+    reach: smallest and largest value of the parameter. accuracy: relative accuracy of the cycles.
     """
     indices = sampled(points)
     values: dict[str, Array | float] = points.values_of(indices) | {along: reach[along in COSTLIER_IF_LARGER]}
@@ -143,32 +150,34 @@ def estimate_branches(points: Points, along: str, reach: tuple[float, float], ac
 
 
 def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> Estimate:
-    """Cost of `modes` modes at each of `count` points; spectra: cost of the eigenvalues alone."""
+    """Cost of `modes` eigenvectors at each of `count` points, from the cost `spectra` of the eigenvalues.
+
+    growth: whether the transient growth is computed too.
+    """
     more = count * 1e-3 * (MODES_MS * modes**2 + (GROWTH_MS if growth else 0))
     return replace(spectra, seconds=spectra.seconds + more, unknowns=None)
 
 
 def estimate_followed(alone: Estimate, stretches: Stretches, standard: bool) -> Estimate:
-    """Cost of spectra followed along stretches.
+    """Cost of spectra followed along stretches, from the cost `alone` of solving every point alone.
 
-    alone: cost if every point were solved alone. standard: whether all rods are uniform and of linear
-    material.
+    standard: whether all rods are uniform and of linear material.
     """
     points = math.prod(stretches.shape)
-    share = FIRST_POINTS * stretches.count / points
+    share = FIRST_POINT_COST * stretches.count / points
     each = FOLLOWED_MS if standard else FOLLOWED_ARM_MS
     return replace(alone, seconds=alone.seconds * min(1.0, share) + points * 1e-3 * each)
 
 
 def estimate_two_meshes(points: Points, modes: int, accuracy: float) -> Estimate:
-    """Cost of spectra by Krylov-Schur on two meshes; the second mesh gives the error estimates."""
+    """Cost of the spectra of `points` by Krylov-Schur on two meshes; accuracy: relative."""
     alone = estimate_spectra(points, modes, accuracy, certify=False)
     unknowns = alone.unknowns and (alone.unknowns[0], math.ceil(FINER_MESH * alone.unknowns[1]))
     return replace(alone, seconds=COST_OF_TWO_MESHES * alone.seconds, unknowns=unknowns)
 
 
 def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:
-    """Cost of the spectra of a sweep, extrapolated from points sampled evenly over the sweep."""
+    """Cost of the spectra of `points`, extrapolated from points spread evenly over the sweep."""
     rods = [points.rod(int(index)) for index in sampled(points)]
     sizes = [_unknowns(rod, modes, accuracy) for rod in rods]
     if not sizes:  # no rod covers any point of the sample
@@ -177,14 +186,14 @@ def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool)
     n = np.minimum(np.array(sizes, dtype=float), RESOLUTION.max_unknowns)
     dense = FIXED_MS + LINEAR_MS * n + CUBIC_MS * n**3
     each = np.where(n <= SPARSE_FROM, dense, SPARSE_MS * n) + (CERTIFICATE_MS if certify else 0)
-    each += varied * ARM_MS
+    each += varied * ARM_SPECTRUM_MS
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
     too_large = int((np.array(sizes) > RESOLUTION.max_unknowns).sum())
     return Estimate(float(each.mean()) * 1e-3 * points.count, memory, (min(sizes), max(sizes)), too_large)
 
 
 def _unknowns(rod: Rod, modes: int, accuracy: float) -> int:
-    """Number of unknowns of the mesh on which a rod is solved first."""
+    """Number of unknowns of the first mesh on which `rod` is solved for `modes` modes."""
     if not rod.standard:
         return arm_mesh(rod, modes, accuracy).unknowns
     _, wave = most_amplified_wave(rod)
@@ -192,6 +201,8 @@ def _unknowns(rod: Rod, modes: int, accuracy: float) -> int:
 
 
 def sampled(points: Points) -> NDArray[np.int64]:
-    """Flat indices, (n,), of evenly spread points of a sweep, without points that have no rod."""
+    """Flat indices, (n,), of at most MAX_SAMPLE evenly spread points of a sweep; points without rod are left
+    out.
+    """
     indices = np.unique(np.linspace(0, points.count - 1, min(MAX_SAMPLE, points.count)).astype(np.int64))
     return indices[[points.has_rod(int(index)) for index in indices]]

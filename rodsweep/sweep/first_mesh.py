@@ -1,5 +1,4 @@
-"""Finest of the meshes on which the solves of a sweep begin, estimated from a sample of rods for `rodsweep
-check`."""
+"""The finest of the initial meshes of a sweep's rods, which `rodsweep check` reports."""
 
 from collections.abc import Callable, Iterator, Mapping
 from itertools import product
@@ -18,7 +17,7 @@ from .points.points import Points
 
 
 def spectrum_mesh(rod: Rod, modes: int, accuracy: float) -> Elements:
-    """Initial mesh for the leading `modes` eigenvalues of a rod, to the relative accuracy `accuracy`."""
+    """Initial mesh for the `modes` leading eigenvalues of a rod; accuracy: relative error due to the mesh."""
     if not rod.uniform:
         return arm_mesh(rod, modes, accuracy)
     _, wave = most_amplified_wave(rod.equivalent[0])
@@ -29,11 +28,10 @@ def spectrum_mesh(rod: Rod, modes: int, accuracy: float) -> Elements:
 def largest_first_mesh(
     points: Points, mesh_of: Callable[[Rod], Elements], ends: Mapping[str, Array] | None = None
 ) -> Elements | None:
-    """Finest of the initial meshes of sampled rods and of the rods at the corners of a grid.
+    """The finest initial mesh among sampled points of a sweep and the corners of its grid; None without rods.
 
-    None if no point has a rod. mesh_of: function from a rod to its initial mesh. ends: end values of a
-    search,
-    (n,), by name of the searched parameter.
+    mesh_of: initial mesh of a rod. ends: values, (n,), of further parameters at which meshes are compared, by
+    name: the ends of the range over which every rod is searched.
     """
     indices = {*sampled(points).tolist(), *_corners(points)}
     rods = (rod for index in sorted(indices) for rod in _moved(points.rod(index), ends or {}))
@@ -41,9 +39,9 @@ def largest_first_mesh(
 
 
 def _moved(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod]:
-    """Yields the rod with every combination of parameter values in `ends`; skips rods outside the model.
+    """Yields the rod with every combination of the parameter values in `ends`, by name, (n,) each.
 
-    A force that would crush the rod is replaced by a force just below crushing.
+    A force is lowered to just below the crushing force. Combinations outside the model are left out.
     """
     for values in product(*(column.tolist() for column in ends.values())):
         named = dict(zip(ends, values, strict=True))
@@ -59,7 +57,7 @@ def _moved(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod]:
 
 
 def _corners(points: Points) -> Iterator[int]:
-    """Flat indices of the corner points of a grid that have a rod; empty for a list of points."""
+    """Yields the flat indices of those corners of a grid that have a rod; nothing for a list of points."""
     ends = [sorted({0, size - 1}) for size in points.shape] if points.axes else []
     for corner in product(*ends):
         index = int(np.ravel_multi_index(corner, points.shape))

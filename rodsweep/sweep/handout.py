@@ -1,8 +1,8 @@
-"""Distribution of units, each a point or a chain of points: small chunks, sized by the pace of each rank.
+"""Distribution of units of work over ranks, in small chunks, sized by the time per unit of each rank.
 
-A rank with a slow chunk gives back the rest of the chunk with the next request. No rank is dismissed while
-another rank may still give units back, and all ranks finish within about one unit of each other.
-`rodsweep.sweep.claims` holds the messages.
+A unit is a point, a chain or a stretch of points. A rank with a slow chunk gives back the unsolved units of
+the chunk with the next request. No rank is dismissed while another rank may still give units back, and all
+ranks finish within about one unit of each other. `rodsweep.sweep.claims` sends the messages.
 """
 
 import threading
@@ -16,63 +16,63 @@ from .points.ranges import IndexRange, index_count
 CHUNK_SECONDS = 0.1
 """Planned solve time of a chunk, in s: long compared with a message, short compared with a run."""
 CHUNK_SECONDS_A_RANK = 1e-3
-"""Planned solve time of a chunk, divided by the number of ranks, in s, where this exceeds CHUNK_SECONDS. The
-first rank answers a request in 50 microseconds
-and so spends a twentieth of its time on answers."""
+"""Planned time of a chunk in a run with many ranks, in s per rank. The first rank answers a request in 50
+microseconds and so spends a twentieth of its time on answers."""
 GIVE_BACK_AFTER = 3.0
-"""Time after which a rank gives back the rest of a chunk, in units of the planned time of the chunk."""
+"""Time after which a rank gives back the unsolved units of a chunk, divided by the planned time of the
+chunk."""
 LARGEST_CHUNK = 1 << 16
-"""Largest number of units in a chunk."""
+"""Maximum number of units in a chunk."""
 MIN_UNITS_AHEAD = 4
-"""Minimum number of waiting units per rank for which a rank gets its next chunk before it has finished the
-present chunk."""
+"""Minimum number of units not yet handed out, per rank, for a rank to get its next chunk in advance."""
 NO_WORK_LEFT: IndexRange = (0, 0)
 """Empty range of units, the answer to a request for a chunk once all units are solved or dropped."""
 
 
 def chunk_seconds(ranks: int) -> float:
-    """Planned solve time of a chunk, in s, for a run on `ranks` ranks."""
+    """Planned time of a chunk, in s, in a run with `ranks` ranks."""
     return max(CHUNK_SECONDS, ranks * CHUNK_SECONDS_A_RANK)
 
 
 @dataclass(frozen=True, slots=True)
 class RankReport:
-    """Message of a rank to the first rank: results of its last chunk, and a request for the next chunk."""
+    """Report of a rank on its last chunk, sent with the request for the next chunk."""
 
     done: int = 0
     """Number of units finished since the last report."""
     seconds: float = 0.0
+    """Time spent since the last report, in s."""
     given_back: IndexRange = NO_WORK_LEFT
-    """Units of the chunk that the rank has not solved and returns to the handout."""
+    """Range of the units of the last chunk that the rank did not solve."""
     points: int = 0
     """Number of points that the rank has stored in its journal since the last report."""
     ahead: bool = False
     """Whether the rank requests the next chunk in advance, at the start of the present chunk."""
     stop: str = ""
-    """Name of the stop signal that the rank received, else empty. A later run solves units given back after a
-    stop."""
+    """Name of the stop signal that the rank received, or empty. Units given back after a stop are left for
+    another run."""
     results: dict[int, Any] = field(default_factory=dict)
-    """Results of finished units, by unit; empty in sweeps whose later units do not depend on results."""
+    """Results of finished units, by number of the unit; empty unless later units depend on results."""
 
 
 class Handout:
-    """Queue of the units that no rank has received, on the first rank; safe to use from two threads."""
+    """Queue of the units still to solve, on the first rank; safe to use from two threads."""
 
     def __init__(self, todo: list[IndexRange], ranks: int):
         self.todo = deque(todo)
         self.left = index_count(todo)
         self.ranks = ranks
         self.held: Counter[int] = Counter()
-        """Number of chunks that each rank holds and has not reported on."""
+        """Number of chunks that a rank has and has not reported on, by rank."""
         self.points = 0
         """Number of points that all ranks have reported as stored."""
         self.pace: dict[int, float] = {}
-        """Latest time per unit of each rank, in s."""
+        """Latest time per unit of work, in s, by rank."""
         self.stopped = False
         self.change = threading.Condition()
 
     def settle(self, rank: int, report: RankReport) -> None:
-        """Records the finished units of a report, and queues the units given back."""
+        """Updates the queue from a rank's report: finished units, and units given back."""
         with self.change:
             if self.held[rank]:
                 self.held[rank] -= 1
@@ -87,20 +87,20 @@ class Handout:
             self.change.notify_all()
 
     def take(self, rank: int) -> IndexRange | None:
-        """Next chunk for a rank; NO_WORK_LEFT at the end, None while other ranks may give units back."""
+        """The next chunk for a rank; NO_WORK_LEFT if no work is left, None if the rank has to wait."""
         with self.change:
             if self.todo:
                 return self._take(rank)
             return None if self.held.total() and not self.stopped else NO_WORK_LEFT
 
     def take_ahead(self, rank: int) -> IndexRange | None:
-        """Chunk for a rank that has not finished its present chunk; None if few units are left."""
+        """The next chunk for a rank that still works on a chunk; None if few units are left in the queue."""
         with self.change:
             return self._take(rank) if self.todo and self.left >= MIN_UNITS_AHEAD * self.ranks else None
 
     def _take(self, rank: int) -> IndexRange:
-        # Half of an equal share at most: chunks shrink toward the end, where waiting costs most.
-        """Removes a chunk, sized by the rank's pace, from the queue; the caller holds the lock."""
+        """Removes the next chunk from the queue, sized by the rank's time per unit; the lock must be held."""
+        # At most half of an equal division: chunks shrink toward the end, where waiting costs most.
         share = max(1, self.left // (2 * self.ranks))
         pace = self.pace.get(rank)
         size = 1 if pace is None else int(chunk_seconds(self.ranks) / max(pace, 1e-7))
@@ -113,7 +113,7 @@ class Handout:
         return first, end
 
     def stop(self) -> None:
-        """Drops all units not handed out, after a stop request; a later run solves these units."""
+        """Empties the queue after a stop request; a later run solves the units."""
         with self.change:
             self.stopped = True
             self.todo.clear()
@@ -121,15 +121,16 @@ class Handout:
 
 
 class UnitChooser(Protocol):
-    """Chooses the units to solve next from the results so far, the most urgent unit first."""
+    """Chooses the units to solve next, the most urgent unit first, from the results of solved units."""
 
     def wanted(self, results: Mapping[int, Any]) -> list[int]: ...
 
 
 class Pool(Handout):
-    """Queue of single units that `work` chooses from the results so far; safe to use from two threads.
+    """`Handout` whose units depend on the results of solved units, one unit in a chunk.
 
-    results: results of an earlier run, by unit; results that ranks report are added.
+    work: chooses the next units from the results. results: by number of the unit, at first from an earlier
+    run; reported results are added.
     """
 
     def __init__(self, work: UnitChooser, results: dict[int, Any], ranks: int):
@@ -137,19 +138,19 @@ class Pool(Handout):
         self.work = work
         self.results = results
         self.taken: dict[int, IndexRange] = {}
-        """Unit in progress on each rank."""
+        """Unit that a rank is solving, as a range, by rank."""
         self._wanted: list[int] | None = None
 
     @property
     def open(self) -> list[int]:
-        """Units that `work` has chosen and no rank is solving, the most urgent unit first."""
+        """Units that `work` has chosen and that no rank is solving, the most urgent unit first."""
         if self._wanted is None:
             self._wanted = self.work.wanted(self.results)
         in_hand = {first for first, _ in self.taken.values()}
         return [unit for unit in self._wanted if unit not in in_hand]
 
     def settle(self, rank: int, report: RankReport) -> None:
-        """Adds the results in a report; a unit whose rank reports no result can be chosen again."""
+        """Adds the results in a rank's report; a unit without a result can be chosen again."""
         with self.change:
             self.points += report.points
             self.results |= report.results
@@ -158,7 +159,7 @@ class Pool(Handout):
             self.change.notify_all()
 
     def take(self, rank: int) -> IndexRange | None:
-        """Next unit for a rank; NO_WORK_LEFT at the end, None while the choice waits for results."""
+        """The next unit for a rank, as a range; NO_WORK_LEFT if none is left, None if the rank must wait."""
         with self.change:
             if self.stopped:
                 return NO_WORK_LEFT
@@ -169,5 +170,5 @@ class Pool(Handout):
             return None if self.taken else NO_WORK_LEFT
 
     def take_ahead(self, rank: int) -> IndexRange | None:
-        """Always None: the choice of the next unit depends on the result of the unfinished unit."""
+        """Always None: the choice of a rank's next unit depends on the unit that it is solving."""
         return None

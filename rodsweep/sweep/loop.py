@@ -22,7 +22,7 @@ Indices = int | NDArray[np.int64]
 
 
 class UnitSolver(Protocol):
-    """Function that solves a unit; yields (flat index, result) for every point or whole stretch.
+    """Function that solves a unit of work; yields (flat index, result) of each point, or of a whole stretch.
 
     A unit is a point, a chain of points yielded individually, or a stretch of points yielded at once.
     """
@@ -34,17 +34,21 @@ class ProgressSink(Protocol):
     """Interface of a display, on the first rank, for the progress of all ranks."""
 
     def __call__(self, done: int) -> None:
-        """Displays the number of points that all ranks have finished."""
+        """Shows `done`, the number of points that all ranks have finished."""
 
     def place(self, words: str, begun: float) -> None:
-        """Displays progress in a long point in words; begun: work done on unfinished points, in points."""
+        """Shows the progress of a long point in words.
+
+        begun: work done of all unfinished points, in points.
+        """
 
 
 @dataclass(frozen=True, slots=True)
 class RankWork:
-    """What a rank did in a run: number of points solved, seconds of solving (busy) and of waiting (idle).
+    """Statistics of a rank after the sweep.
 
-    ended: whether a stop request interrupted a solve; a later run solves the interrupted unit again.
+    points: number of solved points. busy, idle: time spent on solving and on waiting, in s. ended: whether a
+    stop request ended an unfinished solve; a later run solves the unit again.
     """
 
     points: int
@@ -55,22 +59,23 @@ class RankWork:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loop:
-    """Functions that every rank calls in the loop over units, such as to solve and to store."""
+    """Functions that every rank calls during a sweep."""
 
     solve: UnitSolver
+    """Solves the points of a unit."""
     keep: Callable[[Indices, Any], None]
-    """Stores a point durably, on the rank that solved the point, before the next point begins."""
+    """Stores the result of a point durably, on the rank that solved it, before the next point begins."""
     prepare: Callable[[], object] = lambda: None
-    """Function that a rank calls once before its first unit."""
+    """Called once, before the first unit."""
     results: Callable[[], dict[int, Any]] = dict
-    """Function that returns, by unit, results stored since its last call; empty if later units need no
-    results."""
+    """Returns the results of the units stored since the last call, by number of the unit; empty unless later
+    units depend on results."""
     name: Callable[[int], str] = lambda unit: ""
-    """Function from a unit to its name in words, for progress messages."""
+    """Describes a unit in words, for the progress display."""
 
 
 def sweep(team: Team, todo: Handout, loop: Loop, shown: ProgressSink, stop: StopRequest) -> RankWork:
-    """Solves every unit of `todo`, known to the first rank only; returns when all ranks have finished.
+    """Solves every unit in `todo`, which only the first rank has; returns when all ranks have finished.
 
     An exception on any rank ends all ranks. After a stop request to any rank, each rank ends after the
     current point, or within the point if more than `stop.GRACE_SECONDS` seconds are needed.
@@ -83,7 +88,7 @@ def sweep(team: Team, todo: Handout, loop: Loop, shown: ProgressSink, stop: Stop
 
 
 class _RankLoop:
-    """State of the loop of one rank: its requests for chunks, and its counts of points and seconds."""
+    """Loop of one rank over its chunks."""
 
     def __init__(
         self,
@@ -102,7 +107,7 @@ class _RankLoop:
         self.ended = False
 
     def share(self) -> RankWork:
-        """Solves chunk after chunk; returns the work of the rank once all ranks have finished."""
+        """Solves chunk after chunk; returns the statistics of the rank once all ranks have finished."""
         started = time.monotonic()
         busy = 0.0
         chunk = self.claims.claim(RankReport())
@@ -127,9 +132,9 @@ class _RankLoop:
         return RankWork(self.points, busy, time.monotonic() - started - busy, self.ended)
 
     def _solved_up_to(self, chunk: IndexRange) -> int:
-        """Solves the units of a chunk in order; returns the number of the first unit not solved.
+        """Solves the units of a chunk in order; returns the first unit that is not solved.
 
-        The rest of the chunk is left undone after a stop request, or if the chunk takes too long.
+        Later units stay unsolved after a stop request, or if the chunk takes too long.
         """
         patience = time.monotonic() + GIVE_BACK_AFTER * chunk_seconds(self.team.size)
         at = chunk[0]

@@ -14,13 +14,13 @@ from .remaining_time import Pace, in_words, rate_in_words
 FIRST_SECONDS = 1.0
 """Seconds before progress is shown for the first time; a shorter sweep shows no progress."""
 LINE_SECONDS = 10.0
-"""Seconds between two lines in a log."""
+"""Seconds between two progress lines in a log."""
 BAR_SECONDS = 0.1
-"""Seconds between two updates of a bar."""
+"""Seconds between two updates of a progress bar."""
 
 
 def on_terminal() -> bool:
-    """Whether standard error, or under MPI the standard error of the launcher, is a terminal."""
+    """Whether standard error is a terminal; under an MPI launcher, standard error of the launcher decides."""
     if sys.stderr.isatty():
         return True
     launcher = f"/proc/{os.getppid()}/fd/2"
@@ -47,12 +47,12 @@ class SilentProgress:
 class ProgressReporter:
     """Shows the number of finished points, the rate, the remaining time and the progress of a long point.
 
-    total: number of all points; None if unknown, because later units depend on results. noun: name of the
-    counted objects.
+    total: number of all points; None if unknown, because later units depend on results. title: text before
+    the bar. noun: name of the counted objects in a line.
     """
 
     def __init__(self, total: int | None, title: str, noun: str = "points", live: bool | None = None):
-        """live: True for a bar, False for lines; by default a bar on a terminal."""
+        """live: True for a progress bar, False for lines; None: a bar on a terminal, lines elsewhere."""
         self.total = total
         self.noun = noun
         self.pace = None if total is None else Pace(total)
@@ -65,7 +65,7 @@ class ProgressReporter:
             self.task = self.bar.add_task(title, total=total, count="", rate="", left="", where="")
 
     def __call__(self, done: int) -> None:
-        """Records `done` finished points and updates the display if due; 0 starts the clock."""
+        """Records the number `done` of finished points, and displays it if due; 0 starts the clock."""
         if not done:
             self.began = time.monotonic()
             self.next = self.began + FIRST_SECONDS
@@ -75,7 +75,10 @@ class ProgressReporter:
         self._show()
 
     def place(self, words: str, begun: float = 0.0) -> None:
-        """Displays, if due, progress within a long point in words; begun: work done on unfinished points."""
+        """Shows the progress of a long point in words, if an update is due.
+
+        begun: work done of all unfinished points, in points.
+        """
         self.begun = begun
         self.where = words
         self._show()
@@ -107,7 +110,7 @@ class ProgressReporter:
 
 
 def _bar(title: str) -> Progress:
-    """Progress bar on standard error, or in a notebook."""
+    """Progress bar on standard error, or in a notebook, that begins with `title`."""
     console = Console() if in_notebook() else Console(file=sys.stderr, force_terminal=True)
     fields = (f"{{task.fields[{name}]}}" for name in ("count", "rate", "left", "where"))
     head, *columns = (TextColumn(text, markup=False) for text in (title, *fields))

@@ -1,25 +1,25 @@
-"""Remaining time of a sweep from the number of finished points over time, smoothed against jumps.
+"""Remaining time of a sweep from the number of finished points as a function of time, smoothed against jumps.
 
-Points differ in cost: the first point of a chain starts cold, later points start from a neighbour, a few
-points are hard. The pace is therefore measured over the latest half of the finished points, and never
-includes the first points, which started cold. The reported time follows the estimate slowly, with a time
-constant proportional to the time passed, and faster near the end. With long points the work done of
-unfinished points counts as well. The module reads no clock: the caller passes all times.
+Points differ in cost: the first point of a chain has no initial guess, later points start from a neighbour, a
+few points are hard. The time per point is therefore measured over the latest half of the finished points, and
+never includes the first points. The reported remaining time follows the estimate slowly, with a time constant
+proportional to the elapsed time, and faster toward the end. With long points the work done of unfinished
+points counts as well. The module reads no clock: the caller passes all times.
 """
 
 from math import exp
 
 PACE_FROM = 0.5
-"""The pace is measured from this fraction of the finished points to the latest."""
+"""The time per point is measured over the finished points after this fraction of them."""
 MIN_POINTS = 2
-"""Minimum number of points finished after the first record for a measurement of the pace."""
+"""Minimum number of points finished after the first record; with fewer points there is no time per point."""
 MIN_BEGUN = 0.1
-"""Minimum work done on unfinished points, in points, for a first estimate. With less work, start-up cost
-dominates."""
+"""Minimum work done of unfinished points, in points, for an estimate without finished points. Below, the cost
+of starting up dominates."""
 TIME_CONSTANT = 0.25
-"""Time constant of the reported remaining time, as a fraction of the shorter of time passed and left."""
+"""Time constant of the reported remaining time, divided by the smaller of elapsed and remaining time."""
 RECORD_RATIO = 1.02
-"""Minimum ratio of the numbers of finished points in successive stored records: 35 records per doubling."""
+"""Ratio of the numbers of finished points in two successive stored records: about 35 records per doubling."""
 
 
 class Pace:
@@ -28,7 +28,7 @@ class Pace:
     def __init__(self, total: int):
         self.total = total
         self.records: list[tuple[int, float]] = []
-        """(finished points, time), both increasing; the first and the latest report are always stored."""
+        """(number of finished points, time), both increasing; the first and the latest report are stored."""
         self.reported: tuple[float, float] | None = None
         """(time of the last report, remaining time reported then)."""
 
@@ -57,16 +57,16 @@ class Pace:
         return self.reported[1]
 
     def _record(self, done: int, now: float) -> None:
-        """Appends the record (done, now); thins earlier records to 35 per doubling of `done`."""
+        """Stores the record (done, now); thins earlier records to about 35 per doubling of the points."""
         if len(self.records) > 2 and self.records[-1][0] < RECORD_RATIO * self.records[-2][0]:
             self.records.pop()
         self.records.append((done, now))
 
     def _seconds_per_point(self, done: int, now: float, begun: float) -> float | None:
-        """Seconds per point over the latest points, or of the current point if it takes longer.
+        """Time per point over the latest finished points, or since the latest record if that is longer.
 
-        Before MIN_POINTS points are finished the time follows from the work of unfinished points, or is None
-        if the work is too little.
+        Before MIN_POINTS points are finished the time follows from the work done of unfinished points, or is
+        None for work below MIN_BEGUN.
         """
         if not self.records or done < self.records[0][0] + MIN_POINTS:
             return now / (done + begun) if begun >= MIN_BEGUN else None
@@ -77,7 +77,7 @@ class Pace:
 
 
 def in_words(seconds: float) -> str:
-    """A time with at most two digits: 8 s, 1.5 min, 3.2 h, 12 d."""
+    """A duration as text with two significant digits: 8 s, 1.5 min, 3.2 h, 12 d."""
     for unit, length in (("d", 86400.0), ("h", 3600.0), ("min", 60.0)):
         if seconds >= 1.45 * length:
             return f"{float(f'{seconds / length:.2g}'):g} {unit}"
@@ -85,7 +85,10 @@ def in_words(seconds: float) -> str:
 
 
 def rate_in_words(done: int, seconds: float) -> str:
-    """Points per second, or time per point above one second; empty before the first point."""
+    """Rate of `done` points in `seconds` as text: points per second, or the time per point above one second.
+
+    Empty before the first point.
+    """
     if not done or not seconds:
         return ""
     rate = done / seconds

@@ -1,7 +1,7 @@
 """Early stop of a run, requested by a scheduler's warning, a user's kill or Ctrl-C.
 
-A run stops between two points, or within a point with more than `GRACE_SECONDS` left. The listener of long
-solves exchanges messages, reports progress, and ends a solve after a stop request.
+A run stops between two points, or within a point that takes longer than `GRACE_SECONDS` after the request. A
+`RankListener` exchanges messages during long solves, reports progress, and ends a solve after a stop request.
 """
 
 import os
@@ -17,9 +17,9 @@ from ..watch import MakePosition, SolvePosition, SolveStopped
 POLL_SECONDS = 0.05
 """Seconds between two polls for messages and stop requests during a solve."""
 PLACE_SECONDS = 0.5
-"""Seconds from the start of a solve to its first progress report, and between two reports."""
+"""Seconds from the start of a solve to the first report of its progress, and between two reports."""
 STOP_SIGNALS = (signal.SIGTERM, signal.SIGUSR1, signal.SIGINT)
-"""Signals that ask for a stop: `kill` or a scheduler's end, a scheduler's warning, and Ctrl-C."""
+"""Signals that request a stop: from `kill` or a scheduler's end, from a scheduler's warning, from Ctrl-C."""
 GRACE_SECONDS = 0.3
 """Time, in seconds, to finish the current point after a stop request. A longer point is abandoned and solved
 again on resuming: a run has to end within two seconds, and Open MPI's launcher kills after one."""
@@ -28,7 +28,8 @@ STOPPING_MESSAGE = b"\nstopping: all points that are done are kept (Ctrl-\\ ends
 
 
 class StopRequest:
-    """Stop request to the process, with the name of the signal.
+    """Whether this process was requested to stop: true once `name`, the name of the stop signal, is not
+    empty.
 
     acknowledges: whether Ctrl-C is acknowledged on standard error. Under a launcher no rank acknowledges,
     because all ranks would.
@@ -44,25 +45,27 @@ class StopRequest:
 
     @property
     def is_due(self) -> bool:
-        """Whether the grace time is over and the current point has to be abandoned."""
+        """Whether GRACE_SECONDS have passed since the request: the current point must be abandoned."""
         if not self.name:
             return False
         self._since = self._since or time.monotonic()
         return time.monotonic() - self._since >= GRACE_SECONDS
 
     def listen(self) -> None:
-        """Record stop signals instead of ending the process. Only the main thread may call it."""
+        """Lets stop signals set this request instead of ending the process; only for the main thread."""
         for number in STOP_SIGNALS:
             signal.signal(number, self._note)
 
     @staticmethod
     def ignore() -> None:
-        """Ignore stop signals, also while Python and MPI shut down. Only the main thread may call it."""
+        """Lets the process ignore stop signals, also while Python and MPI shut down; only for the main
+        thread.
+        """
         for number in STOP_SIGNALS:
             signal.signal(number, signal.SIG_IGN)
 
     def take(self, name: str) -> None:
-        """Adopts the stop request that another rank received; name: name of the signal."""
+        """Adopts the stop request of another rank; name: name of the signal."""
         self.name = name
 
     def _note(self, number: int, _: FrameType | None) -> None:
@@ -73,7 +76,7 @@ class StopRequest:
 
 
 class Claims(Protocol):
-    """Interface for communication between ranks during a solve."""
+    """Communication of a rank with other ranks during a solve and between points."""
 
     def between_points(self) -> None: ...
 
@@ -81,7 +84,7 @@ class Claims(Protocol):
 
 
 class NoClaims:
-    """Communication of a rank that runs alone; `shown` displays the progress of a long solve."""
+    """`Claims` of a run with a single rank; `shown` receives the progress of a long solve."""
 
     def __init__(self, shown: Callable[[SolvePosition], object] | None = None):
         self.shown = shown
@@ -89,16 +92,20 @@ class NoClaims:
     def between_points(self) -> None: ...
 
     def report_place(self, place: SolvePosition) -> None:
-        """Displays progress within a long point, if `shown` is given."""
+        """Passes the progress within a long point to `shown`, if given."""
         if self.shown:
             self.shown(place)
 
 
 class RankListener:
-    """Listener that a solver calls during the solve of one unit, on any rank."""
+    """Receives the solvers' reports on a rank: polls messages, forwards progress, ends a solve on a stop
+    request.
+
+    Every unit of work gets a new listener.
+    """
 
     def __init__(self, claims: Claims, stop: StopRequest, name: Callable[[], str] = str):
-        """name: describes the unit in words."""
+        """name: returns a description of the unit in words."""
         self.claims = claims
         self.stop = stop
         self.name = name
@@ -106,7 +113,7 @@ class RankListener:
         self.next_report = time.monotonic() + PLACE_SECONDS
 
     def __call__(self, place: MakePosition) -> None:
-        """Receives the progress `place` of a solver; raises Stopped if a stop request ends the solve."""
+        """Handles a solver's report, at the position `place()`; raises Stopped if the solve must end."""
         now = time.monotonic()
         if now >= self.next_report and (here := place()).words:
             self.next_report = now + PLACE_SECONDS

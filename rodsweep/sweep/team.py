@@ -12,13 +12,13 @@ from ..errors import BUG_STATUS, EnvironmentIncomplete, Refusal, import_refusal
 T = TypeVar("T")
 S = TypeVar("S")
 SHORTEST_PAUSE = 1e-4
-"""Initial pause, in seconds, between two tests of whether all ranks have reached a barrier."""
+"""First pause, in seconds, between two tests of a barrier; each further pause is twice as long."""
 LONGEST_PAUSE = 1e-2
-"""Longest pause, in seconds, between two such tests; each pause is twice the previous pause up to here."""
+"""Longest pause, in seconds, between two tests of a barrier."""
 
 
 class Team:
-    """All ranks of MPI's world; a single rank without a launcher."""
+    """All ranks of MPI_COMM_WORLD, seen from this rank; a single rank without an MPI launcher."""
 
     def __init__(self) -> None:
         try:
@@ -37,11 +37,11 @@ class Team:
 
     @property
     def first(self) -> bool:
-        """Whether this is the first rank, which prints, hands out points and writes the file."""
+        """Whether this is the first rank, which prints, hands out points and writes the result file."""
         return self.rank == 0
 
     def on_first(self, work: Callable[[], T]) -> T:
-        """Calls `work` on the first rank; every rank returns the result, or raises the refusal."""
+        """Calls `work` on the first rank only; returns its result, or raises its `Refusal`, on every rank."""
         outcome: Any = None
         if self.first:
             try:
@@ -55,7 +55,7 @@ class Team:
         return value
 
     def wait_for_all(self) -> None:
-        """Waits for all ranks; sleeps, unlike MPI's barrier, and leaves the processor to ranks at work."""
+        """Barrier over all ranks that sleeps between tests, so that working ranks keep the processor."""
         request = self.comm.Ibarrier()
         pause = SHORTEST_PAUSE
         while not request.Test():
@@ -63,7 +63,7 @@ class Team:
             pause = min(2 * pause, LONGEST_PAUSE)
 
     def require_on_all_ranks(self, work: Callable[[], object]) -> None:
-        """Calls `work` on every rank; if any rank raises a refusal, all ranks raise the same refusal."""
+        """Calls `work` on every rank; if it raises a `Refusal` on any rank, all ranks raise that refusal."""
         refusal: Refusal | None = None
         try:
             work()
@@ -74,26 +74,27 @@ class Team:
             raise refusals[0].on_all_ranks()
 
     def gather(self, value: T) -> list[T] | None:
-        """Values of all ranks on the first rank; None elsewhere."""
+        """List of the `value` of every rank, in order of ranks, on the first rank; None on other ranks."""
         self.wait_for_all()
         return self.comm.gather(value)
 
     def exchange(self, value: T) -> list[T]:
-        """Values of all ranks, on every rank."""
+        """List of the `value` of every rank, in order of ranks, on every rank."""
         self.wait_for_all()
         return self.comm.allgather(value)
 
     def in_order(self, items: Sequence[T], work: Callable[[T], S]) -> list[S]:
-        """Results of `work` for all items, in order, on every rank; the ranks divide the items."""
+        """Results of `work` for all items, in order, on every rank; the items are divided among the ranks."""
         parts = self.exchange([work(item) for item in items[self.rank :: self.size]])
         return [parts[i % self.size][i // self.size] for i in range(len(items))]
 
     @contextmanager
     def aborting_together(self) -> Iterator[None]:
-        """An exception in the context on any rank ends all ranks, with the rank's message and exit status.
+        """Context in which an exception on any rank aborts all ranks, with the rank's message and exit
+        status.
 
-        All other ranks would wait for ever. An exception propagates without abort if there is a single rank,
-        or if all ranks share the refusal.
+        Without the abort all other ranks would wait forever. An exception propagates without abort if there
+        is a single rank, or if all ranks raise the same refusal.
         """
         try:
             yield

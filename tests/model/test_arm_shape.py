@@ -10,7 +10,7 @@ from rodsweep.errors import InputError
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.drag import DRAGS, cox, gray_hancock
 from rodsweep.model.arm.neglected import SELF_BUCKLING, effects_of, least_drag
-from rodsweep.model.arm.shape import RADIUS_STEP
+from rodsweep.model.arm.shape import MAX_RADIUS_RATIO
 
 ROUND = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "50 Pa s", "pressure": "2 kPa"}
 PARAMETERS = ("k1", "k2", "gamma3", "gamma1", "F", "tau2", "taper", "build", "crushing_force")
@@ -74,7 +74,7 @@ def test_the_drags_of_a_cone_are_those_of_its_local_radius(taper):
     assert local.gamma3 == pytest.approx(values["gamma3"] * (1 - (1 - taper) * u) ** 2, rel=1e-12)
     radii = 1 - (1 - taper) * cone.build.breaks
     steps = np.maximum(radii[1:] / radii[:-1], radii[:-1] / radii[1:])
-    assert steps.max() <= RADIUS_STEP * (1 + 1e-12)
+    assert steps.max() <= MAX_RADIUS_RATIO * (1 + 1e-12)
 
 
 def test_factors_of_segments_by_hand():
@@ -167,7 +167,7 @@ def test_effects_are_those_of_the_section_where_they_are_largest():
 def test_an_upright_arm_buckles_under_the_weight_that_is_stated(changes):
     """Integrated from the tip with theta' = m/(E I), m' = -W theta: theta vanishes at the base."""
     arm = uniform(**changes, pressure=None)
-    shape, weight = arm.shape, 1 / arm.shape.buckling_share(1.0)
+    shape, weight = arm.shape, 1 / arm.shape.relative_weight(1.0)
 
     def section(x):
         if arm.tip_radius is None:

@@ -11,7 +11,7 @@ from rodsweep.discretization.nodal_rod import nodal_rod
 from rodsweep.discretization.stress.balance import balance, velocity_balance, write_strain_rates
 from rodsweep.discretization.stress.jacobian import jacobian
 from rodsweep.model.algebra import ALGEBRAS, SE3
-from rodsweep.model.balance import IN_SPACE, ad
+from rodsweep.model.balance import PLANE_COMPONENTS, ad
 from rodsweep.model.rod import Rod
 
 ROD, GAMMA1 = Rod(F=50.0, k1=1e3, k2=1e2, gamma3=1e-2), 0.7
@@ -76,7 +76,7 @@ def test_compiled_functions_do_what_their_loops_do(material, kept):
 def test_plane_states_of_space_are_those_of_the_plane(grid):
     plane, space = (nodal_rod(material, grid) for material in (PLANE, SPACE))
     x, n = state(plane, grid), grid.nodes
-    at = np.concatenate([np.arange(a * n, (a + 1) * n) for a in IN_SPACE])
+    at = np.concatenate([np.arange(a * n, (a + 1) * n) for a in PLANE_COMPONENTS])
     there = np.zeros(6 * n)
     there[at] = x
     jacobians = []
@@ -87,10 +87,10 @@ def test_plane_states_of_space_are_those_of_the_plane(grid):
         jacobians.append((V, G, J, tip))
     (V, G, J, tip), (V_space, G_space, J_space, tip_space) = jacobians
     for ours, theirs in ((V_space, V), (G_space, G)):
-        assert np.abs(ours[IN_SPACE] - theirs).max() <= 1e-13 * np.abs(theirs).max()
-        assert not np.delete(ours, IN_SPACE, axis=0).any()
+        assert np.abs(ours[PLANE_COMPONENTS] - theirs).max() <= 1e-13 * np.abs(theirs).max()
+        assert not np.delete(ours, PLANE_COMPONENTS, axis=0).any()
     assert np.abs(J_space[np.ix_(at, at)] - J).max() <= 1e-13 * np.abs(J).max()
-    assert np.abs(tip_space[np.ix_(IN_SPACE, at)] - tip).max() <= 1e-13 * np.abs(tip).max()
+    assert np.abs(tip_space[np.ix_(PLANE_COMPONENTS, at)] - tip).max() <= 1e-13 * np.abs(tip).max()
     assert not np.delete(J_space[:, at], at, axis=0).any(), "a bent rod does not leave its plane"
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from rodsweep import Arm
 from rodsweep.errors import InputError
-from rodsweep.model.arm.drag import cox, gray_hancock, least_rotational, lighthill, most_rotational
+from rodsweep.model.arm.drag import cox, gray_hancock, lighthill, min_rotational_drag, most_rotational
 from rodsweep.model.arm.section import Circle, Rectangle, Tube
 from rodsweep.model.rod import Rod
 from rodsweep.model.units import share_of_flutter
@@ -60,7 +60,7 @@ def test_drag_by_hand():
     assert cox(1, 20) == pytest.approx((2 * math.pi / 2.188879, 4 * math.pi / 3.188879), rel=1e-6)
     assert gray_hancock(1, 20) == pytest.approx((2 * math.pi / 4.575174, 4 * math.pi / 5.575174), rel=1e-6)
     assert lighthill(1, 20) == pytest.approx((2 * math.pi / 1.280934, 4 * math.pi / 1.780934), rel=1e-6)
-    assert (least_rotational(1, 1), most_rotational(1, 1)) == pytest.approx((math.pi, 4 * math.pi))
+    assert (min_rotational_drag(1, 1), most_rotational(1, 1)) == pytest.approx((math.pi, 4 * math.pi))
 
 
 def test_sections_by_hand():
@@ -104,7 +104,7 @@ def test_least_rotational_drag_is_the_torque_of_its_flow():
     traction = [(flow(a + step, angle) - flow(a - step, angle)) / (2 * step) for angle in phi]
     lever = [a * math.cos(angle) for angle in phi]
     torque = sum(t * x for t, x in zip(traction, lever, strict=True)) * a * 2 * math.pi / 64
-    assert torque == pytest.approx(least_rotational(1, a), rel=1e-6)
+    assert torque == pytest.approx(min_rotational_drag(1, a), rel=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -1,1 +1,1 @@
-"""The arm of a config: its section, axes and quantities."""
+"""The section `parameters.arm` of a config: an arm's quantities, and the axes of a sweep over them."""

@@ -1,4 +1,4 @@
-"""Parameters changed by the quantities of an arm, and the axes of a sweep's grid.
+"""Parameters of the rod that each quantity of an arm changes, and the axes of a sweep's grid.
 
 An axis of the load is an axis of F, an axis of Poisson's ratio is an axis of k2, and a grid of both is still
 a grid of parameters. Any other quantity changes several parameters at once, or none. With an axis of such a
@@ -16,17 +16,18 @@ from ...model.arm.section import NoWall
 from ...model.parameters import PARAMETERS
 
 LOAD_AXES = (*LOADS, *RELATIVE)
-"""Config keys of the load, absolute or relative to flutter. An arm has at most one of them."""
+"""Names of the config keys for the load, absolute or relative to flutter. An arm has at most one load."""
 AXIS_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
-"""Parameter that a quantity changes, by name of every quantity that changes exactly one parameter."""
+"""Name of the parameter that changes with a quantity of the arm, by name of the quantity, for quantities that
+change exactly one parameter."""
 CHANGED_PARAMETER = AXIS_OF | dict.fromkeys(RELATIVE, "F")
-"""Parameter that an axis changes in a grid over an arm's quantities, by name of the axis, where there is only
-one."""
+"""Name of the parameter that changes along an axis of a grid over an arm's quantities, by name of the
+axis."""
 STORED_ALONG = AXIS_OF | {"drag": "gamma3", "tau2": "gamma3"}
-"""The parameter along whose axis a quantity or unit with several values is stored."""
+"""Name of the parameter along whose axis a result file stores a quantity or unit that has several values."""
 FLUID = ("viscosity", "fluid_density", "density_difference")
-"""Quantities that change no parameter: times are proportional to the viscosity, and the densities decide
-whether the model applies."""
+"""Names of the quantities of the fluid, which change no parameter of the rod: times are proportional to the
+viscosity, and the densities decide whether the model applies."""
 ALL_BUT_LOAD = (
     "length",
     "young",
@@ -39,21 +40,22 @@ ALL_BUT_LOAD = (
     *FLUID,
     "drag",
 )
-"""All quantities of an arm except the load."""
+"""Names of all quantities of an arm except the load."""
 SLENDER, NOT_SLENDER, CRUSHED, NO_WALL, NO_FLUTTER, FLUTTER_UNKNOWN = 0, 100, 101, 102, 103, 104
-"""Codes of a point of an arm: the rod model applies; arm too short for the drag of slender bodies; F reaches
-k1; bore as wide as the arm; load relative to a flutter threshold that does not exist, or that the search does
-not find. All but SLENDER are statuses, numbered above the statuses of every task."""
+"""Status codes of the points of an arm: the point has a rod; the arm is too short for the drag of slender
+bodies; F reaches k1; the bore is as wide as the arm; the load is relative to a flutter threshold that does
+not exist, or that the search did not find. All codes but the first are statuses, larger than every task's own
+statuses."""
 MOST_POINTS = 1_000_000
-"""Maximum number of points of a grid over an arm's quantities, since the parameters of all points are held in
-memory."""
+"""Maximum number of points of a grid over an arm's quantities; larger grids are refused, because the
+parameters of all points are in memory."""
 
 
 def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
-    """Axes of a grid over an arm's quantities; empty if the points form a grid of parameters.
+    """Names of the axes of a grid over an arm's quantities; empty if the points form a grid of parameters.
 
-    sizes: number of values of each given quantity, and of each parameter beside the arm. in_diagram: whether
-    the points are the rows of a phase diagram.
+    sizes: number of values of each given quantity, and of each parameter that replaces the arm's value.
+    in_diagram: whether the points are the rows of a phase diagram.
     """
     given = (name for name in (*ALL_BUT_LOAD, *LOAD_AXES) if name in sizes)
     quantities = [name for name in given if sizes[name] > 1 or name in RELATIVE]
@@ -63,16 +65,16 @@ def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
 
 
 def parameter_of_axis(axis: str) -> str:
-    """Parameter that an axis of a grid over an arm's quantities changes; "" for several or no parameter."""
+    """The only parameter that changes along an axis of an arm's grid; "" for several parameters or none."""
     return axis if axis in PARAMETERS else CHANGED_PARAMETER.get(axis, "")
 
 
 STATUS_OF_ERROR = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
-"""Status of a point by class of the error that its arm raises."""
+"""Status code of a point by the class of the exception that its arm raises."""
 
 
 class UncoveredArm(ValueError):
-    """The rod model does not apply to this arm; `status` is the status of the arm's points."""
+    """The rod model does not apply to an arm; `status` is the status code of the arm's points."""
 
     def __init__(self, error: InputError):
         super().__init__(f"parameters.arm.{error}")

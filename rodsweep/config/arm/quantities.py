@@ -16,7 +16,7 @@ RANGE_ENDS = ("start", "stop")
 
 
 def as_quantities(value: Any, info: ValidationInfo) -> Axis:
-    """A quantity, or a list or range of quantities, as an Axis in SI units; ValueError otherwise."""
+    """The `Axis`, in SI units, of a quantity, or of a list or range of quantities; ValueError otherwise."""
     name = str(info.field_name)
     if isinstance(value, Axis):
         return value
@@ -37,7 +37,7 @@ def _axis_in_si(name: str, value: Any) -> Axis:
 
 
 def _without_unit(name: str, span: dict[str, Any]) -> str:
-    """Sentence for a message about a range that has a unit at one end only; "" for any other range."""
+    """Remark for messages on a range `span` whose start or stop alone has a unit; else ""."""
     ends = [end for end in ("start", "stop") if end in span]
     bare = [end for end in ends if not isinstance(span[end], str)]
     unit = UNITS[name][0]
@@ -45,7 +45,7 @@ def _without_unit(name: str, span: dict[str, Any]) -> str:
 
 
 def _read(name: str, value: Any) -> float:
-    """Converts the value of the quantity `name` to SI units; ValueError if the value is no quantity."""
+    """Value of a quantity in SI units; ValueError if `value` is no quantity."""
     if not isinstance(value, str):
         return as_number(value)
     try:
@@ -55,9 +55,9 @@ def _read(name: str, value: Any) -> float:
 
 
 def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Keys of an arm, with a load relative to flutter moved to its key in RELATIVE.
+    """Keys and values of an arm; a load like "1.2 of flutter" is moved to a key like `pressure_over_flutter`.
 
-    Raises ValueError if only a part of the load is relative, or if both keys are given.
+    Raises ValueError if only some values of the load are relative, or if both keys are given.
     """
     found = dict(given)
     for name, load in RELATIVE.items():
@@ -80,13 +80,15 @@ def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _shares(value: Any) -> tuple[list[float | None], bool]:
-    """(values of a load divided by the flutter load, or None; whether any value is relative to flutter)."""
+    """(values of a load divided by the flutter load, None for absolute values; whether any value is
+    relative).
+    """
     shares = [None if one is None else share_of_flutter(one) for one in _each(value)]
     return shares, any(share is not None for share in shares)
 
 
 def as_drags(value: Any) -> Axis:
-    """Axis of indices in DRAGS from a drag's name, a list of names, or "range"; ValueError otherwise."""
+    """Axis of indices into DRAGS, from a drag's name, a list of names, or "range"; ValueError otherwise."""
     if isinstance(value, Axis):
         return value
     names = value if isinstance(value, list | tuple) else [value]
@@ -101,18 +103,21 @@ def as_drags(value: Any) -> Axis:
 
 
 def drags_written(values: list[float]) -> list[str]:
-    """Names of drags from their indices in DRAGS, as in a config."""
+    """Names of drag estimates from their indices in DRAGS."""
     return [DRAGS[int(place)] for place in values]
 
 
 def typed_unit(name: str, axis: Axis) -> str:
-    """Unit in which the user typed the first value of a quantity; the SI unit if the user typed none."""
+    """First unit that the user typed for the values of an axis; the SI unit if no unit was typed."""
     units = [split_quantity(value)[1] for value in _each(axis.written) if isinstance(value, str)]
     return next(filter(None, units), UNITS[name][0])
 
 
 def given_text(quantities: Mapping[str, Axis]) -> str:
-    """Sentence with the quantities of an arm in the typed units; names quantities given without a unit."""
+    """Text with names, values and typed units of an arm's quantities, like "length 10 cm, radius 5 mm".
+
+    A remark names the quantities that were given without a unit.
+    """
     words = []
     bare = []
     for name, axis in quantities.items():
@@ -131,14 +136,14 @@ def given_text(quantities: Mapping[str, Axis]) -> str:
 
 
 def _each(written: Any) -> list[Any]:
-    """Values of a quantity as the user wrote them: the numbers of a list, or both ends of a range."""
+    """List of the values that a user wrote for a quantity; start and stop of a range."""
     if isinstance(written, Mapping):
         return [written.get(end) for end in RANGE_ENDS]
     return list(written) if isinstance(written, list | tuple) else [written]
 
 
 def _schema() -> dict[str, Any]:
-    """JSON schema of the values taken by `as_quantities`: an axis whose numbers may be text with a unit."""
+    """JSON schema of the values that `as_quantities` accepts: axes whose numbers may be texts with a unit."""
     each: dict[str, Any] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
     *_, values, span = AXIS_SCHEMA["anyOf"]
     ends = {end: {"description": span["properties"][end]["description"], **each} for end in ("start", "stop")}
@@ -148,7 +153,7 @@ def _schema() -> dict[str, Any]:
 
 
 NAMED_DRAG = {"enum": list(DRAGS)}
-"""JSON schema of the name of one estimate of drag."""
+"""JSON schema of the name of a drag estimate."""
 Quantities = Annotated[Axis, BeforeValidator(as_quantities), WithJsonSchema(_schema())]
 Drags = Annotated[
     Axis,

@@ -57,7 +57,7 @@ class ArmSection(StrictSection):
     """Viscosity of the fluid. The parameters do not depend on the viscosity; times are proportional to the
     viscosity."""
     fluid_density: Annotated[Quantities | None, Allowed] = None
-    """Density of the fluid, by default water's. It decides whether the model applies."""
+    """Density of the fluid, by default water's. The density decides whether the model applies."""
     density_difference: Annotated[Quantities | None, Allowed] = None
     """Density of the arm minus density of the fluid, for whether the model applies. Without it, weight is
     neglected."""
@@ -75,7 +75,7 @@ class ArmSection(StrictSection):
     @model_validator(mode="before")
     @classmethod
     def _with_shares(cls, given: Any) -> Any:
-        """Moves a load relative to flutter to its key in RELATIVE; adds `length`, the sum of the segments."""
+        """Moves a load relative to flutter to its own key, and adds the total length of segments."""
         return with_length(with_relative_load(given)) if isinstance(given, dict) else given
 
     @model_validator(mode="after")
@@ -87,12 +87,12 @@ class ArmSection(StrictSection):
 
     @cached_property
     def build(self) -> Build:
-        """Law and profile of all arms; ValueError where segments have several profiles."""
+        """Constitutive law and profile of all arms; ValueError if a grid of parameters has several."""
         return build_of(self)
 
     @property
     def material(self) -> dict[str, Any]:
-        """The values given for segments, law and section, by key."""
+        """Values of the keys segments, law and section that are given, by key."""
         return {name: getattr(self, name) for name in OF_MATERIAL if getattr(self, name) is not None}
 
     @property
@@ -109,22 +109,25 @@ class ArmSection(StrictSection):
 
     @property
     def load_axis(self) -> str | None:
-        """Name of the key of LOAD_AXES that is given; None without a load."""
+        """Key of the load that is given, absolute or relative to flutter; None without a load."""
         return next((name for name in LOAD_AXES if getattr(self, name) is not None), None)
 
     @property
     def load(self) -> str | None:
-        """Kind of the load, pressure or force, absolute or relative to flutter; None without a load."""
+        """Name of the load, "pressure" or "force", whether absolute or relative; None without a load."""
         return RELATIVE.get(str(self.load_axis), self.load_axis)
 
     @property
     def several(self) -> tuple[str, ...]:
-        """Quantities with several values, or relative to flutter."""
+        """Names of the quantities that have several values or are relative to flutter."""
         return tuple(name for name, axis in self.given.items() if axis.size > 1 or name in RELATIVE)
 
     @property
     def meaning(self) -> dict[str, Any]:
-        """Given quantities in SI units, by name: a value equal at all points, else None; and the material."""
+        """What determines the results besides the points: SI values of quantities by name, and the material.
+
+        The value is None for a quantity that varies between points.
+        """
         varied = AXIS_OF if self.is_grid else self.several
         numbers = {n: None if n in varied else float(axis.array()[0]) for n, axis in self.given.items()}
         return numbers | {name: list(v) if name == "segments" else v for name, v in self.material.items()}
@@ -136,12 +139,12 @@ class ArmSection(StrictSection):
 
     @property
     def given(self) -> dict[str, Axis]:
-        """Given quantities by name, the load last."""
+        """Axes of the given quantities by name, the load last."""
         names = (*ALL_BUT_LOAD, *LOAD_AXES)
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
     def refuse_unfit(self) -> None:
-        """Raises ValueError for a value out of range, or a grid of parameters of arms that no rod covers."""
+        """Raises ValueError for a value out of range, and for a grid of parameters of arms without a rod."""
         for name, axis in self.given.items():
             low = float(axis.array()[0])
             if name in RELATIVE and low < 0:
@@ -152,9 +155,9 @@ class ArmSection(StrictSection):
             self.made(self.firsts, loaded=True)
 
     def refuse_misuse(self, forced: bool, beside: Collection[str]) -> None:
-        """Raises ValueError unless the load is what the task needs, and every axis changes a result.
+        """Raises ValueError unless the load suits the task, and every axis of a quantity changes a parameter.
 
-        forced: whether F is a parameter of the task. beside: parameters given beside the arm.
+        forced: whether F is a parameter of the task. beside: parameters that replace the arm's values.
         """
         loads = ["parameters.F"] if "F" in beside else []
         loads += [f"parameters.arm.{name}" for name in LOAD_AXES if getattr(self, name) is not None]
@@ -174,10 +177,9 @@ class ArmSection(StrictSection):
             raise ValueError("parameters.arm.pressure is missing; give the pressure on the tip or a force")
 
     def grid_axes(self) -> dict[str, Axis]:
-        """Axes of the dimensionless parameters for a grid of parameters, by name; without F if no load is
-        given.
+        """Axes of the dimensionless parameters of a grid of parameters, by name; without F for no load.
 
-        ValueError if the arm is not slender, or if the smallest load crushes it.
+        Raises ValueError if the arm is not slender, or if the smallest load crushes it.
         """
         arm = self.made(self.firsts, loaded=True)
         names = (*all_but("F", NONLINEAR_PARAMETERS), *self.tapering)
@@ -190,7 +192,7 @@ class ArmSection(StrictSection):
         return axes
 
     def grid_quantities(self) -> dict[str, Array]:
-        """Quantities and units in a grid of parameters, of shape (), or along their parameter, (n,)."""
+        """Quantities and units of the arm by name, in a grid of parameters: (), or (n,) along a parameter."""
         values = {name: axis.array() for name, axis in self.given.items()}
         if self.poisson is not None:  # k2 decreases with Poisson's ratio, and axes must increase
             values["poisson"] = values["poisson"][::-1]
@@ -208,12 +210,12 @@ class ArmSection(StrictSection):
         return () if self.tip_radius is None else ("taper",)
 
     def count(self, beside: int) -> int:
-        """Number of points of a grid, given the number of combinations of parameters beside the arm."""
+        """Number of points of a grid; beside: number of combinations of parameters given beside the arm."""
         return int(np.prod([float(axis.size) for axis in self.given.values()])) * beside
 
     @property
     def firsts(self) -> dict[str, float]:
-        """First value of every given quantity, by name."""
+        """First value of every given quantity, in SI units, by name."""
         return {name: float(axis.array()[0]) for name, axis in self.given.items()}
 
     def sections(self) -> Iterator[dict[str, float]]:
@@ -223,11 +225,10 @@ class ArmSection(StrictSection):
             yield dict(zip(names, map(float, values), strict=True))
 
     def made(self, values: Mapping[str, float], loaded: bool = False) -> SlenderArm:
-        """Makes the arm with `values` of its quantities, and with its load if `loaded`.
+        """The arm with these values of its quantities, in SI units by name; ValueError for invalid values.
 
-        A load relative to flutter is omitted.
-
-        Raises ValueError for invalid values, UncoveredArm for an arm to which the rod model does not apply.
+        loaded: whether the arm has its load; a load relative to flutter is left out. Raises UncoveredArm if
+        the rod model does not apply to the arm.
         """
         section: dict[str, Any] = {name: value for name, value in values.items() if name in ALL_BUT_LOAD}
         has_load = loaded and self.load_axis in LOADS

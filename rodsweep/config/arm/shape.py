@@ -1,4 +1,4 @@
-"""Shape and material of an arm in a config: segments, taper, law, and the build, equal at all points."""
+"""Shape and material of an arm in a config: segments, taper, constitutive law, and the resulting `Build`."""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from .section import ArmSection
 
 OF_MATERIAL = ("segments", "law", "section")
-"""Keys of an arm that replace the section `material` of a dimensionless rod."""
+"""Keys of an arm that correspond to the config section `material` of a dimensionless rod."""
 SHAPE_KEYS = ("tip_radius", "segments")
 """Keys of an arm that varies along its length."""
 RUBBER_POISSON = 0.5
-"""Poisson's ratio of incompressible rubber; a swelling section requires this ratio."""
+"""Poisson's ratio of incompressible rubber. A swelling section requires this ratio."""
 
 
 def as_segments(value: Any) -> tuple[str, ...] | None:
-    """Converts the key `segments` to texts, one per segment; ValueError if `value` is no list of segments."""
+    """Texts of the segments in a config value, None for None; ValueError for an invalid list of segments."""
     if value is None:
         return None
     try:
@@ -35,7 +35,7 @@ def as_segments(value: Any) -> tuple[str, ...] | None:
 
 
 def with_length(given: dict[str, Any]) -> dict[str, Any]:
-    """Copy of the keys of an arm; a missing `length` becomes the sum of the lengths of the segments."""
+    """Keys and values of an arm; if `length` is missing, the sum of the segment lengths is added."""
     if given.get("segments") is None or given.get("length") is not None:
         return given
     texts = as_segments(given["segments"]) or ()
@@ -45,7 +45,10 @@ def with_length(given: dict[str, Any]) -> dict[str, Any]:
 
 
 def build_of(arm: "ArmSection") -> Build:
-    """Law of all arms and profile of the first arm with a rod; ValueError if profiles differ in a grid."""
+    """Build with the law of all arms, and the profile of the first arm to which the rod model applies.
+
+    Raises ValueError if arms of a grid of parameters have different profiles.
+    """
     alike = Build(arm.law or STANDARD.law, arm.section or STANDARD.section)
     if all(getattr(arm, name) is None for name in SHAPE_KEYS):
         return alike
@@ -58,14 +61,14 @@ def build_of(arm: "ArmSection") -> Build:
 
 
 def builds_of(arm: "ArmSection") -> Iterator[Build]:
-    """Law and profile of every arm that a rod covers."""
+    """Yields constitutive law and profile of every arm of a section to which the rod model applies."""
     for values in arm.sections():
         with suppress(UncoveredArm):
             yield arm.made(values).build
 
 
 def tapers_of(arm: "ArmSection") -> set[float]:
-    """Distinct ratios of tip radius to base radius of all arms; {1.0} without a tip radius."""
+    """All ratios of tip radius to base radius of the arms of a section; {1.0} without a tip radius."""
     if arm.tip_radius is None or arm.radius is None:
         return {1.0}
     pairs = product(arm.tip_radius.array().tolist(), arm.radius.array().tolist())
@@ -73,8 +76,7 @@ def tapers_of(arm: "ArmSection") -> set[float]:
 
 
 def refuse_misused_shape(arm: "ArmSection", beside: dict[str, Any]) -> None:
-    """Raises ValueError for an axis of a length that segments fix, and for a parameter that must not be given
-    beside a cone or segments.
+    """Raises ValueError for an axis `length` beside segments, and for `taper` beside a cone or segments.
 
     beside: parameters given beside the arm.
     """
@@ -88,8 +90,7 @@ def refuse_misused_shape(arm: "ArmSection", beside: dict[str, Any]) -> None:
 
 
 def refuse_compressible(arm: "ArmSection", section: str) -> None:
-    """Raises ValueError if the section of the material swells but Poisson's ratio is not 0.5, as of
-    rubber."""
+    """Raises ValueError if the section is "swelling" but a Poisson's ratio of the arm is not 0.5."""
     ratios = [] if arm.poisson is None else arm.poisson.array().tolist()
     wrong = next((ratio for ratio in ratios if ratio != RUBBER_POISSON), None)
     if section == "swelling" and wrong is not None:
@@ -126,4 +127,4 @@ Segments = Annotated[
     ),
 ]
 SEGMENTS_ALLOWED = f"a list of segments, each as '{EXAMPLE}' or a mapping of {', '.join(SEGMENT_KEYS)}"
-"""Allowed values of the key `segments`, as a phrase."""
+"""Phrase for messages that describes the allowed values of the key `segments`."""

@@ -14,7 +14,7 @@ R = TypeVar("R")
 
 
 def in_sentences(example: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Decorator: wrong arguments of a call raise InputError, with a correct example, instead of TypeError."""
+    """Decorator that makes wrong arguments of a call raise InputError, with `example`, not TypeError."""
 
     def decorated(function: Callable[P, R]) -> Callable[P, R]:
         asked = signature(function)
@@ -32,7 +32,10 @@ def in_sentences(example: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 def refuse_misfit(
     asked: Signature, example: str, values: tuple[object, ...], named: Mapping[str, object]
 ) -> None:
-    """Raises InputError for the first unknown, repeated, surplus or missing argument of a call."""
+    """Raises InputError for the first unknown, repeated, surplus or missing argument of a call.
+
+    asked: signature of the function. values, named: positional and keyword arguments of the call.
+    """
     ours = list(asked.parameters.values())
     by_place = [p.name for p in ours if p.kind is Parameter.POSITIONAL_OR_KEYWORD]
     if len(values) > len(by_place):
@@ -52,5 +55,5 @@ def refuse_misfit(
 
 
 def unknown(name: str, known: list[str]) -> InputError:
-    """InputError that names an unknown argument and suggests the most similar known argument."""
+    """InputError for an unknown argument `name`, which suggests the most similar of the names `known`."""
     return InputError(f"unknown key {name}; {hint_of(name, known)}")

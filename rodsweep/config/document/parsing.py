@@ -16,19 +16,20 @@ from ...errors import InputError
 from ..values import named, overflows, short
 
 LARGEST_FILE = 100_000
-"""Maximum file size in bytes: about 15,000 numbers, read in a second. Longer lists are CSV files."""
+"""Maximum size of a config file, in bytes: about 15,000 numbers, read in a second. Longer lists of points
+belong into CSV files."""
 MAX_TEXT_LENGTH = 1000
 """Maximum length of a key or value, in characters."""
 HDF5_SIGNATURE = b"\x89HDF"
 """First bytes of an HDF5 file, hence of a result file."""
 TABLE_ENDINGS = (".csv", ".tsv")
-"""File suffixes of lists of points and of tables that `rodsweep export` writes; no config has them."""
+"""Suffixes of files with lists of points, and of the tables that `rodsweep export` writes."""
 MAX_DEPTH = 20
-"""Maximum depth of nested lists and mappings; a deeper document is refused."""
+"""Maximum depth of nested lists and mappings in a config."""
 
 
 def read_text(path: Path) -> str:
-    """Text of a small UTF-8 file; InputError if it cannot be read."""
+    """Text of a UTF-8 file of at most LARGEST_FILE bytes; InputError if the file cannot be read."""
     where = named(path)
     try:
         if path.exists() and not (path.is_file() or path.is_dir()):
@@ -55,7 +56,7 @@ def read_text(path: Path) -> str:
 
 
 def parse(text: str, where: str) -> Any:
-    """Parses YAML to mappings and lists; InputError, beginning with `where`, for forbidden YAML."""
+    """Value of a YAML text, as nested dicts and lists; InputError, beginning with `where`, if not allowed."""
     if any(line.startswith("%") for line in text.splitlines()):
         raise InputError(f"{where}: directives (%...) are not allowed in a config")
     yaml = YAML(typ="safe", pure=True)
@@ -75,7 +76,7 @@ def parse(text: str, where: str) -> Any:
 
 
 class _DataOnly(Parser):
-    """YAML parser that raises InputError for the first event that is not plain data."""
+    """YAML parser that raises InputError for an anchor, an alias, a tag, or too deep nesting."""
 
     depth = 0
 
@@ -98,7 +99,7 @@ class _DataOnly(Parser):
 
 
 def _refuse_scalar(event: ScalarEvent) -> None:
-    """Raises InputError for a scalar that can be neither a key nor a value."""
+    """Raises InputError for a YAML scalar that can be neither a key nor a value of a config."""
     text = event.value
     if len(text) > MAX_TEXT_LENGTH:
         raise InputError(f"{short(text)} has {len(text)} characters, more than any value of a config")

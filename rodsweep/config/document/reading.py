@@ -21,14 +21,18 @@ from ..schema import Config
 from ..tasks import CONFIGS, makes_diagram
 from ..values import Axis, axis_of, named, short
 from .parsing import MAX_DEPTH, parse, read_text
-from .refusals import KEY_SHOWN, dotted, nearest, sentence_of
+from .refusals import MAX_KEY_LENGTH, dotted, nearest, sentence_of
 
 LONGEST_HEADER = 10_000
-"""Largest number of characters of a header. The reader of points refuses a file with a longer first line."""
+"""Maximum number of characters of a CSV file's header. `read_points` refuses a file with a longer first
+line."""
 
 
 def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, str]:
-    """(config, its YAML text with the overrides listed); raises InputError for any error in the file."""
+    """(config, its YAML text); raises InputError for any error in the file.
+
+    overrides: texts "a.b=value" of --set, which change keys; the YAML text lists them as comments.
+    """
     text = read_text(path)
     where = named(path)
     tree = parse(text, where)
@@ -45,7 +49,7 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
 
 
 def validated(tree: dict[str, Any]) -> Config:
-    """Config of a tree of keys and values; InputError for the first error."""
+    """Config from nested dicts of keys and values; InputError for the first error."""
     config = CONFIGS[_task(tree)]
     try:
         return config.model_validate(tree)
@@ -56,7 +60,7 @@ def validated(tree: dict[str, Any]) -> Config:
 
 
 def canonical(config: Config) -> dict[str, Any]:
-    """Resolved config: all keys, defaults and parameter axes as JSON-compatible values; inf becomes "inf"."""
+    """The resolved config: with all defaults and axes of parameters, as JSON values; inf becomes "inf"."""
     tree = config.model_dump(mode="json", exclude_none=True)
     if config.parameters.arm is not None:
         tree["parameters"] |= {name: axis.resolved for name, axis in config.parameters.axes.items()}
@@ -64,7 +68,7 @@ def canonical(config: Config) -> dict[str, Any]:
 
 
 def config_of(resolved: dict[str, Any]) -> Config:
-    """Inverse of `canonical`; ValueError if this version does not accept the config `resolved`."""
+    """The config from a resolved config, which `canonical` returned; ValueError if it is invalid now."""
     try:
         task = resolved["task"]
         section: Any = CONFIGS[task].model_fields[task].annotation
@@ -85,7 +89,7 @@ def config_of(resolved: dict[str, Any]) -> Config:
 
 
 def _axes_of(section: dict[str, Any]) -> dict[str, Any]:
-    """Keys of a resolved section; converts the values of axes to `Axis`."""
+    """Keys and values of a section of a resolved config, with axes as `Axis` objects."""
     return {
         name: axis_of(value) if name != "arm" and isinstance(value, dict) else value
         for name, value in section.items()
@@ -93,7 +97,10 @@ def _axes_of(section: dict[str, Any]) -> dict[str, Any]:
 
 
 def _without_those_of_the_arm(parameters: dict[str, Any], in_diagram: bool) -> dict[str, Any]:
-    """Removes the axes that `canonical` made from an arm; in_diagram: whether the task is phase_diagram."""
+    """Keys and values of `parameters` without the axes that `canonical` added from the arm.
+
+    in_diagram: whether the task is phase_diagram.
+    """
     arm = ArmSection.model_validate(parameters["arm"])
     made = arm.grid_axes() if in_diagram or arm.is_grid else {}
     return {
@@ -104,7 +111,7 @@ def _without_those_of_the_arm(parameters: dict[str, Any], in_diagram: bool) -> d
 
 
 def yaml_of(tree: dict[str, Any]) -> str:
-    """YAML text of a config file with the keys and values `tree`."""
+    """YAML text of a config file from nested dicts of keys and values."""
     text = StringIO()
     yaml = YAML()
     yaml.default_flow_style = None  # lists of numbers on one line
@@ -113,7 +120,7 @@ def yaml_of(tree: dict[str, Any]) -> str:
 
 
 def text_of(config: Config) -> str:
-    """YAML text of a config: only keys that differ from defaults, axes in the user's notation."""
+    """YAML text of a config, with only the keys that differ from their defaults."""
     given = config.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
     axes = {name: _written(value) for name, value in given["parameters"].items()}
     options = {
@@ -125,7 +132,7 @@ def text_of(config: Config) -> str:
 
 
 def _written(axis: Any) -> Any:
-    """Value of a resolved axis or arm section in the user's notation: a number, a list or a range."""
+    """The notation of a config file, a number, a list or a range, for a resolved axis or an arm's axes."""
     if not isinstance(axis, dict):
         return axis
     if "length" in axis:
@@ -136,8 +143,8 @@ def _written(axis: Any) -> Any:
 
 
 def _override(tree: dict, override: str) -> None:
-    """Applies one `--set a.b=value` to the parsed tree; the value is YAML."""
-    where = named(f"--set {override}", KEY_SHOWN)
+    """Sets, in place, the key in the parsed config `tree` that one "--set a.b=value" names; value: YAML."""
+    where = named(f"--set {override}", MAX_KEY_LENGTH)
     if not override.isprintable():
         raise InputError(f"{where} has characters that cannot be printed")
     key, equals, value = override.partition("=")
@@ -159,7 +166,7 @@ def _override(tree: dict, override: str) -> None:
 
 
 def _task(tree: dict) -> str:
-    """Name of the task in a config; InputError for an unknown task or the section of another task."""
+    """Name of the task of a parsed config; InputError for an unknown task or a section of another task."""
     known = words(tuple(CONFIGS), "or")
     if "task" not in tree:
         others = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]
@@ -179,8 +186,7 @@ def _task(tree: dict) -> str:
 
 
 def with_files_read(tree: Any, directory: Path) -> Any:
-    """A config's tree, with the columns of the profile's file, and with the names of columns of the list of
-    points if omitted.
+    """A parsed config, with the profile from its file, and `parameters.columns` from the header of the list.
 
     directory: folder of relative file names. Raises InputError for a profile that is no table of numbers.
     """
@@ -188,7 +194,7 @@ def with_files_read(tree: Any, directory: Path) -> Any:
 
 
 def _with_columns(tree: Any, directory: Path) -> Any:
-    """The tree with `parameters.columns`, if the file of points has columns beside those of every list."""
+    """A parsed config, with `parameters.columns` added if the file of points has optional parameters."""
     parameters = tree.get("parameters") if isinstance(tree, dict) else None
     if not isinstance(parameters, dict) or not isinstance(parameters.get("points"), str):
         return tree
@@ -200,7 +206,7 @@ def _with_columns(tree: Any, directory: Path) -> Any:
 
 
 def _header(path: Path) -> list[str]:
-    """Names in the first line of a CSV file; empty without a header, which the reader of points refuses."""
+    """Names in the first line of a CSV file; empty for an unreadable file, which `read_points` refuses."""
     try:
         if not path.is_file():
             return []

@@ -1,4 +1,4 @@
-"""Error messages of a config, a sentence each: the key, the value, what is allowed, the likely meaning."""
+"""Error messages of a config: each a sentence with the key, the value, and what is allowed or was meant."""
 
 from collections.abc import Sequence
 from math import isinf
@@ -13,18 +13,18 @@ from ..axes import words
 from ..schema import Config
 from ..values import named, short
 
-KEY_SHOWN = 100
-"""Maximum length of a key in a message, in characters."""
+MAX_KEY_LENGTH = 100
+"""Maximum number of characters of a key in a message; longer keys are shortened."""
 LETTERS_PER_TYPING_ERROR = 3
-"""Minimum number of letters per typing error for two keys to be similar: one error in three letters."""
+"""Minimum number of letters of a key per typing error; with more typing errors, no known key is suggested."""
 MAX_SUGGESTIONS = 4
-"""Maximum number of suggested keys. If more are equally similar, the message lists all known keys."""
-MIN_PART_LETTERS = 4
-"""Minimum number of letters of a part that suggests a key, such as `density` for `fluid_density`."""
+"""Maximum number of suggested keys. If more keys are equally similar, all known keys are listed instead."""
+MIN_SUBSTRING_LENGTH = 4
+"""Minimum number of letters of a substring that identifies a key, such as `density` for `fluid_density`."""
 
 
 def sentence_of(config: type[Config], problem: Any) -> str:
-    """A pydantic error as a sentence with the key, the value, and the allowed values."""
+    """Message for one error `problem` of pydantic: a sentence with key, value and allowed values."""
     location = tuple(str(part) for part in problem["loc"])
     key = dotted(location)
     kind = problem["type"]
@@ -32,7 +32,7 @@ def sentence_of(config: type[Config], problem: Any) -> str:
     if kind == "extra_forbidden":
         fields = _section(config, location[:-1]).model_fields
         known = [*(n for n in PARAMETERS if n in fields), *(n for n in fields if n not in PARAMETERS)]
-        elsewhere = places_of(config, location)
+        elsewhere = full_names_of(config, location)
         hint = f"did you mean {elsewhere[0]}?" if elsewhere else hint_of(location[-1], known)
         return f"unknown key {key}; {hint}"
     if kind == "missing":
@@ -49,16 +49,17 @@ def sentence_of(config: type[Config], problem: Any) -> str:
 
 
 def hint_of(key: str, known: Sequence[str], there_are: str = "known keys are") -> str:
-    """Hint for a message about an unknown key: the most similar known keys, or else all known keys."""
+    """Hint for an unknown key: "did you mean ...?" with similar known keys, or a list of all known keys."""
     close = nearest(key, known)
     return f"did you mean {words(tuple(close), 'or')}?" if close else f"{there_are} {', '.join(known)}"
 
 
 def nearest(key: str, known: Sequence[str]) -> list[str]:
-    """Known keys most similar to an unknown key, in the order of `known`; empty if no key is similar.
+    """The known keys that are most similar to an unknown key, in the given order; empty if no key is similar.
 
     A known key is similar if the unknown key differs only in capitals and underscores, is the beginning or a
-    long part of the known key, or has at most one typing error in three letters.
+    substring of MIN_SUBSTRING_LENGTH or more letters of the known key, or has at most one typing error
+    in three letters.
     """
     near = [(slips, name) for name in known if (slips := _slips(_plain(key), _plain(name))) is not None]
     least = min((slips for slips, _ in near), default=0)
@@ -71,10 +72,10 @@ def _plain(key: str) -> str:
 
 
 def _slips(key: str, name: str) -> float | None:
-    """Number of typing errors that turn `name` into `key`; 0.5 if `key` is a part; None if not similar."""
+    """Number of typing errors between a key and a name, 0.5 for a substring; None for dissimilar words."""
     if key == name:
         return 0
-    if name.startswith(key) or (len(key) >= MIN_PART_LETTERS and key in name):
+    if name.startswith(key) or (len(key) >= MIN_SUBSTRING_LENGTH and key in name):
         return 0.5
     longest = max(len(key), len(name))
     if LETTERS_PER_TYPING_ERROR * abs(len(key) - len(name)) > longest:  # the edit distance is no smaller
@@ -84,7 +85,7 @@ def _slips(key: str, name: str) -> float | None:
 
 
 def _edits(a: str, b: str) -> int:
-    """Edit distance: letters inserted, deleted, changed or exchanged with the next to turn a into b."""
+    """Edit distance of two words: insertions, deletions, changes and exchanges of neighbouring letters."""
     rows = [list(range(len(b) + 1))]
     for i, letter in enumerate(a, 1):
         row = [i]
@@ -97,8 +98,8 @@ def _edits(a: str, b: str) -> int:
     return rows[-1][-1]
 
 
-def places_of(config: type[Config], location: Sequence[str]) -> list[str]:
-    """Full names of known keys of other sections with the same last name as the unknown key `location`."""
+def full_names_of(config: type[Config], location: Sequence[str]) -> list[str]:
+    """Full names, like "parameters.F", of keys in other sections with the name of an unknown key."""
     task = str(get_args(config.model_fields["task"].annotation)[0])
     found = []
     for section in ((), ("parameters",), (task,), ("material",), ("parameters", "arm")):
@@ -108,12 +109,12 @@ def places_of(config: type[Config], location: Sequence[str]) -> list[str]:
 
 
 def dotted(location: Sequence[str]) -> str:
-    """Full name of a key in the notation of --set, like "parameters.arm.length"."""
-    return named(".".join(location), KEY_SHOWN)
+    """Full name of a key, like "parameters.F.num", from the names of its sections and its own name."""
+    return named(".".join(location), MAX_KEY_LENGTH)
 
 
 def _section(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]:
-    """Class of the innermost section of a config on the path `location`, a tuple of key names."""
+    """Class of the config's section that is reached through the keys in `location`."""
     section: type[BaseModel] = config
     for name in location:
         kind = model_of(section.model_fields[name])
@@ -124,13 +125,13 @@ def _section(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]
 
 
 def model_of(field: FieldInfo) -> Any:
-    """Type of the values of a key; an optional key has its type without None."""
+    """Type of the values of a config key, without the None of a key that may be missing."""
     kinds = [kind for kind in get_args(field.annotation) if kind is not NoneType]
     return kinds[0] if get_origin(field.annotation) is UnionType and len(kinds) == 1 else field.annotation
 
 
 def what_is_allowed(field: FieldInfo) -> str:
-    """Allowed values of a key as a phrase, from its type and bounds."""
+    """Phrase that describes the allowed values of a config key, from its type and bounds."""
     kind = field.annotation
     bounds = ("ge", "gt", "le", "lt", "max_length")
     bound = {name: getattr(part, name) for part in field.metadata for name in bounds if hasattr(part, name)}

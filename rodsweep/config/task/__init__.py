@@ -1,1 +1,1 @@
-"""Config class of each task."""
+"""Config classes, one module per task."""

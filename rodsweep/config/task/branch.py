@@ -18,11 +18,12 @@ from ..schema import Config
 from ..values import Number, StrictSection
 
 CONTINUATION_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
-"""Parameters along which branches can be followed: those on which Hopf points depend, so not gamma1."""
+"""Names of the parameters along which branches of cycles can be followed. gamma1 is not included, because
+Hopf points do not depend on it."""
 
 
 class BranchOptions(StrictSection):
-    """Parameter and range of the branches, and the number of cycles and special points that are stored."""
+    """Options of the task branch: parameter and range of the branches, number of stored cycles."""
 
     along: Literal[CONTINUATION_PARAMETERS] = "F"  # type: ignore[valid-type]  # pydantic reads it at run time
     """Parameter along which branches are followed. All other parameters are axes."""
@@ -52,9 +53,7 @@ class BranchOptions(StrictSection):
 
 
 class BranchConfig(Config):
-    """Cycles, stable or not, followed through folds from every Hopf point of a rod to the ends of their
-    branches.
-    """
+    """The task branch follows limit cycles, stable or not, through folds, from every Hopf point of a rod."""
 
     task: Literal["branch"]
     parameters: NonlinearParameters

@@ -13,7 +13,7 @@ from ..values import Number, StrictSection
 
 
 class CriticalityOptions(StrictSection):
-    """Range of the search, and the number of Hopf points that are stored."""
+    """Options of the task criticality: range of the search for Hopf points, and number of stored points."""
 
     F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0
     """Largest force of the search for Hopf points, which ends just below the force that crushes the rod."""
@@ -24,7 +24,9 @@ class CriticalityOptions(StrictSection):
 
 
 class CriticalityConfig(Config):
-    """Criticality of every Hopf point of a rod, and how amplitude and frequency of its cycles grow."""
+    """The task criticality computes the normal form of every Hopf point of a rod: criticality, and
+    how amplitude and frequency of the cycles grow.
+    """
 
     task: Literal["criticality"]
     parameters: NonlinearParameters

@@ -15,7 +15,7 @@ ChainParameter = Literal[(*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS, *AXIS_OF,
 
 
 class LimitCycleOptions(StrictSection):
-    """Start of each point, limits of the computation, and stored data of the cycle."""
+    """Options of the task limit_cycle: initial guess, limits of the computation, stored data of a cycle."""
 
     method: Literal["collocation", "integration"] = "collocation"
     """Cycles by collocation in time, with multipliers, or by time integration alone, without multipliers."""
@@ -45,7 +45,7 @@ class LimitCycleOptions(StrictSection):
 
 
 class LimitCycleConfig(Config):
-    """The limit cycle of the nonlinear rod at every point, or the fact that the rod has no limit cycle."""
+    """The task limit_cycle computes the limit cycle of the nonlinear rod at every point, or finds none."""
 
     task: Literal["limit_cycle"]
     parameters: NonlinearParameters
@@ -58,8 +58,9 @@ class LimitCycleConfig(Config):
 
     @property
     def along(self) -> str:
-        """Parameter along which each point starts from the previous point's cycle: by default the first
-        parameter with most values.
+        """Parameter along which the cycle of a point is the initial guess for the next point.
+
+        By default the first of the parameters with most values.
         """
         sizes = self.parameters.alone
         given = self.limit_cycle.along

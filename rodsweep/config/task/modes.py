@@ -1,4 +1,4 @@
-"""Config of the task modes."""
+"""Config of the task modes: leading modes of the straight rod, their adjoints, and transient growth."""
 
 from typing import Literal
 
@@ -9,7 +9,7 @@ from ..values import StrictSection
 
 
 class ModesOptions(StrictSection):
-    """Options of the task modes: modes per point, nodes per mode, and whether to compute transient growth."""
+    """Options of the task modes: number of modes at each point, number of nodes, and transient growth."""
 
     modes: Modes = 2
     """Number of leading modes at each point."""
@@ -22,8 +22,8 @@ class ModesOptions(StrictSection):
 
 
 class ModesConfig(LinearConfig):
-    """The leading modes at every point, with their adjoints and the transient growth of the non-normal
-    operator.
+    """The task modes computes the leading modes at every point, their adjoint modes, and the
+    transient growth of the non-normal operator.
     """
 
     task: Literal["modes"]

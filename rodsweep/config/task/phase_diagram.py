@@ -1,4 +1,5 @@
-"""Config of the task phase_diagram."""
+"""Config of the task phase_diagram: states of the rod over two parameters, and the boundaries between
+them."""
 
 from math import inf
 from typing import Annotated, Any, ClassVar, Literal
@@ -17,11 +18,13 @@ THIRD_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 
 
 class BautinAlong(LinearAxes):
-    """A parameter with values, over which generalised Hopf points are followed."""
+    """The option bautin_along: a third parameter with values, over which generalised Hopf points are
+    followed.
+    """
 
 
 class PhaseDiagramOptions(StrictSection):
-    """Options for the rows of a phase diagram and for the curves between them."""
+    """Options of the task phase_diagram, for its rows and for the boundary curves through the rows."""
 
     crossings: Crossings = 16
     """Maximum number of stored crossings per row."""
@@ -44,7 +47,9 @@ class PhaseDiagramOptions(StrictSection):
 
     @property
     def third(self) -> tuple[str, Axis] | None:
-        """The third parameter and its values, None if not given."""
+        """(name, values) of the parameter in `bautin_along`, the third besides the diagram's two; None
+        without.
+        """
         given = [(name, getattr(self.bautin_along, name, None)) for name in THIRD_PARAMETERS]
         return next(((name, axis) for name, axis in given if axis is not None), None)
 
@@ -69,7 +74,9 @@ class PhaseDiagramOptions(StrictSection):
 
 
 class PhaseDiagramConfig(LinearConfig):
-    """States of the rod over two parameters, row by row; a row is a line in the first parameter."""
+    """The task phase_diagram finds the states of the rod over two parameters, row by row; the first parameter
+    varies along a row.
+    """
 
     task: Literal["phase_diagram"]
     parameters: DiagramParameters
@@ -81,8 +88,9 @@ class PhaseDiagramConfig(LinearConfig):
 
     @property
     def plane(self) -> tuple[str, ...]:
-        """(line axis, row axis): the parameters with more than one value, in the order of
-        LINEAR_PARAMETERS and OPTIONAL_PARAMETERS.
+        """(parameter along a row, parameter across rows): names of the parameters with several values.
+
+        They are in the order of LINEAR_PARAMETERS and OPTIONAL_PARAMETERS.
         """
         return tuple(name for name, axis in self.parameters.axes.items() if axis.size > 1)
 
@@ -92,7 +100,7 @@ class PhaseDiagramConfig(LinearConfig):
 
     @property
     def gamma1(self) -> float:
-        """The axial drag of criticality and cycles: the given value, the arm's, or the default."""
+        """Axial drag for criticality and cycles: the given value, else the arm's, else the default."""
         if "gamma1" in self.parameters.numbers:
             return self.parameters.numbers["gamma1"]
         if self.parameters.arm is not None:
@@ -105,7 +113,7 @@ class PhaseDiagramConfig(LinearConfig):
 
     @property
     def meaning(self) -> dict[str, Any]:
-        """Adds the values along every row and, if curves are drawn, which axes are logarithmic."""
+        """`Config.meaning` with the values along a row and, for boundary curves, the logarithmic axes."""
         meant = super().meaning
         axes = self.parameters.axes
         line = self.plane[0]

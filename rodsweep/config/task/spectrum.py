@@ -1,4 +1,4 @@
-"""Config of the task spectrum."""
+"""Config of the task spectrum: leading eigenvalues of the straight rod at every point."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar, Literal
@@ -11,7 +11,7 @@ from ..values import StrictSection
 
 
 class SpectrumOptions(StrictSection):
-    """Number of eigenvalues at each point, the method, and stored data of their modes."""
+    """Options of the task spectrum: number of eigenvalues at each point, method, and stored eigenvectors."""
 
     modes: Modes = 4
     """Number of leading eigenvalues at each point."""
@@ -30,7 +30,7 @@ class SpectrumOptions(StrictSection):
 
 
 class SpectrumConfig(LinearConfig):
-    """The leading eigenvalues at every point."""
+    """The task spectrum computes the leading eigenvalues of the straight rod at every point."""
 
     task: Literal["spectrum"]
     spectrum: SpectrumOptions = SpectrumOptions()
@@ -50,12 +50,12 @@ class SpectrumConfig(LinearConfig):
 
     @property
     def certifies(self) -> bool:
-        """Whether the winding number of D must prove that no mode is missing."""
+        """Whether the winding number of D must prove that no leading eigenvalue is missing."""
         return self.spectrum.certify and self.spectrum.method == "determinant"
 
     @property
     def follows(self) -> bool:
-        """Whether eigenvalues are followed along an axis: without vectors, and with a count of misses."""
+        """Whether eigenvalues are followed along an axis: for certified spectra of a grid without vectors."""
         return self.spectrum.follow and self._could_follow
 
     @property

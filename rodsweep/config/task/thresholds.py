@@ -1,4 +1,4 @@
-"""Config of the task thresholds."""
+"""Config of the task thresholds: forces at which the stability of the straight rod changes."""
 
 from collections.abc import Mapping
 from math import inf
@@ -12,7 +12,7 @@ from ..values import Number, StrictSection
 
 
 class ThresholdsOptions(StrictSection):
-    """Range of the search, and the number of crossings that are stored."""
+    """Options of the task thresholds: range of the search for crossings, and number of stored crossings."""
 
     F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0
     """Largest force of the search. If the arm is crushed at a smaller force (k1 for a uniform rod of linear
@@ -24,7 +24,7 @@ class ThresholdsOptions(StrictSection):
 
 
 class ThresholdsConfig(LinearConfig):
-    """Forces at which the number or kind of the unstable eigenvalues of a rod changes."""
+    """The task thresholds finds the forces at which number or kind of a rod's unstable eigenvalues change."""
 
     task: Literal["thresholds"]
     thresholds: ThresholdsOptions = ThresholdsOptions()

@@ -12,7 +12,7 @@ from math import ceil, sqrt
 import numpy as np
 
 from ...arrays import Array
-from ...model.adjoint import slaving_layer
+from ...model.adjoint import tip_layer_factor
 from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
 from ..elements.quadrature import gauss, gauss_lobatto
@@ -45,7 +45,7 @@ def tip_layer_ratio(rod: Rod) -> float:
     if rod.rotational_drag > 0 or rod.c2 == 0:
         return 0.0
     if rod.standard:
-        return slaving_layer(rod)
+        return tip_layer_factor(rod)
     edges = _edges(rod)
     x, _ = gauss_lobatto(TIP_LAYER_ORDER)
     points, weights = gauss(TIP_LAYER_ORDER + 2)

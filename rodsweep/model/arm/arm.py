@@ -17,7 +17,7 @@ from ..parameters import PARAMETERS
 from ..units import Given, share_of_flutter
 from .drag import DRAGS, Drag
 from .quantities import LOADS, UNITS, number_in_si, quoted
-from .refusals import refuse_crushed, refuse_other_sets, refuse_out_of_range, refuse_words
+from .refusals import refuse_crushed, refuse_out_of_range, refuse_words, refuse_wrong_combinations
 from .section import Circle, Rectangle, Section, Tube
 from .segments import ArmSegment, segment_texts, segments_of
 from .shape import Shape, Station, cone, in_segments
@@ -27,14 +27,14 @@ from .shape import Shape, Station, cone, in_segments
 class SlenderArm:
     """An arm in a viscous fluid, clamped at the base, with a pressure or a follower force on its tip.
 
-    Section: a radius, or width and height (the height lies in the plane of motion), or segments from the base
-    to the tip, each like "4 cm: radius 6 mm, young 80 kPa". `young` is the modulus of the arm and of segments
-    that state no modulus. tip_radius: tip radius of a solid cone. inner_radius: radius of a tube's bore;
-    the bore is closed at the tip and filled with the surrounding fluid at ambient pressure.
-    law, section: a key of `rodsweep.model.material.laws.LAWS`. Load: pressure, force, or neither; positive
-    loads push towards the base; "1.2 of flutter" multiplies the flutter threshold. density_difference:
-    density of the arm's material minus density of the fluid. drag: a name in DRAGS, the estimate of drag that
-    the rod has. Raises InputError, naming the quantity.
+    Cross-section: a radius, or width and height (the height lies in the plane of motion), or segments from
+    the base to the tip, each like "4 cm: radius 6 mm, young 80 kPa". `young` is the modulus of the arm and of
+    segments that state no modulus. tip_radius: tip radius of a solid cone. inner_radius: radius of a tube's
+    bore; the bore is closed at the tip and filled with the surrounding fluid at ambient pressure.
+    (law, section): a key of `rodsweep.model.material.laws.LAWS`. Load: pressure, force, or neither; positive
+    loads push towards the base; "1.2 of flutter" is a multiple of the flutter threshold. density_difference:
+    density of the arm's material minus density of the fluid. drag: name in DRAGS of the drag estimate that
+    the rod uses. Raises InputError, naming the quantity.
     """
 
     length: Given | None = None
@@ -57,7 +57,7 @@ class SlenderArm:
     si: SimpleNamespace = field(init=False, repr=False, compare=False)
     """Each quantity of UNITS as a number in SI units; nan for a quantity that is not given."""
     pieces: tuple[ArmSegment, ...] = field(init=False, repr=False, compare=False)
-    """Segments of the arm in SI units, from the base; empty for an arm without segments."""
+    """The segments of the arm in SI units; empty for an arm without segments."""
 
     def __post_init__(self) -> None:
         """Converts quantities to SI. Raises InputError for invalid quantities, NotSlender for a short arm."""
@@ -67,23 +67,23 @@ class SlenderArm:
         object.__setattr__(self, "segments", texts)
         object.__setattr__(self, "pieces", segments_of(texts or ()))
         refuse_words(self)
-        refuse_other_sets(self)
+        refuse_wrong_combinations(self)
         self.si.length = self.shape.length
         self.si.young = self.shape.base.young
         refuse_out_of_range(self)
         refuse_crushed(self)
 
     def parameter(self, name: str) -> float:
-        """Value of a rod parameter; the neutral value of the table if an arm does not determine it."""
+        """Value of the rod parameter `name`; its neutral value if an arm does not determine the parameter."""
         return float(getattr(self, name, PARAMETERS[name].neutral))
 
     def quoted(self, name: str) -> str:
-        """A quantity in the user's notation, like "length = '10 cm'", for messages."""
+        """Name and value of a quantity as the user wrote it, like "length = '10 cm'", for messages."""
         return quoted(name, getattr(self, name))
 
     @cached_property
     def shape(self) -> Shape:
-        """Cross-sections and Young's moduli along the arm, in SI units."""
+        """Cross-sections and Young's moduli along the arm."""
         if self.pieces:
             own = self.si.young
             return in_segments([(L, each, own if E is None else E) for L, each, E in self.pieces])
@@ -101,7 +101,7 @@ class SlenderArm:
 
     @property
     def cross_section(self) -> Section:
-        """The cross section at the base."""
+        """The cross-section at the base."""
         return self.shape.base.section
 
     @property
@@ -111,16 +111,16 @@ class SlenderArm:
 
     @property
     def taper(self) -> float:
-        """Tip radius over base radius."""
+        """Tip radius over base radius of a cone; 1 for other arms."""
         return self.shape.taper
 
     def build_with(self, drag: Drag) -> Build:
-        """Law and profile of the arm as a rod, with the drag `drag`, an element of `drags`."""
+        """Constitutive law and profile of the arm as a rod, for the drag estimate `drag`, one of `drags`."""
         return Build(self.law, self.section, self.shape.profile(self.poisson, self.drags.index(drag)))
 
     @cached_property
     def build(self) -> Build:
-        """Law and profile of the arm as a rod, with the drag `own_drag`."""
+        """Constitutive law and profile of the arm as a rod, for the drag estimate `own_drag`."""
         return self.build_with(self.own_drag)
 
     @property
@@ -130,8 +130,8 @@ class SlenderArm:
 
     @property
     def crushing_force(self) -> float:
-        """Follower force that crushes the weakest section, in k3/L^2; inf if no force crushes it."""
-        return self.build.crushing_share(self.taper) * self.k1
+        """Follower force that crushes the weakest cross-section, in k3/L^2; inf if no force crushes it."""
+        return self.build.relative_crushing_force(self.taper) * self.k1
 
     @property
     def load(self) -> str | None:
@@ -140,11 +140,11 @@ class SlenderArm:
 
     @property
     def share_of_flutter(self) -> float | None:
-        """Load divided by the flutter load; None unless the user gave the load relative to flutter."""
+        """Load divided by the flutter load; None for an absolute load and for an arm without load."""
         return None if self.load is None else share_of_flutter(getattr(self, self.load))
 
     def mass_at(self, station: Station) -> float:
-        """Mass per length at a station, in kg/m: material plus fluid in the bore.
+        """Mass per length at the cross-section `station`, in kg/m: material plus fluid in the bore.
 
         Without a `density_difference` the material is as dense as the fluid.
         """
@@ -157,7 +157,7 @@ class SlenderArm:
     def tip_force(self) -> float:
         """Follower force at the tip, in N: pressure times face area, p A, or the given force (Sec. IV).
 
-        Raises InputError for an arm without load and for a load relative to flutter, as `F` does.
+        Raises InputError for an arm without load and for a load relative to flutter.
         """
         if self.load is None:
             raise InputError("pressure is missing; give the pressure on the tip's cross section, or a force")
@@ -177,7 +177,7 @@ class SlenderArm:
 
     @property
     def load_scale(self) -> float:
-        """The load that makes F = 1: a force in N if the arm has a force, otherwise a pressure in Pa."""
+        """The load at which F = 1: a force in N if the arm's load is a force, otherwise a pressure in Pa."""
         return self.force_scale if self.load == "force" else self.pressure_scale
 
     @property
@@ -207,43 +207,43 @@ class SlenderArm:
 
     @cached_property
     def drags(self) -> tuple[Drag, ...]:
-        """Drags at the base, in the order of DRAGS: the likeliest, then the corners of the range."""
+        """Estimates of the drag at the base, in the order of DRAGS."""
         return self.shape.drags(self.shape.base, self.si.viscosity)
 
     def drags_along(self, drag: Drag) -> tuple[Drag, ...]:
-        """Drag at every station of the shape, for the estimate whose drag at the base is `drag`."""
+        """Drag at every station of `shape`; `drag`, one of `drags`, is the estimate at the base."""
         place = self.drags.index(drag)
         return tuple(self.shape.drags(each, self.si.viscosity)[place] for each in self.shape.stations)
 
     @property
     def own_drag(self) -> Drag:
-        """Drag at the base that the arm has as a rod: the element of `drags` named `drag`."""
+        """Drag at the base that the arm has as a rod: the estimate named by the field `drag`."""
         return self.drags[DRAGS.index(self.drag)]
 
     def gamma3_with(self, drag: Drag) -> float:
-        """Dimensionless rotational drag gamma3/(gamma2 L^2) with the drag `drag` (Sec. VI)."""
+        """Dimensionless rotational drag gamma3/(gamma2 L^2) for the drag estimate `drag` (Sec. VI)."""
         return drag.rotational / (drag.across * self.si.length**2)
 
     def tau2_with(self, drag: Drag) -> float:
-        """Unit of time tau2 = gamma2 L^4/k3 with the drag `drag`, in s (Sec. VI)."""
+        """Unit of time gamma2 L^4/k3 for the drag estimate `drag`, in s (Sec. VI)."""
         return drag.gamma2 * self.si.length**4 / self.bending_stiffness
 
     @property
     def gamma3(self) -> float:
-        """Dimensionless rotational drag gamma3/(gamma2 L^2) of `own_drag` (Sec. VI)."""
+        """Dimensionless rotational drag gamma3/(gamma2 L^2) at the base (Sec. VI)."""
         return self.gamma3_with(self.own_drag)
 
     @property
     def gamma1(self) -> float:
-        """Ratio of axial to normal drag, gamma1/gamma2, of `own_drag` (Sec. VI)."""
+        """Dimensionless axial drag gamma1/gamma2 at the base (Sec. VI)."""
         return self.own_drag.axial / self.own_drag.across
 
     @property
     def tau2(self) -> float:
-        """Longest time scale tau2 = gamma2 L^4/k3 of the arm, in s; the unit of time (Sec. VI)."""
+        """Longest time scale of the arm, gamma2 L^4/k3, in s (Sec. VI)."""
         return self.tau2_with(self.own_drag)
 
     @property
     def tau1(self) -> float:
-        """Shortest time scale tau1 = gamma3/k2, with dimensional gamma3 and k2, in s (Sec. VI)."""
+        """Shortest time scale of the arm, gamma3/k2 with both in SI units, in s (Sec. VI)."""
         return self.tau2 * self.gamma3 / self.k2

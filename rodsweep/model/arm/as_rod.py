@@ -1,5 +1,4 @@
-"""Converts an arm in SI units to config keys of a dimensionless rod: the sections `parameters` and
-`material`."""
+"""An arm in SI units as a dimensionless rod: values of the parameters, and keys of the section `material`."""
 
 from typing import Any
 
@@ -10,7 +9,7 @@ from .arm import SlenderArm
 
 
 def parameters_of(arm: SlenderArm) -> dict[str, float]:
-    """Dimensionless parameters of the rod that describes an arm, by name; without F if the arm has no load.
+    """Dimensionless parameters of the rod that represents `arm`, by name; without F for an arm without load.
 
     Raises InputError for a load relative to flutter, which needs a solve.
     """
@@ -20,7 +19,10 @@ def parameters_of(arm: SlenderArm) -> dict[str, float]:
 
 
 def material_of(arm: SlenderArm) -> dict[str, Any]:
-    """Keys law, section and profile of the config section `material`; omits keys with default values."""
+    """Keys and values of the config section `material` for `arm`, without keys at their defaults.
+
+    Possible keys are law, section and profile.
+    """
     build = arm.build
     words = {"law": (build.law, STANDARD.law), "section": (build.section, STANDARD.section)}
     material: dict[str, Any] = {name: own for name, (own, default) in words.items() if own != default}

@@ -9,24 +9,24 @@ from dataclasses import dataclass
 from math import log, pi
 
 LEAST_SLENDERNESS = 10.0
-"""Minimum ratio of length to radius. Slender-body theory is meaningless for shorter arms, which are refused.
-"""
+"""Smallest length of an arm divided by its radius. A less slender arm is refused, since the logarithms of
+slender-body theory are meaningless for it."""
 
 
 DRAGS = ("likeliest", "least", "most_rotational", "most_translational", "most")
-"""Names of the estimates in `range_of_drag`, in order: the likeliest, then the corners of the range. `least`
-has the least translational and rotational drag, `most` the most; `most_rotational` combines the most
-rotational with the least translational drag, `most_translational` the reverse."""
+"""Names of the drag estimates in the order of `range_of_drag`: the likeliest, then the corners of the range.
+`least` has the smallest translational and rotational drag, `most` the largest; `most_rotational` combines the
+largest rotational with the smallest translational drag, `most_translational` the reverse."""
 RANGE_OF_DRAG = "range"
 """Value of the config key `drag` that stands for all estimates in DRAGS."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drag:
-    """Drag of an arm per length, stored as viscosity times geometric factors.
+    """Drag coefficients of an arm per length, stored as viscosity times geometric factors.
 
-    viscosity: in Pa s. axial, across: factors along and across the axis, dimensionless. rotational: factor in
-    m^2. A rod depends only on ratios of drags; the viscosity cancels in these before rounding.
+    viscosity: in Pa s. axial, across: dimensionless factors of the drag along and across the arm's axis.
+    rotational: factor in m^2. A rod depends only on ratios of drags, in which the viscosity cancels exactly.
     """
 
     viscosity: float
@@ -51,41 +51,57 @@ class Drag:
 
 
 def cox(viscosity: float, slenderness: float) -> tuple[float, float]:
-    """Drags (gamma1, gamma2) of a straight rigid cylinder (Cox 1970; Batchelor 1970); slenderness is L/a."""
+    """(gamma1, gamma2), in Pa s, of a straight rigid cylinder (Cox 1970; Batchelor 1970).
+
+    viscosity: in Pa s. slenderness: L/a.
+    """
     logarithm = log(2 * slenderness)
     return 2 * pi * viscosity / (logarithm - 1.5), 4 * pi * viscosity / (logarithm - 0.5)
 
 
 def gray_hancock(viscosity: float, slenderness: float) -> tuple[float, float]:
-    """Drags (gamma1, gamma2) for waves of length 4 L, the longest of a clamped rod (Gray, Hancock 1955)."""
+    """(gamma1, gamma2), in Pa s, for waves of length 4 L, the longest of a clamped rod.
+
+    Gray and Hancock (1955). viscosity: in Pa s. slenderness: L/a.
+    """
     logarithm = log(8 * slenderness)
     return 2 * pi * viscosity / (logarithm - 0.5), 4 * pi * viscosity / (logarithm + 0.5)
 
 
 def lighthill(viscosity: float, slenderness: float) -> tuple[float, float]:
-    """Drags (gamma1, gamma2) for helical waves of length L, about as in flutter (Lighthill 1976)."""
+    """(gamma1, gamma2), in Pa s, for helical waves of length L, near the wavelength of flutter.
+
+    Lighthill (1976). viscosity: in Pa s. slenderness: L/a.
+    """
     logarithm = log(0.18 * slenderness)
     return 2 * pi * viscosity / logarithm, 4 * pi * viscosity / (logarithm + 0.5)
 
 
-def least_rotational(viscosity: float, half_height: float) -> float:
-    """Lowest estimate of rotational drag: gamma3 = pi eta a^2 of sections turning about a diameter.
+def min_rotational_drag(viscosity: float, half_height: float) -> float:
+    """Smallest estimate of rotational drag, gamma3 = pi eta a^2: each section turns about its diameter.
 
-    The surface velocity -Omega x2 is axial; the flow outside is harmonic and decays like 1/r, and its
-    traction eta Omega cos(phi) has the torque gamma3 Omega. For an ellipse, a is half the height.
+    The surface velocity -Omega x2 of a long cylinder is axial. The flow outside is harmonic and decays like
+    1/r; its traction eta Omega cos(phi) has the torque gamma3 Omega. For an ellipse, a is half the height.
     """
     return pi * viscosity * half_height**2
 
 
 def most_rotational(viscosity: float, half_height: float) -> float:
-    """Highest estimate of rotational drag: gamma3 = 4 pi eta a^2 of rotation about the axis (Powers 2010)."""
+    """Largest estimate of rotational drag, gamma3 = 4 pi eta a^2, in Pa s m^2.
+
+    The value for rotation about the cylinder's axis (Powers 2010) is used for rotation about a diameter.
+    """
     return 4 * pi * viscosity * half_height**2
 
 
 def range_of_drag(viscosity: float, length: float, radius: float, half_height: float) -> tuple[Drag, ...]:
-    """Estimates of the drag of one arm, in the order of DRAGS; the first has the geometric mean gamma3."""
+    """Drag estimates of one arm, in the order of DRAGS.
+
+    The likeliest estimate has the geometric mean of the smallest and largest gamma3. viscosity: in Pa s; all
+    lengths in m.
+    """
     slenderness = length / radius
-    least = least_rotational(1.0, half_height)
+    least = min_rotational_drag(1.0, half_height)
     most = most_rotational(1.0, half_height)
     translations = (gray_hancock(1.0, slenderness), lighthill(1.0, slenderness))
     # All estimates are for viscosity 1: drag is proportional to it.

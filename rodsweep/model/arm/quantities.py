@@ -13,15 +13,15 @@ LOADS = ("pressure", "force")
 
 
 class Quantity(NamedTuple):
-    """A quantity of an arm: SI unit, meaning, and an example with a unit, empty for a pure number."""
+    """A quantity of an arm: SI unit, meaning, and an example with a unit; no example for a pure number."""
 
     unit: str
     meaning: str
     example: str = ""
     needed: bool = False
-    """Whether every arm must have the quantity."""
+    """Whether the user must give the quantity for every arm."""
     signed: bool = False
-    """Whether zero and negative values are allowed."""
+    """Whether zero and negative values of the quantity are allowed."""
 
 
 QUANTITIES = {
@@ -48,28 +48,28 @@ QUANTITIES = {
         for load in LOADS
     },
 }
-"""All quantities that a user may give, by name."""
+"""All quantities of an arm that a user may give, by name."""
 UNITS = {name: (each.unit, each.example) for name, each in QUANTITIES.items() if each.example}
-"""(SI unit, example) of each quantity with a unit."""
+"""(SI unit, example) of each quantity with a unit, by name."""
 RELATIVE = {f"{load}_over_flutter": load for load in LOADS}
-"""Name of the load by name of its relative load, the load divided by its value at first flutter with the
-likeliest drag."""
+"""Name of the load, "pressure" or "force", by name of the relative load. A relative load is divided by the
+load at first flutter with the likeliest drag."""
 SECTION_SIDES = ("radius", "inner_radius", "tip_radius"), ("width", "height")
-"""Quantities that define a round section, and quantities that define a rectangular section."""
+"""(names of the quantities of a circular section, names of the quantities of a rectangular section)."""
 ARM_UNITS = {
     "tau2": Quantity("s", "unit of time, gamma2 L^4/k3"),
     "force_scale": Quantity("N", "unit of force, k3/L^2"),
     "pressure_scale": Quantity("Pa", "pressure on the tip's cross section that makes F = 1, k3/(L^2 A)"),
 }
-"""Units of time, force and pressure that an arm defines, by the property of `SlenderArm`."""
+"""Units of time, force and pressure that an arm defines, by name of the property of `SlenderArm`."""
 SCALE_OF = {load: f"{load}_scale" for load in LOADS}
-"""Name of the unit of each load: the value of the load at which F = 1."""
+"""Name of the property of `SlenderArm` that holds the load at which F = 1, by name of the load."""
 ALL_QUANTITIES = QUANTITIES | ARM_UNITS
-"""All variables of an arm in a result file, except its dimensionless parameters."""
+"""All variables of an arm in a result file, except the parameters of the arm as a rod."""
 
 
 def number_in_si(name: str, given: Given | None) -> float:
-    """Value in SI of a quantity of UNITS; nan for a missing quantity or a load relative to flutter.
+    """Value in SI of the quantity `name` in UNITS; nan for a missing quantity or a load relative to flutter.
 
     Raises InputError, naming the quantity, for an invalid value.
     """
@@ -82,7 +82,7 @@ def number_in_si(name: str, given: Given | None) -> float:
 
 
 def quoted(name: str, given: Given) -> str:
-    """A quantity of UNITS in the user's notation, like "length = '10 cm'", for messages."""
+    """Name and value of a quantity in UNITS as the user wrote it, like "length = '10 cm'", for messages."""
     if isinstance(given, str):
         return f"{name} = '{given}'"
     return f"{name} = {in_si(name, given, *UNITS[name]):.6g} {UNITS[name][0]}"

@@ -16,22 +16,23 @@ if TYPE_CHECKING:
     from .arm import SlenderArm
 
 CRUSHED_FROM = 1 - 1e-14
-"""Ratio of F to the crushing force from which the arm counts as crushed; below 1 because unit conversion
+"""Ratio of F to the crushing force from which an arm is refused as crushed; below 1 because unit conversion
 rounds."""
-SAME_LENGTH = 1e-9
-"""Relative difference between a given length and the sum of the segments that counts as rounding error."""
+LENGTH_TOLERANCE = 1e-9
+"""Relative difference between a given length and the sum of the segment lengths up to which both are equal:
+the difference is rounding error."""
 INCOMPRESSIBLE = 0.5
-"""Poisson's ratio of incompressible material; a swelling section requires this ratio."""
+"""Poisson's ratio of incompressible material. A swelling section requires this ratio."""
 
 
 class NotSlender(InputError):
-    """The arm is too short for the drag of slender bodies."""
+    """The arm is too short, relative to its radius, for the drag formulas of slender bodies."""
 
 
 def refuse_words(arm: "SlenderArm") -> None:
-    """Raises InputError for an invalid Poisson's ratio, drag, law or section.
+    """Raises InputError for an invalid Poisson's ratio, drag name, law or section of the arm.
 
-    A swelling section with another Poisson's ratio than 0.5 is invalid too.
+    A swelling section is invalid with a Poisson's ratio other than 0.5.
     """
     ratio: Any = arm.poisson
     is_number = isinstance(ratio, Real) and not isinstance(ratio, bool)
@@ -63,8 +64,8 @@ def refuse_words(arm: "SlenderArm") -> None:
         )
 
 
-def refuse_other_sets(arm: "SlenderArm") -> None:
-    """Raises InputError unless an arm has length, material, fluid, exactly one shape and at most one load."""
+def refuse_wrong_combinations(arm: "SlenderArm") -> None:
+    """Raises InputError unless the arm has a length, a modulus, a viscosity, one shape, at most one load."""
     if arm.segments is not None:
         _refuse_beside_segments(arm)
     else:
@@ -83,7 +84,7 @@ def refuse_other_sets(arm: "SlenderArm") -> None:
 
 
 def _refuse_sections(arm: "SlenderArm") -> None:
-    """Raises InputError unless one section is given, with a valid bore or tip radius if given."""
+    """Raises InputError unless an arm without segments has one cross-section, with valid radii."""
     sides = (arm.width, arm.height)
     for name, why in (("inner_radius", "a rectangle has no bore here"), ("tip_radius", "only cones taper")):
         if getattr(arm, name) is not None and arm.radius is None:
@@ -111,7 +112,10 @@ def _refuse_sections(arm: "SlenderArm") -> None:
 
 
 def _refuse_beside_segments(arm: "SlenderArm") -> None:
-    """Raises InputError if segments come with a section or a length that differs from their sum."""
+    """Raises InputError if an arm with segments also has a cross-section, or another length than their sum.
+
+    Every segment needs a Young's modulus, its own or the arm's.
+    """
     for name in (*SECTION_SIDES[0], *SECTION_SIDES[1]):
         if getattr(arm, name) is not None:
             raise InputError(
@@ -125,14 +129,18 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
                 f"segments, number {number}: young is missing; give it there, or young for all segments"
             )
     total = sum(piece.length for piece in pieces)
-    if arm.length is not None and not abs(arm.si.length - total) <= SAME_LENGTH * total:
+    if arm.length is not None and not abs(arm.si.length - total) <= LENGTH_TOLERANCE * total:
         unit = unit_of(arm.length, "m")
         summed = f"{written_in(total, unit, 'm'):.6g} {unit}"
         raise InputError(f"{arm.quoted('length')} is not the sum of the segments, {summed}; leave it out")
 
 
 def refuse_out_of_range(arm: "SlenderArm") -> None:
-    """Raises InputError for an arm without mass or with over- or underflow, NotSlender for a short arm."""
+    """Raises InputError for an arm without mass, and for over- or underflow of its stiffnesses or force
+    scale.
+
+    Raises NotSlender for an arm that is too short.
+    """
     if arm.si.density_difference <= -arm.si.fluid_density:
         given = arm.quoted("density_difference")
         least = f"{-arm.si.fluid_density:.4g} kg/m^3"
@@ -156,7 +164,7 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
 
 
 def refuse_crushed(arm: "SlenderArm") -> None:
-    """Raises InputError for a load that crushes the arm at its weakest section."""
+    """Raises InputError if the load crushes the arm at its weakest cross-section."""
     loaded = arm.load
     if loaded is None or arm.share_of_flutter is not None or CRUSHED_FROM * arm.crushing_force > arm.F:
         return

@@ -8,12 +8,12 @@ from ...errors import InputError
 
 
 class NoWall(InputError):
-    """The bore is at least as wide as the arm."""
+    """The bore of a tube is at least as wide as the tube."""
 
 
 @dataclass(frozen=True, slots=True)
 class Circle:
-    """A circular section of radius a, in m."""
+    """A solid circular cross-section of radius a, in m."""
 
     radius: float
     formula: ClassVar[str] = "A = pi a^2, I = pi a^4/4"
@@ -57,7 +57,7 @@ class Circle:
 
 @dataclass(frozen=True, slots=True)
 class Tube:
-    """A circular section of radius a with a bore of radius b, in m. The tip is closed."""
+    """A circular cross-section of radius a with a bore of radius b, in m. The bore is closed at the tip."""
 
     radius: float
     inner_radius: float
@@ -106,7 +106,7 @@ class Tube:
 
 @dataclass(frozen=True, slots=True)
 class Rectangle:
-    """A rectangular section, in m: height in the plane of motion, width across it."""
+    """A solid rectangular cross-section, in m: height in the plane of motion, width across this plane."""
 
     width: float
     height: float

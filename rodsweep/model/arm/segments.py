@@ -11,17 +11,18 @@ from .quantities import number_in_si, quoted
 from .section import Circle, NoWall, Tube
 
 SEGMENT_KEYS = ("length", "radius", "inner_radius", "young")
-"""Quantities of a segment. `young` defaults to Young's modulus of the arm."""
+"""Names of the quantities of a segment. `young` defaults to Young's modulus of the arm."""
 EXAMPLE = "4 cm: radius 6 mm, young 80 kPa"
 """Text of a valid segment, for messages."""
 PART = re.compile(r"\s*([A-Za-z][A-Za-z_ -]*?)\s*=?\s*([+-]?[\d.].*?)\s*")
-"""Matches one quantity in the text of a segment, like "radius 6 mm": groups (name, value with unit)."""
+"""Matches name and value of one quantity in the text of a segment, like "radius 6 mm"."""
 MAX_SEGMENTS = 100
-"""Largest number of segments of an arm. Every segment needs at least one element of the mesh."""
+"""Maximum number of segments of an arm; more are refused. Every segment needs at least one element of the
+mesh."""
 
 
 class ArmSegment(NamedTuple):
-    """A uniform segment of an arm, in SI units; young: None if the modulus of the arm applies."""
+    """A uniform segment of an arm, in SI units; `young` is None if the arm's Young's modulus applies."""
 
     length: float
     section: Circle | Tube
@@ -30,7 +31,7 @@ class ArmSegment(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class WrittenSegment:
-    """Quantities of one segment by name, in the user's notation, like {"radius": "6 mm"}."""
+    """Quantities of a segment by name, as the user wrote them."""
 
     given: Mapping[str, Given]
 
@@ -42,7 +43,10 @@ class WrittenSegment:
 
 
 def segment_texts(given: Any) -> tuple[str, ...]:
-    """Texts of all segments of an arm; InputError, beginning with "segments", for an invalid segment."""
+    """Texts of all segments of an arm, for `segments_of`, from the value of `segments` that the user gave.
+
+    Raises InputError, beginning with "segments", for an invalid segment.
+    """
     if isinstance(given, str | Mapping):
         given = [given]
     if hasattr(given, "tolist"):  # an array of texts
@@ -58,14 +62,14 @@ def segment_texts(given: Any) -> tuple[str, ...]:
 
 
 def segments_of(texts: Sequence[str]) -> tuple[ArmSegment, ...]:
-    """The segments of `segment_texts` in SI units."""
+    """Segments in SI units from the texts that `segment_texts` returns."""
     return tuple(_segment(number, written_segment(number, text)) for number, text in enumerate(texts, 1))
 
 
 def written_segment(number: int, given: Any) -> WrittenSegment:
-    """Parses one segment from text or a mapping; InputError for an unknown or a missing key.
+    """Quantities of a segment from a text or a mapping; InputError for an unknown or a missing key.
 
-    number: position of the segment from the base, from 1, for messages.
+    number: position of the segment counted from the base, from 1, for messages.
     """
     where = f"segments, number {number}"
     found = dict(_mapping(where, given))
@@ -79,7 +83,9 @@ def written_segment(number: int, given: Any) -> WrittenSegment:
 
 
 def _mapping(where: str, given: Any) -> Mapping[str, Given]:
-    """Quantities of a segment by name, from a mapping or a text."""
+    """Quantities of a segment by name from a mapping or a text; InputError, beginning with `where`, if
+    invalid.
+    """
     if isinstance(given, Mapping):
         return {str(name): value for name, value in given.items()}
     length, colon, parts = str(given).partition(":")
@@ -100,7 +106,7 @@ def _mapping(where: str, given: Any) -> Mapping[str, Given]:
 
 
 def _segment(number: int, written: WrittenSegment) -> ArmSegment:
-    """A segment in SI units; InputError for a quantity out of range, NoWall for a bore that is too wide."""
+    """Segment `number` in SI units; InputError for a value out of range, NoWall for too wide a bore."""
     given = written.given
     where = f"segments, number {number}"
     try:
@@ -116,7 +122,7 @@ def _segment(number: int, written: WrittenSegment) -> ArmSegment:
 
 
 def _text(name: str, given: Given) -> str:
-    """A quantity as text with its unit."""
+    """Value of a quantity as text with its unit."""
     from .quantities import UNITS
 
     return given.strip() if isinstance(given, str) else f"{number_in_si(name, given)!r} {UNITS[name][0]}"

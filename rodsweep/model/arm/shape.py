@@ -16,17 +16,20 @@ from ..material.profile import FACTORS, RADIUS_POWERS, Profile
 from .drag import Drag, range_of_drag
 from .section import Circle, Section, Tube
 
-BUCKLING_POINTS = 400
-"""Number of midpoints of the quadrature for the buckling weight. The relative error is 5e-5 for a uniform
-arm."""
-RADIUS_STEP = 1.3
-"""Maximum ratio of the radii at neighbouring rows of the profile of a cone. The cubics between rows
-approximate
-the logarithms of the drag to 3e-4 for tapers from 0.01 to 100."""
+BUCKLING_NODE_COUNT = 400
+"""Number of midpoint-rule nodes in the integrals for the buckling weight, whose relative error is then 5e-5
+for a uniform arm."""
+MAX_RADIUS_RATIO = 1.3
+"""Largest ratio of a cone's radii at neighbouring u of its profile. The cubics between them approximate the
+logarithms of the drag to 3e-4 for tapers from 0.01 to 100."""
 
 
 class Station(NamedTuple):
-    """Cross-section and modulus, in Pa, of a segment of an arm that ends at u = `end`."""
+    """A cross-section of an arm with its Young's modulus `young`, in Pa.
+
+    end: material coordinate u up to which a segment has this cross-section, from 0 at the base to 1 at the
+    tip; for a cone, the u of the cross-section.
+    """
 
     end: float
     section: Section
@@ -35,10 +38,10 @@ class Station(NamedTuple):
 
 @dataclass(frozen=True)
 class Shape:
-    """Sections along an arm of `length`, in m.
+    """Cross-sections along an arm of `length`, in m.
 
-    stations: the segments from the base to the tip, or base and tip of a cone, or the section of a uniform
-    arm. taper: tip radius over base radius of a cone; 1 for other arms.
+    stations: one for each segment from the base to the tip, or base and tip of a cone, or the only one of a
+    uniform arm. taper: tip radius over base radius of a cone; 1 for other arms.
     """
 
     length: float
@@ -47,17 +50,17 @@ class Shape:
 
     @property
     def base(self) -> Station:
-        """The section at the clamp; its stiffness and drag define the dimensionless units."""
+        """The station at the clamp, whose stiffness and drag define the dimensionless units."""
         return self.stations[0]
 
     @property
     def tip(self) -> Station:
-        """The section at the tip, on whose face a pressure pushes."""
+        """The station at the tip, on whose face a pressure pushes."""
         return self.stations[-1]
 
     @property
     def varies(self) -> bool:
-        """Whether sections or moduli differ along the arm."""
+        """Whether cross-section or Young's modulus differ along the arm."""
         return any(each[1:] != self.base[1:] for each in self.stations)
 
     @property
@@ -66,7 +69,7 @@ class Shape:
         return max(each.section.drag_radius for each in self.stations)
 
     def drags(self, station: Station, viscosity: float) -> tuple[Drag, ...]:
-        """Drags at a station, in the order of DRAGS; viscosity in Pa s."""
+        """Drag estimates at a station, in the order of DRAGS; viscosity in Pa s."""
         section = station.section
         return range_of_drag(viscosity, self.length, section.drag_radius, section.half_height)
 
@@ -74,7 +77,7 @@ class Shape:
         """Factors of stiffness and drag along the arm, relative to the base; None for a uniform arm.
 
         The profile of a cone contains only the factors that the parameter `taper` does not imply. drag: index
-        in DRAGS. Raises ValueError for a factor that is too large or too small.
+        of the estimate in DRAGS. Raises ValueError for a factor that overflows or underflows.
         """
         if not self.varies:
             return None
@@ -85,7 +88,7 @@ class Shape:
         rows = list[tuple[float, ...]]()
         for start, station in zip(ends, self.stations, strict=False):
             row = self._factors(station, poisson, drag)
-            # Equal neighbours are one piece: a jump of nothing would still split elements.
+            # Equal neighbouring segments are merged: a jump of size 0 would still split elements.
             if rows and rows[-1] == row:
                 u[-1] = station.end
             else:
@@ -94,9 +97,12 @@ class Shape:
         return Profile(tuple(u), tuple(rows))
 
     def _logarithms(self, drag: int) -> Profile:
-        """Factors of gamma1 and gamma2 along a cone; the parameter `taper` implies all other factors."""
-        pieces = max(2, ceil(abs(log(self.taper)) / log(RADIUS_STEP)))
-        # In equal ratios of the radius, since the drag depends on its logarithm.
+        """Profile of a cone: factors of gamma1 and gamma2. The parameter `taper` implies all other factors.
+
+        drag: index of the estimate in DRAGS.
+        """
+        pieces = max(2, ceil(abs(log(self.taper)) / log(MAX_RADIUS_RATIO)))
+        # Equal ratios of neighbouring radii, since the drag depends on the logarithm of the radius.
         radii = self.taper ** (np.arange(pieces + 1) / pieces)
         u = (1 - radii) / (1 - self.taper)
         base = self.drags(self.base, 1.0)[drag]
@@ -108,7 +114,7 @@ class Shape:
         return Profile((0.0, *u[1:-1].tolist(), 1.0), tuple(rows))
 
     def _factors(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
-        """Values of k1, k2, k3, gamma1, gamma2, gamma3 at a station, divided by the values at the base."""
+        """k1, k2, k3, gamma1, gamma2, gamma3 at a station, each divided by its value at the base."""
         own, base = (np.array(self._of_station(each, poisson, drag)) for each in (station, self.base))
         with np.errstate(all="ignore"):
             return tuple((own / base).tolist())
@@ -127,34 +133,33 @@ class Shape:
             friction.rotational,
         )
 
-    def buckling_share(self, weight: float) -> float:
-        """Ratio of the weight of the upright arm to its buckling weight; weight: per volume, in N/m^3.
+    def relative_weight(self, weight: float) -> float:
+        """Ratio of the weight of the upright arm to the weight at which it buckles.
 
-        theta' = m/(E I) and m' = -W theta, with the weight W(u) beyond u, have a solution with theta(0) = 0
-        and m(1) = 0 if 1 is an eigenvalue of theta -> int_0^u (1/(E I)) int_u^1 W theta.
+        weight: weight per volume, in N/m^3. theta' = m/(E I) and m' = -W theta, with the weight W(u) beyond
+        u, have a solution with theta(0) = 0 and m(1) = 0 if 1 is an eigenvalue of the operator theta ->
+        int_0^u (1/(E I)) int_u^1 W theta. The ratio is the largest eigenvalue.
         """
         h, area, stiffness = self._at_midpoints()
-        # Weight above each section, with half of the section's own piece.
+        # Weight above each midpoint, with half the weight of its own interval.
         beyond = np.tril(np.ones((len(h), len(h)))).T * (weight * area * h)
         np.fill_diagonal(beyond, weight * area * h / 2)
         moment = np.tril(np.ones((len(h), len(h)))).T * h * beyond.sum(axis=1)
         moment[np.diag_indices_from(moment)] /= 2
         turn = np.tril(np.ones((len(h), len(h)))) * (h / stiffness)
         turn[np.diag_indices_from(turn)] /= 2
-        # Euler buckling: theta' = m/(E I), m' = -(weight above) theta; its largest eigenvalue is weight over
-        # buckling weight.
         return float(np.abs(np.linalg.eigvals(turn @ moment)).max())
 
     def _at_midpoints(self) -> tuple[Array, Array, Array]:
         """(length, A, E I) of the subintervals of the quadrature, each (subintervals,), in m, m^2, N m^2."""
         if self.taper != 1:
-            u = (np.arange(BUCKLING_POINTS) + 0.5) / BUCKLING_POINTS
+            u = (np.arange(BUCKLING_NODE_COUNT) + 0.5) / BUCKLING_NODE_COUNT
             radius = 1 - (1 - self.taper) * u
             base = self.base
             area = base.section.area * radius ** RADIUS_POWERS["k1"]
             stiffness = base.young * base.section.second_moment * radius ** RADIUS_POWERS["k3"]
             return np.full(len(u), self.length / len(u)), area, stiffness
-        each = max(4, BUCKLING_POINTS // len(self.stations))
+        each = max(4, BUCKLING_NODE_COUNT // len(self.stations))
         lengths = np.diff([0.0, *(station.end for station in self.stations)]) * self.length
         areas = [station.section.area for station in self.stations]
         stiffnesses = [station.young * station.section.second_moment for station in self.stations]
@@ -162,13 +167,15 @@ class Shape:
 
 
 def cone(length: float, radius: float, tip_radius: float, young: float) -> Shape:
-    """Shape of a solid circular cone; lengths in m, young in Pa."""
+    """Shape of a solid cone; all lengths in m, Young's modulus `young` in Pa."""
     ends = (Station(0.0, Circle(radius), young), Station(1.0, Circle(tip_radius), young))
     return Shape(length, ends, tip_radius / radius)
 
 
 def in_segments(pieces: Sequence[tuple[float, Circle | Tube, float]]) -> Shape:
-    """Shape of an arm in segments (length in m, section, young in Pa), from the base to the tip."""
+    """Shape of an arm made of segments (length in m, section, Young's modulus in Pa) from the base to the
+    tip.
+    """
     ends = np.cumsum([length for length, _, _ in pieces])
     shares = [*(ends[:-1] / ends[-1]).tolist(), 1.0]
     stations = [Station(u, section, young) for u, (_, section, young) in zip(shares, pieces, strict=True)]

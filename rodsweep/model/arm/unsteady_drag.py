@@ -7,18 +7,18 @@ from numpy.typing import ArrayLike
 
 from ...arrays import Array
 
-MIN_S = 1e-6
-"""Smallest frequency s, in eta k^2/rho; smaller values are raised to it, since rounding would hide their
-phase."""
+LEAST_S = 1e-6
+"""Smallest frequency s of the flow, in eta k^2/rho. A smaller s is replaced by it, since rounding error would
+hide the phase lag, about 1e-6."""
 SUBINTERVAL_COUNT = 64
-"""Number of equal subintervals into which each refinement divides the interval of ln s."""
-REFINEMENT_COUNT = 10
-"""Number of refinements: 64^10 = 2^60 subintervals of an interval of width 20 to 30, down to rounding error.
-"""
+"""Number of subintervals into which `frequency_of_phase` divides its current interval of ln s."""
+DIVISION_COUNT = 10
+"""Number of divisions in `frequency_of_phase`: 64^10 = 2^60 subintervals of an initial interval 20 to 30 wide
+reach rounding error with few calls on arrays."""
 
 
 def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
-    """Phase lag of the drag on a line of forces of wavenumber k in unsteady Stokes flow.
+    """Phase lag, in radians, of the drag on a line of forces of wavenumber k in unsteady Stokes flow.
 
     s = rho omega/(eta k^2), any shape. logarithm: Lambda = 4 pi eta/gamma2.
 
@@ -36,10 +36,13 @@ def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
 
 
 def frequency_of_phase(phase: float, logarithm: float) -> float:
-    """Frequency s at which `unsteady_phase` equals `phase` < pi/2, by repeated subdivision in ln s."""
-    low = log(MIN_S)  # there the real part of the mobility is -1/2
+    """Frequency s at which `unsteady_phase` equals `phase` < pi/2, by repeated subdivision of ln s.
+
+    logarithm: Lambda = 4 pi eta/gamma2.
+    """
+    low = log(LEAST_S)  # there the real part of the mobility is -1/2
     high = 2 * logarithm
-    for _ in range(REFINEMENT_COUNT):
+    for _ in range(DIVISION_COUNT):
         edges = np.linspace(low, high, SUBINTERVAL_COUNT + 1)
         below = np.count_nonzero(unsteady_phase(np.exp(edges[1:-1]), logarithm) < phase)  # the phase rises
         low = float(edges[below])

@@ -1,1 +1,1 @@
-"""Compiled kernels: loops over an algebra unrolled, machine code cached by the kernels' source."""
+"""Compiled kernels: unrolling of loops over a Lie algebra, and a disk cache of machine code."""

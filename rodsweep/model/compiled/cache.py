@@ -1,4 +1,4 @@
-"""Compiled functions on disk: one file for each kernel and argument types, named by a digest of the code.
+"""Compiled functions on disk: a file for each kernel and its argument types, named by a digest of the code.
 
 numba's own cache knows the source file of a function, but not the called functions. Here the digest covers
 the function and its callees (`rodsweep.model.compiled.digest`): editing a comment recompiles nothing, editing
@@ -33,24 +33,28 @@ from .digest import FunctionText, digest, kernel_of, type_text
 from .slice_assignment import shorten_message
 
 VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__)
-"""Versions that are part of the digest, because compiled code is valid for one combination only."""
+"""Versions of Python, numba, llvmlite and NumPy, which are part of a cache file's name: compiled code is
+valid for one combination of versions only."""
 DIGEST_BYTES = 32
-"""Length, in bytes, of the SHA-256 checksum at the start of a file; the checksum reveals a truncated file."""
+"""Length, in bytes, of the SHA-256 checksum at the start of a cache file, which reveals a truncated file."""
 _first_parts: dict[FunctionType, FunctionText] = {}
-"""Description of each function at first use: the state of the code that numba compiled."""
+"""Text of each function at its first use in this process: the state of the code that numba compiled."""
 
 
 class KernelCache(_Cache):
-    """Disk cache of the compiled code of one function, with the interface that numba expects of a cache."""
+    """Disk cache of one compiled function, with the interface that numba's dispatchers and C callbacks
+    expect.
+    """
 
     def __init__(self, function: Any, options: Mapping[str, Any], directories: Sequence[Path]) -> None:
-        """options: numba's compiler options. directories: all are read; the first writable one is written."""
+        """options: numba's compiler options. directories: places of cache files. All are read; files are
+        written into the first writable directory."""
         self._kernel = kernel_of(function, options)
         self._directories = tuple(directories)
 
     @property
     def cache_path(self) -> str | None:
-        """The directory that is written, as numba reports it; None if the cache is disabled."""
+        """Preferred directory of cache files, which numba reports; None if the cache is disabled."""
         return str(self._directories[0]) if self._directories else None
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
@@ -67,7 +71,11 @@ class KernelCache(_Cache):
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Writes compiled code, unless the code holds addresses or a global value has changed meanwhile."""
+        """Writes the compiled function `data` for the signature `sig` to disk.
+
+        Nothing is written if the code contains memory addresses, or if a global value that the code reads has
+        changed since the function's first use.
+        """
         name = self._name(sig, data.codegen, {})
         changed = name != self._name(sig, data.codegen, _first_parts)
         if data.library.has_dynamic_globals or data.lifted or changed:
@@ -95,19 +103,22 @@ class KernelCache(_Cache):
         return f"{name}-{sha256(content.encode()).hexdigest()[:32]}.kernel"
 
     def enable(self) -> None:
-        """Does nothing: the cache is always enabled. numba requires the method."""
+        """Does nothing, because the cache is always enabled; numba requires the method."""
 
     def disable(self) -> None:
         """Stops reading and writing files."""
         self._directories = ()
 
     def flush(self) -> None:
-        """Does nothing: files are written at once. numba requires the method."""
+        """Does nothing, because files are written at once; numba requires the method."""
 
 
 @cache
 def _warn_once(sentence: str) -> None:
-    """Warns once a process: numba resets Python's own record of shown warnings at every compilation."""
+    """Issues the warning `sentence` once per process.
+
+    Python's own filter does not suffice: numba resets the record of shown warnings at every compilation.
+    """
     warnings.warn(sentence, stacklevel=1)
 
 

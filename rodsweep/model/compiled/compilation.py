@@ -1,6 +1,6 @@
-"""Compilation of scalar formulas by numba, cached on disk if a directory is writable.
+"""Compilation of formulas by numba, cached on disk if a directory is writable.
 
-Adaptive loops evaluate the formulas point by point, where the overhead of NumPy calls would dominate.
+Adaptive loops evaluate the formulas for one argument at a time, where the overhead of NumPy would dominate.
 Compiled functions take floats, complex numbers, arrays and NamedTuples, but no other objects.
 """
 
@@ -19,10 +19,12 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 PACKAGE = Path(__file__).parents[2]
+"""Directory of the package rodsweep."""
 
 
 def cache_directories() -> list[Path]:
-    """Directories of compiled code: NUMBA_CACHE_DIR, or the package and, if it is read-only, ~/.cache."""
+    """Directories for compiled code, in order of preference: under NUMBA_CACHE_DIR if set, otherwise in the
+    package and then under ~/.cache."""
     if place := os.environ.get("NUMBA_CACHE_DIR"):
         return [Path(place) / "rodsweep"]
     caches = [PACKAGE / "__pycache__"]
@@ -43,16 +45,19 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def compiled_for_vectors(function: Callable[P, R]) -> Callable[P, R]:
-    """Compiles `function` like `compiled`, but allows sums in any order, as a BLAS does: five times as fast.
+    """Compiles `function` like `compiled`, but lets the compiler reorder sums, which is five times as fast.
 
-    Infinities and nan are kept. The function is always inlined in its callers: a shared copy would be
+    Infinities and nan behave as usual. The function is always inlined in its callers: a shared copy would be
     the copy that a process happens to load first, and copies differ in the order of their sums.
     """
     return _compiled(function, fastmath={"reassoc", "contract", "nsz"}, forceinline=True)
 
 
 def c_callback(function: Callable, signature: Any) -> Any:
-    """Compiles `function` at once to a function that C can call; `address` is the C function pointer."""
+    """Compiles `function` at once, for numba's `signature`, to a callback for C code.
+
+    The attribute `address` of the callback is the C function pointer.
+    """
     callback: Any = CFunc(function, numba.core.sigutils.normalize_signature(signature), locals={}, options={})
     callback._cache = KernelCache(function, {"signature": "C"}, cache_directories())
     callback.compile()

@@ -1,8 +1,8 @@
 """Digest of a compiled function: its bytecode, the functions that it calls, the global values that it reads.
 
-numba copies callees and global values into a compiled function, so a change of either needs a compilation.
-Comments, docstrings and line numbers do not change the digest. `rodsweep.model.compiled.cache` names
-files of compiled code by the digest.
+numba copies called functions and global values into a compiled function. A change of them needs a
+compilation. Comments, docstrings and line numbers do not change the digest. `rodsweep.model.compiled.cache`
+names files of compiled code by the digest.
 """
 
 import builtins
@@ -21,37 +21,38 @@ from numba.core.dispatcher import Dispatcher
 from .settings import CompiledSettings
 
 VARIADIC = inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
-"""Flags of a code object that enter the digest: whether the function takes *args or **kwargs."""
+"""Flags of a code object for *args and **kwargs, the only flags that change the compiled code."""
 READS = ("LOAD_GLOBAL", "LOAD_NAME")
 """Names of the bytecode instructions that read a global value."""
 PLAIN = (bool, int, float, complex, str, bytes, type(None), type(Ellipsis))
-"""Types whose repr is equal in every process."""
+"""Types whose values have the same `repr` in every process."""
 
 
 class FunctionText(NamedTuple):
-    """One function of a kernel: code and constants as text, and the called functions."""
+    """A Python function for the digest: `text` of its code and constants, and the kernels that it calls."""
 
     text: str
     called: list["Kernel"]
 
 
 class Kernel(NamedTuple):
-    """A Python function and numba's options for it."""
+    """A Python function to compile, with numba's compiler options as text."""
 
     function: FunctionType
     options: str
 
 
 Parts = MutableMapping[FunctionType, FunctionText]
+"""Cache of the text of each function."""
 
 
 def kernel_of(function: Any, options: Mapping[str, Any]) -> Kernel:
-    """The kernel that numba makes of `function` with these options."""
+    """The kernel of `function` compiled with numba's options `options`, by name."""
     return Kernel(function, repr(sorted((name, _ordered(value)) for name, value in options.items())))
 
 
 def digest(kernel: Kernel, parts: Parts) -> str:
-    """SHA-256 of a kernel and all functions that it calls; `parts` caches the text of each function."""
+    """SHA-256 of a kernel and of all functions that it calls, directly or not; `parts`: cache of texts."""
     texts: dict[FunctionType, str] = {}
     due = [kernel]
     while due:
@@ -65,7 +66,7 @@ def digest(kernel: Kernel, parts: Parts) -> str:
 
 
 def type_text(numba_type: Any) -> str:
-    """Text of an argument's type, including names of fields, which numba's name of the type omits.
+    """Text of the numba type of an argument, with the field names that numba's own name of the type omits.
 
     The text names the module of a NamedTuple too, because compiled code refers to the class by its module.
     Raises TypeError for a function type: the type does not determine the function's code.
@@ -94,7 +95,10 @@ def _described(function: FunctionType, options: str) -> FunctionText:
 
 
 def _values_read(function: FunctionType, instructions: Iterable[dis.Instruction]) -> dict[str, Any]:
-    """Global values that instructions read, by name; of a settings object only the fields that they read."""
+    """Global values of `function` that `instructions` read, by name; of `CompiledSettings` only fields read.
+
+    Raises NameError for a name that is neither global nor a builtin.
+    """
     read = {}
     for here, after in pairwise(instructions):
         if here.opname in READS and here.argval in function.__globals__:
@@ -116,7 +120,10 @@ def _code_objects(code: CodeType) -> Iterator[CodeType]:
 
 
 def _code_lines(code: CodeType, instructions: Iterable[dis.Instruction]) -> list[str]:
-    """Bytecode with values of constants instead of their indices, which a docstring shifts."""
+    """Lines of text of a code object's bytecode, with constants in place of their indices.
+
+    Indices would change with an added docstring.
+    """
     counts = code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags & VARIADIC
     lines = [code.co_name, repr((counts, code.co_varnames, code.co_freevars, code.co_cellvars))]
     lines.append(code.co_exceptiontable.hex())
@@ -128,14 +135,14 @@ def _code_lines(code: CodeType, instructions: Iterable[dis.Instruction]) -> list
 
 
 def _ordered(value: Any) -> Any:
-    """A set as a sorted list, since the order of a set differs between processes; other values unchanged."""
+    """The value, or a sorted list of a set's elements, whose order differs between processes."""
     return sorted(value, key=repr) if isinstance(value, set | frozenset) else value
 
 
 class _ValueTexts:
-    """Converts values that one function refers to into text that is equal in every process.
+    """Converter of the values that one function refers to into text that is equal in every process.
 
-    called: the functions among the values.
+    called: kernels found among the converted values.
     """
 
     def __init__(self, user: FunctionType) -> None:

@@ -12,16 +12,16 @@ from numba.core.typing.typeof import typeof, typeof_impl
 
 
 class CompiledSettings:
-    """Base class of a frozen dataclass of numbers and tuples of numbers, made once for a module.
+    """Base class of a frozen dataclass of numbers and tuples of numbers, for a global constant of a module.
 
-    A compiled function may read the fields and properties of such a global value, but call no method. The
-    machine code contains the numbers, as it does for a global number, and is compiled again when a field that
-    it reads has changed.
+    A compiled function may read fields and properties of such a constant, but call no method. The machine
+    code contains the numbers, and is compiled again when the source changes a field that the function reads.
     """
 
     __slots__ = ()
     ranges: ClassVar[Mapping[str, tuple[float, float]]] = {}
-    """(smallest, largest) allowed value of a field, by name; a proof, for example, may need these bounds."""
+    """(lower, upper) exclusive bounds of a field's value by name of the field, for example for a proof to
+    hold."""
 
     def __post_init__(self) -> None:
         """Raises ValueError for a field outside its bounds in `ranges`."""
@@ -31,14 +31,14 @@ class CompiledSettings:
 
 
 class _SettingsType(types.Type):
-    """Numba type of one settings object; the type stores the object, so that its fields are constants."""
+    """The numba type of one `CompiledSettings` object, with the object as attribute."""
 
     def __init__(self, settings: CompiledSettings) -> None:
         self.settings = settings
         super().__init__(name=repr(settings))
 
     def field(self, name: str) -> Any:
-        """(numba type, value) of the field `name`; an integer has a literal type, as a global integer has."""
+        """(numba type, value) of the field `name`; an integer has a literal type, like a global integer."""
         value = getattr(self.settings, name)
         return maybe_literal(value) or typeof(value), value
 

@@ -1,12 +1,12 @@
-"""Functions of an algebra, whose loops over structure constants are unrolled before compilation.
+"""Functions of a Lie algebra, whose loops over structure constants are unrolled before compilation.
 
 The nonlinear terms of the rod have the same formula on se(2) and se(3). Loops at run time would take two to
 three times as long as unrolled code: a loop over 4 terms costs more than the products. `UnrolledOverAlgebra`
-therefore unrolls the syntax tree of a function for each requested algebra:
+therefore unrolls the syntax tree of a function for each requested algebra g:
 
-- a loop over a value that the algebra determines, `for a in g.components`, becomes a sequence of statements,
-- a condition that the algebra determines becomes the chosen branch, and a number becomes a constant,
-- a list comprehension over the algebra, `E = [... for a in g.components]`, becomes one variable per item.
+- a loop over a value that g determines, `for a in g.components`, becomes a sequence of statements,
+- a condition that g determines becomes the chosen branch, and a number that g determines a constant,
+- a list comprehension over g, `E = [... for a in g.components]`, becomes one variable per list element.
 
 A direct call, with the algebra as first argument, runs the function as ordinary Python.
 """
@@ -25,11 +25,11 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 ALWAYS = {"range": range}
-"""Names whose values are known when a loop is unrolled, in addition to the algebra."""
+"""Values that are known during unrolling besides the algebra, by name."""
 
 
 class UnrolledOverAlgebra(Generic[P, R]):
-    """Decorator for a function whose first argument is an algebra."""
+    """Decorator that unrolls the loops of a function over its first argument, a Lie algebra."""
 
     def __init__(self, function: Callable[Concatenate[Algebra, P], R]) -> None:
         self.function: Any = function
@@ -40,14 +40,16 @@ class UnrolledOverAlgebra(Generic[P, R]):
         return result
 
     def of(self, g: Algebra) -> Callable[P, R]:
-        """The function for the algebra `g`, without the first argument, unrolled and compiled."""
+        """The function for the algebra `g`, unrolled and compiled, without the argument for the algebra."""
         if g not in self._compiled:
             self._compiled[g] = compiled_for_vectors(self.written_out(g))
         return self._compiled[g]
 
     def written_out(self, g: Algebra) -> Callable[P, R]:
-        """The function unrolled for the algebra `g`, not compiled; unrolled functions that it calls are
-        compiled."""
+        """The function unrolled for the algebra `g`, not compiled.
+
+        Other unrolled functions that it calls are compiled.
+        """
         tree = ast.parse(dedent(inspect.getsource(self.function)))
         ast.increment_lineno(tree, self.function.__code__.co_firstlineno - 1)
         definition: Any = tree.body[0]
@@ -72,10 +74,10 @@ class UnrolledOverAlgebra(Generic[P, R]):
 
 
 class _WriterState(NamedTuple):
-    """State shared by all writers of one function.
+    """State shared by all `_Writer` objects that unroll one function.
 
-    lists: names of lists whose items became variables. others: names of called functions that are unrolled
-    too. names: cache of the names that a node reads. code: cache of compiled expressions.
+    lists: names of lists whose elements became variables. others: names of called functions that are unrolled
+    too. names: cache of the names that a syntax node reads. code: cache of compiled expressions.
     """
 
     lists: set[str]
@@ -85,7 +87,7 @@ class _WriterState(NamedTuple):
 
 
 class _Writer(ast.NodeVisitor):
-    """Rewrites statements and expressions with the constants in `known`; the original tree is unchanged."""
+    """Copies a syntax tree, with names in `known` replaced by their values and loops over them unrolled."""
 
     def __init__(self, known: Mapping[str, Any], shared: _WriterState) -> None:
         self.known = known
@@ -151,7 +153,7 @@ class _Writer(ast.NodeVisitor):
         return made
 
     def _with(self, target: ast.expr, item: Any) -> "_Writer":
-        """Writer for the iteration of a loop in which the loop variable `target` has the value `item`."""
+        """The writer for the body of one loop iteration, in which the loop variable `target` is `item`."""
         return _Writer({**self.known, **_bound(target, item)}, self.shared)
 
     def _all(self, parts: Iterable[Any]) -> list[Any]:
@@ -182,7 +184,7 @@ class _Writer(ast.NodeVisitor):
 
 
 def _bound(target: ast.expr, item: Any) -> dict[str, Any]:
-    """Values by name that the loop assigns to the names in `target` in the iteration with value `item`."""
+    """Values of the variables in the loop target `target`, by name, in the iteration for `item`."""
     if isinstance(target, ast.Tuple):
         pairs = zip(target.elts, item, strict=True)
         return {name: value for part, inner in pairs for name, value in _bound(part, inner).items()}

@@ -12,16 +12,15 @@ from ...arrays import Array
 from .laws import LAWS, LINEAR, Law, law_of
 from .profile import FACTORS, RADIUS_POWERS, Profile
 
-AREA_SAMPLES = 256
-"""Number of points between two rows of a profile at which the smallest factor is searched, besides the rows.
-"""
+FACTOR_SAMPLE_COUNT = 256
+"""Number of points between neighbouring u of a profile at which the smallest factor is searched for."""
 
 
 class LocalCoefficients(NamedTuple):
     """Coefficients of the transverse operator at points of an arm; all arrays have the shape of the points.
 
-    nu: stretch of the straight state. c2, c3: compliances of shear and bending. gamma2, gamma3: drags.
-    g = nu + F c2.
+    nu: stretch of the straight state. c2, c3: compliances of shear and bending. gamma2, gamma3: normal and
+    rotational drag. g = nu + F c2.
     """
 
     nu: Array
@@ -33,9 +32,10 @@ class LocalCoefficients(NamedTuple):
 
 
 class Sections(NamedTuple):
-    """Cross-sections at points of an arm: compliance and drag, (3, points); stretch nu at rest, (points,).
+    """Properties of the cross-sections at points of an arm, for motion in the plane, or their derivatives.
 
-    `Build.section_changes` returns derivatives in the same fields.
+    compliance: of stretching, shear and bending, (3, points). drag: axial, normal and rotational,
+    (3, points). nu: stretch of the straight loaded arm, (points,).
     """
 
     compliance: Array
@@ -45,10 +45,10 @@ class Sections(NamedTuple):
 
 @dataclass(frozen=True)
 class Build:
-    """Constitutive law and profile of an arm ("build"), compared and hashed by value.
+    """Constitutive law and profile of an arm, together called its build; compared and hashed by value.
 
-    (law, section): a key of `LAWS`. profile: factors of stiffnesses and drags along the arm, None for a
-    uniform arm. Raises ValueError for an unknown law.
+    (law, section): a key of `LAWS`. profile: factors of stiffnesses and drags along the arm, None for an arm
+    without profile. Raises ValueError for an unknown law.
     """
 
     law: str = LINEAR.law
@@ -65,18 +65,18 @@ class Build:
 
     @property
     def constitutive_law(self) -> Law:
-        """The law that `law` and `section` name."""
+        """The `Law` whose key in `LAWS` is (law, section)."""
         return law_of(self.law, self.section)
 
     @property
     def text(self) -> str:
-        """The build as JSON, for `from_text`."""
+        """The build as JSON text, which `from_text` reads."""
         profile = None if self.profile is None else [self.profile.u, self.profile.rows]
         return json.dumps([self.law, self.section, profile])
 
     @classmethod
     def from_text(cls, text: str) -> "Build":
-        """Parses the JSON text that the property `text` returns."""
+        """The build from the JSON text that `text` returns."""
         law, section, profile = json.loads(text)
         if profile is None:
             return cls(law, section)
@@ -85,7 +85,7 @@ class Build:
 
     @property
     def law_number(self) -> int:
-        """Number of the constitutive law in compiled code: LINEAR_LAW and so on in `response`."""
+        """Integer that stands for the law in compiled code, see `response`."""
         return list(LAWS).index((self.law, self.section))
 
     @cached_property
@@ -95,7 +95,7 @@ class Build:
 
     @cached_property
     def jumps(self) -> tuple[float, ...]:
-        """Values of u with two rows of the profile, where coefficients jump."""
+        """The u at which the profile has two rows, where factors jump."""
         u = () if self.profile is None else self.profile.u
         return tuple(a for a, b in zip(u[:-1], u[1:], strict=True) if a == b)
 
@@ -104,17 +104,20 @@ class Build:
         """Ends of the intervals of u on which coefficients are smooth, increasing from 0 to 1, (breaks,)."""
         return np.array([0.0, 1.0]) if self.profile is None else self.profile.breaks
 
-    def crushing_share(self, taper: float) -> float:
-        """Force that crushes the weakest section, in units of k1 at the base; inf if no force crushes it."""
+    def relative_crushing_force(self, taper: float) -> float:
+        """Force that crushes the weakest section of an arm of the taper `taper`, divided by k1 at the base.
+
+        inf if no force crushes the arm.
+        """
         return self.constitutive_law.largest_load * _smallest_factor(self.profile, taper, "k1")
 
-    def least_drag_share(self, taper: float) -> float:
-        """Smallest rotational drag along the arm, in units of the rotational drag at the base."""
+    def relative_least_drag(self, taper: float) -> float:
+        """Smallest rotational drag along an arm of the taper `taper`, divided by its value at the base."""
         return _smallest_factor(self.profile, taper, "gamma3")
 
-    def crushing_shares(self, tapers: Array) -> Array:
-        """`crushing_share` of each taper, of the shape of `tapers`, (...,)."""
-        shares = [self.crushing_share(taper) for taper in tapers.ravel().tolist()]
+    def relative_crushing_forces(self, tapers: Array) -> Array:
+        """`relative_crushing_force` for each value in `tapers`, of the shape of `tapers`, (...,)."""
+        shares = [self.relative_crushing_force(taper) for taper in tapers.ravel().tolist()]
         return np.array(shares).reshape(tapers.shape)
 
     def local(self, F: Any, at_base: Mapping[str, Any], u: Array) -> LocalCoefficients:
@@ -133,9 +136,9 @@ class Build:
         return LocalCoefficients(nu, c2, c3, factors["gamma2"], gamma3, nu + F * c2)
 
     def sections(self, F: float, at_base: Mapping[str, float], u: Array) -> Sections:
-        """Cross-sections at points u, (points,), none a break; compliances are those of the undeformed arm.
+        """Properties of the cross-sections at points u, (points,), none of them a break of the profile.
 
-        F: tip force. at_base: parameters at u = 0, by name.
+        Compliances are those of the undeformed arm. F: tip force. at_base: parameters at u = 0, by name.
         """
         factors = self._factors(at_base["taper"], u)
         stiffness = {name: at_base.get(name, 1.0) * factors[name] for name in ("k1", "k2", "k3")}
@@ -144,9 +147,9 @@ class Build:
         return Sections(np.array([1 / k for k in stiffness.values()]), np.array(drag), nu)
 
     def relative_compliances(self, taper: float, u: Array) -> Array:
-        """Compliances of stretching, shear and bending at points u, (points,), over those at the base.
+        """Compliances of stretching, shear and bending at points u, (points,), divided by those at the base.
 
-        Shape (3, points). The ratio is also known for a rigid rod, whose compliance is 0.
+        Shape (3, points). The ratio is defined for a rigid rod too, whose compliances are 0.
         """
         factors = self._factors(taper, u)
         return np.array([1 / factors[name] for name in ("k1", "k2", "k3")])
@@ -154,7 +157,7 @@ class Build:
     def section_changes(
         self, at: Sections, F: float, taper: float, slopes: Mapping[str, float], u: Array
     ) -> Sections:
-        """Derivatives of the sections `at` at points u, (points,), with respect to a parameter.
+        """Derivatives with respect to a parameter of the cross-sections `at` at points u, (points,).
 
         slopes: derivatives of F, taper, and the compliances and drags at the base with respect to the
         parameter, by name; missing names have derivative 0.
@@ -176,7 +179,7 @@ class Build:
         return Sections(compliance, drag, -load / self.constitutive_law.stiffness(at.nu))
 
     def _factors(self, taper: Any, u: Array) -> dict[str, Array]:
-        """Factors of stiffnesses and drags at points u, by name; all arrays have the shape of u, (...,)."""
+        """Stiffnesses and drags at points u, divided by those at the base, by name; all of the shape of u."""
         if self.profile is None:
             factors = dict.fromkeys(FACTORS, np.ones(u.shape))
         else:
@@ -192,7 +195,7 @@ class Build:
 
 @lru_cache(maxsize=1024)
 def _smallest_factor(profile: Profile | None, taper: float, name: str) -> float:
-    """Smallest value of k1 or gamma3 along the arm, in units of the value at the base; name: which one."""
+    """Smallest k1 or gamma3, as `name` says, along an arm, divided by the value at the base."""
     power = RADIUS_POWERS[name]
     # Both radius and power are monotone, so a cone has its extreme at an end.
     ends = min(1.0, taper**power)
@@ -202,11 +205,11 @@ def _smallest_factor(profile: Profile | None, taper: float, name: str) -> float:
     rows = [
         (1 - (1 - taper) * u) ** power * row[column] for u, row in zip(profile.u, profile.rows, strict=True)
     ]
-    inside = (np.arange(AREA_SAMPLES) + 0.5) / AREA_SAMPLES
+    inside = (np.arange(FACTOR_SAMPLE_COUNT) + 0.5) / FACTOR_SAMPLE_COUNT
     points = (profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * inside).ravel()
     between = (1 - (1 - taper) * points) ** power * profile.factors(points)[column]
     return min(*rows, float(between.min()))
 
 
 STANDARD = Build()
-"""A uniform arm of linear material."""
+"""Build of a uniform arm of linear material."""

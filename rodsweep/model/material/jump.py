@@ -1,16 +1,17 @@
-"""Compiled stress of a rod at a jump of its material, as a function of the mean strain, for every law.
+"""Stress of a rod at a jump of its material, as a function of the mean strain there; compiled, for every law.
 
-At the point stress is continuous and strain is not. With the unknowns a before and b behind the jump, see
-`response`, and shares w of both sides in the mean strain, w(a) + w(b) = 1 for each component,
+Stress is continuous at a jump, strain is not. Let a and b be the unknowns of `response` on the base side and
+on the tip side of the jump. Let w_a and w_b be the weights of both sides in the mean strain, with
+w_a + w_b = 1 for each component. Then
 
-    N(a) = N(b),    M(a) = M(b),    w(a) a + w(b) b = q,
+    N(a) = N(b),    M(a) = M(b),    w_a a + w_b b = q,
 
-where q has the mean strain: it is what a linear rod with the mean compliances would need. The linear law has
-a = b = q. The shares are those of a compliance times the weights of the quadrature; they stay what they are
-in the limit of no compliance.
+where q are the unknowns at which a linear rod with the mean compliances has the mean strain. The linear law
+has a = b = q. A weight is proportional to the side's compliance times its quadrature weight; the weights have
+a limit for vanishing compliances.
 
-The sides of a jump are an array, (2, 7), with the `COLUMNS`. Strains beside the jump follow from a and b with
-the compliances of each side; shear has one stress q2 on both sides.
+Both sides of a jump are an array, (2, 7), with the columns `COLUMNS`. Strains on both sides follow from a and
+b with the compliances of each side. The shear stress q2 is equal on both sides.
 """
 
 from typing import NamedTuple
@@ -20,19 +21,21 @@ from ..compiled.compilation import compiled
 from .response import LINEAR_LAW, LocalSection, Stress, Tangent, stress, stress_change, tangent
 
 COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature", "c2")
-"""Columns of the array of the two sides of a jump: fields of `LocalSection`, weights in the mean strain, and
+"""Columns of the array of both sides of a jump: fields of `LocalSection`, weights in the mean strain, and
 c2."""
 SHEAR = COLUMNS.index("c2")
+"""Index of the shear compliance c2 in `COLUMNS`."""
 MOST_ITERATIONS = 40
+"""Maximum number of Newton iterations; after this number the last iterate is used."""
 CONVERGED = 1e-9
-"""Tolerance for the relative Newton step; by quadratic convergence the next step would be below rounding."""
+"""Relative length of a Newton step after which the next step would be below rounding error."""
 LEAST_STRETCH_KEPT = 0.1
-"""Minimum ratio of the stretch h1 after a Newton step to h1 before; longer steps are damped, since h1 must
-stay positive."""
+"""Smallest ratio of the stretch h1 after a Newton step to h1 before; a longer step is shortened, because the
+law is defined for h1 > 0 only."""
 
 
 class Unknowns(NamedTuple):
-    """Unknowns q1 (stretching) and q3 (bending) of a constitutive law at one point, see `response`."""
+    """The unknowns q1 (stretching) and q3 (bending) of a constitutive law at one point, as in `response`."""
 
     q1: float
     q3: float
@@ -45,14 +48,14 @@ def _section(side: Array) -> LocalSection:
 
 @compiled
 def _solved(T: Tangent, N: float, M: float) -> Unknowns:
-    """Solution x of the linear system T x = (N, M)."""
+    """Solution x of the 2 x 2 linear system T x = (N, M)."""
     determinant = T.N1 * T.M3 - T.N3 * T.M1
     return Unknowns((T.M3 * N - T.N3 * M) / determinant, (T.N1 * M - T.M1 * N) / determinant)
 
 
 @compiled
 def _allowed(at: LocalSection, q1: float, step: float) -> float:
-    """Largest fraction, up to 1, of the step of q1 that leaves h1 at LEAST_STRETCH_KEPT times h1 or more."""
+    """Largest fraction, up to 1, of a Newton step `step` of q1 that leaves h1 at LEAST_STRETCH_KEPT h1."""
     h = at.nu + at.c1 * q1
     change = at.c1 * step
     if h + change >= LEAST_STRETCH_KEPT * h:
@@ -67,12 +70,15 @@ def _small(step: Unknowns, at: Unknowns) -> bool:
 
 @compiled
 def unknowns_before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
-    """Solves for the unknowns a before a jump at mean unknowns q, by Newton's method; sides: (2, 7)."""
+    """The unknowns a on the base side of a jump, from the mean unknowns q, by Newton's method.
+
+    The equations are equal stresses on both sides. sides: (2, 7).
+    """
     if law == LINEAR_LAW:
         return q
     one = _section(sides[0])
     other = _section(sides[1])
-    # The mean is prescribed, so b falls by this ratio as a rises.
+    # The mean is prescribed, so b decreases by this ratio times an increase of a.
     ratio1 = sides[0, 3] / sides[1, 3]
     ratio3 = sides[0, 4] / sides[1, 4]
     a = q
@@ -95,20 +101,23 @@ def unknowns_before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
 
 @compiled
 def unknowns_behind_jump(sides: Array, q: Unknowns, a: Unknowns) -> Unknowns:
-    """Unknowns b behind a jump, from the mean unknowns q and the unknowns a before; sides: (2, 7)."""
+    """The unknowns b on the tip side of a jump, from the mean unknowns q and a; sides: (2, 7)."""
     return Unknowns((q.q1 - sides[0, 3] * a.q1) / sides[1, 3], (q.q3 - sides[0, 4] * a.q3) / sides[1, 4])
 
 
 @compiled
 def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
-    """Stresses N, M at a jump, minus the stresses at rest, at mean unknowns q1, q3; sides: (2, 7)."""
+    """Stresses N and M at a jump, minus their values at rest, for the mean unknowns q1, q3; sides: (2, 7)."""
     a = unknowns_before_jump(law, sides, Unknowns(q1, q3))
     return stress(law, _section(sides[0]), a.q1, a.q3)
 
 
 @compiled
 def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tangent:
-    """Derivatives of the mean unknowns with respect to the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM)."""
+    """Derivatives of the mean unknowns at a jump by the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM).
+
+    sides: (2, 7). a, b: unknowns on the base side and the tip side.
+    """
     S = tangent(law, _section(sides[0]), a.q1, a.q3)
     T = tangent(law, _section(sides[1]), b.q1, b.q3)
     s = S.N1 * S.M3 - S.N3 * S.M1
@@ -124,7 +133,10 @@ def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tan
 
 @compiled
 def changes_beside_jump(law: int, sides: Array, q: Unknowns, change: Unknowns) -> tuple[Unknowns, Unknowns]:
-    """Changes of the unknowns (a, b) before and behind a jump for a change of q; sides: (2, 7)."""
+    """(change of a, change of b): changes of the unknowns on the base side and the tip side of a jump.
+
+    change: infinitesimal change of the mean unknowns q. sides: (2, 7).
+    """
     a = unknowns_before_jump(law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
     stresses = _solved(_compliance_at_jump(law, sides, a, b), change.q1, change.q3)
@@ -135,7 +147,7 @@ def changes_beside_jump(law: int, sides: Array, q: Unknowns, change: Unknowns) -
 
 @compiled
 def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
-    """Derivatives of the stresses N, M at a jump with respect to the mean unknowns q1, q3; sides: (2, 7)."""
+    """Derivatives of the stresses N and M at a jump by the mean unknowns q1 and q3; sides: (2, 7)."""
     q = Unknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)
     Z = _compliance_at_jump(law, sides, a, unknowns_behind_jump(sides, q, a))
@@ -145,9 +157,10 @@ def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
 
 @compiled
 def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: float) -> Stress:
-    """Derivatives of N, M at a jump for a change of nu, c1, c3 of both sides, (2, 3), at fixed q1, q3.
+    """Derivatives of the stresses N and M at a jump with respect to a parameter, at fixed mean unknowns.
 
-    The shares do not change: a parameter moves the compliances of both sides by one factor.
+    sides: (2, 7). change: derivatives of nu, c1 and c3 of both sides with respect to the parameter, (2, 3).
+    The weights in the mean strain do not change: a parameter scales the compliances of both sides alike.
     """
     q = Unknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)
@@ -158,7 +171,8 @@ def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: 
         at = _section(sides[i])
         x = a if i == 0 else b
         own = stress_change(law, at, _section(change[i]), x.q1, x.q3)
-        # At fixed stress the unknowns would move back by this; the mean is fixed, so the stress moves.
+        # At fixed stress the unknowns would change by -back. The mean is fixed, so the stress changes
+        # instead.
         back = _solved(tangent(law, at, x.q1, x.q3), own.N, own.M)
         moved1 += sides[i, 3] * back.q1
         moved3 += sides[i, 4] * back.q3

@@ -19,17 +19,17 @@ Values = Any
 """A float, or an array of floats of any shape."""
 
 POLISHING_STEPS = 2
-"""Number of Newton steps on e = 1 - nu after Cardano's formula, which loses digits of e for small loads. The
-residual has no cancellation; each step doubles the number of correct digits."""
+"""Number of Newton steps on the shortening e = 1 - nu. For small loads e = 1 - nu loses digits by
+cancellation; the residual for e does not, and each step doubles the number of digits."""
 
 
 @dataclass(frozen=True, slots=True)
 class Law:
-    """One constitutive law. All functions take and return floats or arrays.
+    """A constitutive law, by its stretch energy W and bending factor B as functions of the stretch h1.
 
-    energy: W(h1). energy_over_square: W(h1)/(h1 - 1)^2. stress: W'(h1). stiffness: W''(h1).
-    stiffness_slope, stiffness_curvature: W''' and W''''. bending: B(h1). bending_slope, bending_curvature:
-    B' and B''.
+    All functions take and return floats or arrays. energy: W(h1). energy_over_square: W(h1)/(h1 - 1)^2.
+    stress: W'(h1). stiffness: W''(h1). stiffness_slope, stiffness_curvature: W''' and W''''. bending: B(h1).
+    bending_slope, bending_curvature: B' and B''.
     shortening: 1 - nu at the load x = F/k1, from W'(nu) = -x, without cancellation for small loads.
     largest_load: the load x that crushes the rod; inf if no force crushes the rod.
     """
@@ -50,7 +50,10 @@ class Law:
 
 
 def _neo_hookean_shortening(x: Values) -> Values:
-    """e = 1 - nu with nu^3 + 3 x nu^2 = 1, by Cardano's formula, then Newton's method on e; x: any shape."""
+    """Shortening e = 1 - nu of neo-Hookean rubber under the load x = F/k1, where nu^3 + 3 x nu^2 = 1.
+
+    By Cardano's formula, then Newton's method on e. x: any shape.
+    """
     x = np.asarray(x, dtype=float)
     square = 0.25 - x**3
     root = np.cbrt(0.5 + np.sqrt(np.maximum(square, 0.0)))
@@ -119,11 +122,11 @@ SWELLING = Law(
     shortening=_neo_hookean_shortening,
 )
 LAWS = {(law.law, law.section): law for law in (LINEAR, NEO_HOOKEAN, SWELLING)}
-"""Constitutive laws by (name of the law, name of the section), as in the config."""
+"""All constitutive laws by (law name, section name)."""
 
 
 def law_of(law: str, section: str) -> Law:
-    """Looks up the constitutive law (law, section) in LAWS; ValueError for an unknown pair."""
+    """The constitutive law with the key (law, section) in `LAWS`; ValueError for an unknown pair."""
     if (law, section) not in LAWS:
         sections = [s for name, s in LAWS if name == law]
         if not sections:

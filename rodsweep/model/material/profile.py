@@ -14,17 +14,17 @@ import numpy as np
 from ...arrays import Array
 
 FACTORS = ("k1", "k2", "k3", "gamma1", "gamma2", "gamma3")
-"""Columns of a profile after u, in order."""
+"""Names of the stiffnesses and drags whose factors a profile lists, in the order of its columns after u."""
 RADIUS_POWERS = {"k1": 2, "k2": 2, "k3": 4, "gamma3": 2}
-"""Power of the radius in each factor of a cone; missing factors have power 0."""
+"""Exponent of the radius in each stiffness and drag of a cone; 0 for missing names."""
 
 
 @dataclass(frozen=True)
 class Profile:
-    """A table of factors along the arm, compared and hashed by value.
+    """Table of factors of stiffnesses and drags along the arm, compared and hashed by value.
 
-    u: increasing from 0 to 1, a value twice at a jump. rows: positive factors at each u, in the order of
-    `FACTORS`. Raises ValueError for an invalid table.
+    u: material coordinates, increasing from 0 to 1, with a repeated value at a jump. rows: positive factors
+    at each u, in the order of `FACTORS`. Raises ValueError for an invalid table.
     """
 
     u: tuple[float, ...]
@@ -57,7 +57,10 @@ class Profile:
 
     @cached_property
     def _pieces(self) -> Array:
-        """Cubic coefficients, t^3 first, t = 0 to 1 between two rows of u, (4, factors, intervals)."""
+        """Coefficients of the cubics between neighbouring u, t^3 first, (4, factors, intervals).
+
+        t runs from 0 to 1 along each interval.
+        """
         u = np.array(self.u)
         rows = np.array(self.rows)
         jumps = np.flatnonzero(np.diff(u) == 0) + 1
@@ -74,7 +77,7 @@ class Profile:
         return np.ascontiguousarray(np.concatenate(pieces, axis=1).swapaxes(1, 2))
 
     def factors(self, u: Array) -> Array:
-        """The factors at points u, none of them a break, shape (factors, *u.shape)."""
+        """Factors at points u in the order of `FACTORS`, (factors, *u.shape); no point may be a break."""
         breaks = self.breaks
         piece = np.minimum(np.searchsorted(breaks[1:], u, side="right"), len(breaks) - 2)
         t = (u - breaks[piece]) / (breaks[piece + 1] - breaks[piece])

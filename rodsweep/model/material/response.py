@@ -15,11 +15,11 @@ from ..compiled.compilation import compiled
 from .laws import LAWS
 
 LINEAR_LAW, FIXED_SECTION, SWELLING_SECTION = range(len(LAWS))
-"""Numbers of the laws in compiled code, in the order of `LAWS`."""
+"""Integers that stand for the constitutive laws in compiled code, in the order of `LAWS`."""
 
 
 class LocalSection(NamedTuple):
-    """Stretch at rest, and compliances of stretching and bending, at one point of a rod."""
+    """Stretch nu at rest, and compliances c1 of stretching and c3 of bending, at one point of a rod."""
 
     nu: float
     c1: float
@@ -34,7 +34,7 @@ class Stress(NamedTuple):
 
 
 class Tangent(NamedTuple):
-    """Derivatives of N and M: N1 = dN/dq1, N3 = dN/dq3, M1 = dM/dq1, M3 = dM/dq3."""
+    """Derivatives of axial force N and moment M: N1 = dN/dq1, N3 = dN/dq3, M1 = dM/dq1, M3 = dM/dq3."""
 
     N1: float
     N3: float
@@ -44,7 +44,7 @@ class Tangent(NamedTuple):
 
 @compiled
 def _bending(law: int, h: float) -> tuple[float, float, float]:
-    """B, B' and B'' at h."""
+    """Bending factor B of a law, and its derivatives B' and B'', at the stretch h."""
     if law == SWELLING_SECTION:
         a = 1 / h
         b = 1 / h**4
@@ -62,7 +62,7 @@ def _secant(nu: float, h: float) -> float:
 
 @compiled
 def stress(law: int, at: LocalSection, q1: float, q3: float) -> Stress:
-    """N and M at the unknowns q1 and q3."""
+    """Stresses N and M at one point for the unknowns q1 and q3; law: one of the integers above."""
     if law == LINEAR_LAW:
         return Stress(q1, q3)
     h = at.nu + at.c1 * q1
@@ -72,7 +72,7 @@ def stress(law: int, at: LocalSection, q1: float, q3: float) -> Stress:
 
 @compiled
 def tangent(law: int, at: LocalSection, q1: float, q3: float) -> Tangent:
-    """Derivatives of N and M with respect to the unknowns q1 and q3."""
+    """Derivatives of the stresses N and M at one point with respect to the unknowns q1 and q3."""
     if law == LINEAR_LAW:
         return Tangent(1.0, 0.0, 0.0, 1.0)
     h = at.nu + at.c1 * q1
@@ -84,9 +84,9 @@ def tangent(law: int, at: LocalSection, q1: float, q3: float) -> Tangent:
 
 @compiled
 def stress_change(law: int, at: LocalSection, change: LocalSection, q1: float, q3: float) -> Stress:
-    """Derivatives of N and M with respect to a parameter, at fixed unknowns.
+    """Derivatives of the stresses N and M with respect to a parameter, at fixed unknowns q1 and q3.
 
-    change: derivatives of the section `at` with respect to the parameter.
+    change: derivatives of the fields of `at` with respect to the parameter.
     """
     if law == LINEAR_LAW:
         return Stress(0.0, 0.0)

@@ -1,4 +1,4 @@
-"""The result file: creation, exchange, seal and validation; reading, merging and provenance."""
+"""The result file: creation, atomic replacement, seal and validation; reading, merging and provenance."""
 
 from ...errors import import_refusal
 

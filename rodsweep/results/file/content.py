@@ -1,4 +1,4 @@
-"""Content of a result file as a digest of each variable and attribute, and refusal of foreign content.
+"""Digests of the variables and attributes of a result file, and refusal of content by other programs.
 
 A digest covers the meaning, not the storage: type, shape, dimensions, numbers and attributes of a variable. A
 file rewritten by another program, such as xarray, keeps the digests. Names that begin with `user_` belong to
@@ -17,30 +17,31 @@ import numpy as np
 from ...config.values import named
 
 SEAL_ATTRIBUTE = "seal"
-"""Name of the attribute with the digests."""
+"""Name of the attribute that holds the digests of all variables and attributes."""
 USER_PREFIX = "user_"
-"""Prefix of the names of variables and attributes of the user."""
+"""Prefix of the names of variables and attributes that the user adds to a result file."""
 DIGITS = 16
-"""Number of hexadecimal digits of a digest: one change in 2^64 goes unnoticed."""
+"""Number of hexadecimal digits of a digest: one change in 2^64 is not detected."""
 BOOKKEEPING = frozenset(
     {
         "CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST", "DIMENSION_LABELS", "_Netcdf4Dimid",
         "_Netcdf4Coordinates", "_NCProperties", "coordinates", SEAL_ATTRIBUTE,
     }
 )  # fmt: skip
-"""Attributes by which HDF5 and netCDF link dimensions to variables; digests contain the dimensions."""
+"""Names of attributes without digests: the seal, and attributes by which HDF5 and netCDF link dimensions to
+variables. The digest of a variable covers its dimensions."""
 NUMBERS = "iuf"
-"""Kind characters of the NumPy types allowed for variables of a result: integer, unsigned, float."""
+"""NumPy type kinds allowed for variables of a result file: integers and floating-point numbers."""
 BYTES_A_READ = 1 << 18
-"""Number of bytes of a variable that a digest reads at once, to bound the memory."""
-FILLED_WITH_NAN = ("_FillValue", "[nan]")
-"""(name, value as text) of an attribute that xarray adds on writing; digests omit it."""
+"""Number of bytes per read of a variable, which bounds the memory."""
+XARRAY_FILL_ATTRIBUTE = ("_FillValue", "[nan]")
+"""(name, value as text) of an attribute that xarray adds when it writes a file, and that has no effect."""
 Digests = dict[str, dict[str, str]]
-"""Content of a seal: digests of a file by name, under the keys `attributes` and `variables`."""
+"""Digests by name of the attribute or variable, under the keys `attributes` and `variables`."""
 
 
 def is_users(name: str) -> bool:
-    """Whether a variable or attribute belongs to the user: its name begins with USER_PREFIX."""
+    """Whether a variable or attribute of this name was added by the user."""
     return name.startswith(USER_PREFIX)
 
 
@@ -51,7 +52,7 @@ def variable_digest(
     attributes: Mapping[str, Any],
     blocks: Iterable[Any],
 ) -> str:
-    """Digest of a variable; its numbers are given as buffers in row-major order."""
+    """Digest of a variable of the type `kind`; blocks: its numbers as buffers in row-major order."""
     described = [kind.newbyteorder("<").str, list(shape), list(dimensions), _plain_attributes(attributes)]
     digest = sha256(json.dumps(described, sort_keys=True).encode())
     for block in blocks:
@@ -60,13 +61,13 @@ def variable_digest(
 
 
 def attribute_digests(attributes: Mapping[str, Any]) -> dict[str, str]:
-    """Digest of every attribute of a file, by name."""
+    """Digest of every attribute of a file by name, except attributes of HDF5, netCDF and the user."""
     plain = _plain_attributes(attributes)
     return {name: sha256(json.dumps(value).encode()).hexdigest()[:DIGITS] for name, value in plain.items()}
 
 
 def digests_of(file: h5py.File) -> Digests:
-    """Digests of an open file; raises ValueError, as a clause, for content that no result has."""
+    """Digests of an open file; raises ValueError, with a clause as message, for content of other programs."""
     variables = {}
     for name, data in _variables(file):
         if data.dtype.kind not in NUMBERS or data.shape is None:
@@ -77,7 +78,7 @@ def digests_of(file: h5py.File) -> Digests:
 
 
 def refuse_changed(file: h5py.File) -> None:
-    """Raises ValueError, as a clause, if the content of an open file differs from the sealed content."""
+    """Raises ValueError, with a clause as message, if the digests of an open file differ from its seal."""
     if SEAL_ATTRIBUTE not in file.attrs:
         raise ValueError("its checksums are missing")
     sealed = json.loads(file.attrs[SEAL_ATTRIBUTE])
@@ -98,7 +99,10 @@ def refuse_changed(file: h5py.File) -> None:
 
 
 def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
-    """Yields (name, variable) of a file; raises ValueError for links and for data stored in another file."""
+    """Yields (name, variable) of an open file, without the user's variables.
+
+    Raises ValueError for links and for data stored in another file.
+    """
     places = set()
     for name in file:
         shown = named(name, 40)
@@ -120,7 +124,7 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
 
 
 def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
-    """Names of the dimensions of a variable: its own name for a coordinate, else read from attributes.
+    """Names of a variable's dimensions, from its attributes; a coordinate has itself as dimension.
 
     HDF5's own functions for dimensions crash on damaged attributes, and are not used.
     """
@@ -150,7 +154,7 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
 
 
 def _blocks(data: h5py.Dataset) -> Iterator[Any]:
-    """Yields the numbers of a variable as buffers, read directly from the file if they are contiguous."""
+    """Yields the numbers of a variable as buffers; contiguous numbers are read from the file without HDF5."""
     start = data.id.get_offset()
     size = data.id.get_storage_size()
     if start is None or data.dtype.byteorder == ">":
@@ -162,14 +166,14 @@ def _blocks(data: h5py.Dataset) -> Iterator[Any]:
 
 
 def _plain_attributes(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """Attributes as lists of numbers or texts, without attributes of HDF5, netCDF and the user."""
+    """Attributes as lists of numbers or texts by name, without attributes of HDF5, netCDF and the user."""
     names = (name for name in attributes if name not in BOOKKEEPING and not is_users(name))
     plain = {name: _plain(attributes[name]) for name in names}
-    return {name: value for name, value in plain.items() if (name, str(value)) != FILLED_WITH_NAN}
+    return {name: value for name, value in plain.items() if (name, str(value)) != XARRAY_FILL_ATTRIBUTE}
 
 
 def _plain(value: Any) -> Any:
-    """Value of an attribute as a list for JSON; for netCDF a number equals a list of a single number."""
+    """Value of an attribute as a list for JSON; a single number becomes a list, as netCDF stores it."""
     if isinstance(value, h5py.Empty):
         return [""]
     array = np.atleast_1d(value)

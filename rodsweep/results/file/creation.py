@@ -21,28 +21,28 @@ from .validation import FORMAT, PROGRAM
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Content of a result file before the run: points, layout of the variables, config, attributes."""
+    """Plan of a result file: points, layout, resolved config, and the variables besides the points."""
 
     points: Points
     layout: Layout
     coordinates: dict[str, Array]
-    """Coordinates of extra dimensions, such as u, where the default 1, 2, ... does not apply."""
+    """Coordinates, (n,) each, of extra dimensions such as u, where the default 1, 2, ... does not apply."""
     constants: Callable[[], tuple[Filled, ...]]
-    """Variables known before any point is solved; called once, when a file is created."""
+    """Returns the variables known before any point is solved; called once, when a file is created."""
     config: dict[str, Any]
     """The resolved config."""
     attributes: dict[str, Any]
-    """Attributes of the file besides those of every result file."""
+    """Attributes of the file, besides the attributes that every result file has."""
     flags: tuple[tuple[int, str], ...]
-    """Values and meanings of `status`, without MISSING."""
+    """(value, word) of every status except MISSING."""
     quantities: tuple[Filled, ...] = ()
-    """Quantities of an arm: coordinates of the points besides the parameters, or dimensions of the points."""
+    """Quantities of an arm: axes of a grid over them, or further coordinates of the points."""
     chains: Chains | None = None
-    """Chains of points; None if every point starts cold."""
+    """Chains of points; None if no point starts from the state of another point."""
     stretches: Stretches | None = None
-    """Stretches of points solved at once; None if every point is solved alone."""
+    """Stretches of points that are solved together; None if every point is solved alone."""
     afterwards: Callable[[Mapping[str, Any]], tuple[Filled, ...]] = lambda values: ()
-    """Variables computed from the variables of all points, by name; called when no point is missing."""
+    """Returns variables computed from the variables of all points; called when no point is missing."""
 
     @property
     def dimensions(self) -> tuple[str, ...]:
@@ -51,12 +51,12 @@ class Plan:
 
     @property
     def fingerprint(self) -> str:
-        """Fingerprint of config and points; equal for files that can continue each other."""
+        """Fingerprint of config and points; a run can continue a file with an equal fingerprint."""
         return fingerprint_of(self.config, self.points.identity)
 
 
 def create_file(path: Path, plan: Plan) -> None:
-    """Writes the file of a plan, without any point."""
+    """Creates the file of a plan at `path`; all points are missing."""
     with h5py.File(path, "w") as file:
         _write_parameters(file, plan)
         for name, extent in plan.layout.extents.items():
@@ -75,7 +75,7 @@ def create_file(path: Path, plan: Plan) -> None:
 
 
 def add_variables(file: h5py.File, filled: Sequence[Filled]) -> None:
-    """Adds complete variables to an open file, with coordinates of dimensions that the file lacks."""
+    """Adds variables with their values to an open file, and coordinates 1, 2, ... of new dimensions."""
     for variable, values in filled:
         for name, extent in zip(variable.extra, values.shape, strict=True):
             if name not in file:
@@ -113,14 +113,17 @@ def is_axis(variable: Variable) -> bool:
 
 
 def _write_scale(file: h5py.File, name: str, values: NDArray[Any], variable: Variable | None = None) -> None:
-    """Writes a dimension with a coordinate; variable: describes a dimension outside DIMENSIONS."""
+    """Writes the coordinate `values`, (n,), of the dimension `name`.
+
+    variable: description of a dimension that is not in DIMENSIONS.
+    """
     data = file.create_dataset(name, data=values)
     data.make_scale(name)
     data.attrs.update(dimension_attributes(name) if variable is None else variable.attributes)
 
 
 def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> h5py.Dataset:
-    """Creates a contiguous dataset, allocated and filled at once, so that its offset in the file is final."""
+    """New contiguous dataset, allocated and filled at once, so that its offset in the file is final."""
     creation = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
     creation.set_layout(h5py.h5d.CONTIGUOUS)
     creation.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
@@ -131,7 +134,7 @@ def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> 
 
 
 def _describe(file: h5py.File, data: h5py.Dataset, variable: Variable, dimensions: Sequence[str]) -> None:
-    """Adds unit, long name, flags and dimensions of a variable."""
+    """Adds unit, long name, flags and dimensions of `variable` to its dataset `data`."""
     data.attrs.update(variable.attributes)
     for axis, name in enumerate(dimensions):
         data.dims[axis].attach_scale(file[name])

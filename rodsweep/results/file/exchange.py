@@ -1,4 +1,4 @@
-"""Atomic exchange of a result file, under a lock for a single run or merge at a time.
+"""Atomic replacement of a result file, under a lock that a single run or merge holds at a time.
 
 The new file is written beside the journals, and sealed and synced to disk before the rename.
 """
@@ -16,11 +16,9 @@ from ..run.journal import journal_directory
 from .seal import seal
 
 LOCK_PATIENCE = 5.0
-"""Seconds to wait for the lock. Ranks of a launcher that was killed live on for a moment."""
+"""Seconds to wait for the lock before a refusal. Ranks of a killed launcher live on for a moment."""
 Identity = tuple[int, ...]
-"""Device, inode, size and modification time of a file, which change when the file is replaced or written to;
-empty without a
-file."""
+"""(device, inode, size, time of change): changes when a file is replaced or written; empty without a file."""
 
 
 def identity(path: Path) -> Identity:
@@ -34,7 +32,10 @@ def identity(path: Path) -> Identity:
 
 @contextmanager
 def disk_refusals(path: Path, kept: Callable[[], str] = str) -> Iterator[None]:
-    """Converts disk errors (RuntimeError from HDF5) to EnvironmentIncomplete; kept: clause on saved work."""
+    """Context that turns disk errors (RuntimeError from HDF5) into EnvironmentIncomplete.
+
+    path: file that is written. kept: returns a clause for the message on what is saved.
+    """
     try:
         yield
     except (OSError, RuntimeError) as error:
@@ -43,7 +44,7 @@ def disk_refusals(path: Path, kept: Callable[[], str] = str) -> Iterator[None]:
 
 
 class FileReplacement:
-    """Exclusive right to replace a result file, which need not exist yet."""
+    """Exclusive right to replace the result file at `path`, which need not exist yet."""
 
     def __init__(self, path: Path):
         """Takes the lock; raises InputError if the lock is taken."""
@@ -57,7 +58,10 @@ class FileReplacement:
 
     @contextmanager
     def replacing(self, source: Path | None) -> Iterator[Path]:
-        """Yields the path of a copy of `source`, or of no file, which replaces the file at the end."""
+        """Context for writing a new result file; at its end the new file is sealed and replaces the old file.
+
+        Yields the path of the new file: a copy of `source`, or no file for None.
+        """
         # The directory may have been moved or deleted meanwhile.
         self.journals.mkdir(parents=True, exist_ok=True)
         self.copy.unlink(missing_ok=True)  # a link would redirect the writing
@@ -82,10 +86,10 @@ class FileReplacement:
 
 
 class Lock:
-    """Lock on a result file, in the journal directory, which the lock creates and removes."""
+    """Lock on a result file: a file in the journal directory. The lock creates and removes this directory."""
 
     def __init__(self, directory: Path, path: Path):
-        """Takes the lock; raises InputError if the lock is taken."""
+        """Takes the lock on the file `path`; raises InputError if another run holds it."""
         self.directory = directory
         patience = time.monotonic() + LOCK_PATIENCE
         while True:

@@ -9,13 +9,16 @@ import numpy as np
 from ...errors import EnvironmentIncomplete
 
 Table = dict[str, Sequence[str] | Sequence[float]]
-"""Measurements of one study: columns of equal length, by name."""
+"""Table of the measurements of a benchmark study: columns of equal length, by name."""
 UNITS = {"seconds": "s", "error": "1"}
-"""Unit of the column, by name; other columns have no unit."""
+"""Unit of a column by its name; other columns have no unit."""
 
 
 def write_measurements(path: Path, tables: Mapping[str, Table], attributes: Mapping[str, str]) -> None:
-    """Writes /STUDY/COLUMN, each (measurement,); EnvironmentIncomplete if writing fails."""
+    """Writes the table of every benchmark study to `path`, as /STUDY/COLUMN, (measurement,) each.
+
+    Raises EnvironmentIncomplete if writing fails.
+    """
     try:
         with h5py.File(path, "w") as file:
             file.attrs.update(attributes)

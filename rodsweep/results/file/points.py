@@ -18,13 +18,18 @@ from ...sweep.points.ranges import IndexRange, merged_ranges
 from ..layouts.variables import MISSING, Layout
 
 POINTS_AT_ONCE = 1 << 16
-"""Largest number of points in a block that is read at once."""
+"""Maximum number of points in a block that is read at once."""
 BYTES_AT_ONCE = 1 << 26
-"""Largest size of a block, in bytes; large points make a block of fewer points."""
+"""Maximum size of a block that is read at once, in bytes; a block has fewer points if their records are
+large."""
 
 
 def statuses(path: Path, at_once: int | None = None) -> Iterator[tuple[int, np.ndarray]]:
-    """Yields (flat index of the first point, statuses) of all points, a block at a time, each (n,)."""
+    """Yields (flat index of the first point, statuses of n consecutive points, (n,)) until all points are
+    read.
+
+    at_once: number of points in a block; POINTS_AT_ONCE by default.
+    """
     with h5py.File(path, "r") as file:
         data = file["status"]
         offset = data.id.get_offset()
@@ -38,7 +43,7 @@ def statuses(path: Path, at_once: int | None = None) -> Iterator[tuple[int, np.n
 
 
 def missing_ranges(path: Path) -> list[IndexRange]:
-    """Ranges of flat indices of points not computed yet, in order."""
+    """Ranges of the flat indices of missing points of a result file, in order."""
     ranges: list[IndexRange] = []
     for start, status in statuses(path):
         edges = start + np.flatnonzero(np.diff(status == MISSING, prepend=False, append=False))
@@ -47,7 +52,7 @@ def missing_ranges(path: Path) -> list[IndexRange]:
 
 
 def points_to_add(path: Path, other: Path, layout: Layout) -> Iterator[np.ndarray]:
-    """Yields records, (n,), of points present in the file `other` and missing in the file `path`."""
+    """Yields records, (n,), of points that the file `other` has and the file `path` lacks."""
     at_once = _at_once(layout)
     pairs = zip(statuses(path, at_once), statuses(other, at_once), strict=True)
     yield from _read(
@@ -64,12 +69,12 @@ def stored_points(path: Path, layout: Layout) -> Iterator[np.ndarray]:
 
 
 def _at_once(layout: Layout) -> int:
-    """Number of points that are read in one block, so that a block has about BYTES_AT_ONCE bytes at most."""
+    """Number of points in a block that is read at once, for the record size of a layout."""
     return min(POINTS_AT_ONCE, BYTES_AT_ONCE // layout.record.itemsize + 1)
 
 
 def _read(path: Path, layout: Layout, blocks: Iterable[tuple[int, np.ndarray]]) -> Iterator[np.ndarray]:
-    """Yields records of selected points; blocks are (flat index of the first point, selection)."""
+    """Yields records, (n,), of selected points; blocks: (flat index of the first point, mask of points)."""
     offsets = _offsets(path, layout)
     with path.open("rb") as stream:
         for first, wanted in blocks:
@@ -99,13 +104,13 @@ def points_at(path: Path, index: np.ndarray, layout: Layout) -> np.ndarray:
 
 
 def parameters_of(path: Path, layout: Layout) -> Points:
-    """All points of a file with the given layout, computed or not."""
+    """All points of the sweep of a result file, computed or missing."""
     with h5py.File(path, "r") as file:
         return points_in(file, layout)
 
 
 def points_in(file: h5py.File, layout: Layout) -> Points:
-    """Points of an open file: axes of a grid, or parameters of all points."""
+    """All points of the sweep of an open result file, computed or missing."""
     names = layout.parameters
     over = {name: file[name][...] for name in layout.over}
     if not over:
@@ -115,7 +120,10 @@ def points_in(file: h5py.File, layout: Layout) -> Points:
 
 
 def on_grid(variables: Mapping[str, Any], layout: Layout) -> Iterator[np.ndarray]:
-    """Yields every parameter on a grid over an arm's quantities: in the grid's shape, or along an axis."""
+    """Yields each parameter on a grid over an arm's quantities, shaped to broadcast over the grid.
+
+    A parameter has the shape of the grid, or extends along its own axis only.
+    """
     for name in layout.parameters:
         along = [-1 if axis == name else 1 for axis in layout.over]
         table = variables[name][...]
@@ -123,7 +131,10 @@ def on_grid(variables: Mapping[str, Any], layout: Layout) -> Iterator[np.ndarray
 
 
 def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bool:
-    """Writes records, (n,) in any order, neighbours by a single call; returns whether there was any one."""
+    """Writes records, (n,) in any order, into a result file; returns whether there were any records.
+
+    Records of consecutive points are written by a single call.
+    """
     offsets = _offsets(path, layout)
     any_written = False
     with path.open("r+b") as stream:

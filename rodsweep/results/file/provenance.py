@@ -16,23 +16,23 @@ import numpy as np
 from ... import __version__
 
 MAX_RANK_SHARES = 10_000
-"""Largest number of ranks with a stored share of the work; more would exceed the 64 kB of an attribute."""
+"""Maximum number of ranks whose work statistics are stored; more would exceed the 64 kB of an attribute."""
 LONGEST_ATTRIBUTE = 60_000
-"""Largest number of characters of an attribute; HDF5 allows 64 kB."""
+"""Maximum number of characters of an attribute; HDF5 allows 64 kB."""
 RANK_SHARES = ("rank_points", "rank_busy_seconds", "rank_idle_seconds")
-"""Attributes with the work of each rank of the last run."""
+"""Names of the attributes with the work statistics of each rank of the last run."""
 KERNELS_ATTRIBUTE = "blas_kernels"
-"""Attribute with the BLAS kernels that computed the points of a file in all runs, a kernel a line, named by
-`rodsweep.solve.backend.blas_kernel`."""
+"""Name of the attribute with the BLAS kernels that computed the points of a file in all runs, a kernel per
+line, named by `rodsweep.solve.backend.blas_kernel`."""
 FAILURE_REASONS = "failure_reasons"
-"""Attribute with an example point of each distinct reason for which points failed, in all runs, a line each:
-parameters, status and reason."""
+"""Name of the attribute with one example point for each distinct reason of failure, in all runs; each line
+has parameters, status and reason."""
 NUMBER = re.compile(r"\d[\d.]*(?:e[+-]?\d+)?")
-"""A number in a message; messages that differ only in numbers state one reason."""
+"""Matches a number in a message. Messages that differ only in numbers count as the same reason of failure."""
 MAX_FAILURE_REASONS = 20
-"""Maximum number of distinct failure reasons in a file; further reasons are dropped."""
+"""Maximum number of reasons of failure in a file; further reasons are dropped."""
 KERNEL_NOT_RECORDED = "unknown"
-"""Kernel of points from an earlier version, which did not record kernels."""
+"""Name of the BLAS kernel of points from an earlier version, which did not record kernels."""
 
 
 def now() -> str:
@@ -41,7 +41,9 @@ def now() -> str:
 
 
 def provenance() -> dict[str, str]:
-    """Attributes with the versions of Python and packages, except solver libraries, and the commit."""
+    """Versions of rodsweep, Python and libraries except the solver's, the git commit, and the system, by
+    name.
+    """
     return {
         "rodsweep_version": __version__,
         "git_commit": git_commit(),
@@ -56,24 +58,24 @@ def provenance() -> dict[str, str]:
 
 
 def kernels_of(attributes: Mapping[str, Any]) -> list[str]:
-    """Names of the BLAS kernels in the attributes of a file."""
+    """Names of the BLAS kernels in the attributes of a result file."""
     return str(attributes.get(KERNELS_ATTRIBUTE, KERNEL_NOT_RECORDED)).splitlines()
 
 
 def united_kernels(*several: Iterable[str]) -> str:
-    """Value of KERNELS_ATTRIBUTE for a file whose points were computed by any of the given kernels."""
+    """Value of KERNELS_ATTRIBUTE for a file with points computed by all these BLAS kernels."""
     return "\n".join(sorted({kernel for kernels in several for kernel in kernels}))
 
 
 def reason_of(line: str) -> str:
-    """The status and reason of a line `parameters: status reason`, its numbers left out."""
+    """Status and reason in a line "parameters: status reason", with every number replaced by #."""
     return NUMBER.sub("#", line.partition(": ")[2])
 
 
 def united_reasons(*several: str) -> dict[str, str]:
-    """Merges values of the attribute FAILURE_REASONS of several files; may be empty.
+    """The attribute FAILURE_REASONS, by name, from several values of it; empty without reasons.
 
-    Of lines with equal reasons the first remains.
+    Of lines with equal reasons the first is included.
     """
     lines: dict[str, str] = {}
     for line in "\n".join(several).splitlines():
@@ -83,16 +85,16 @@ def united_reasons(*several: str) -> dict[str, str]:
 
 
 def reasons_added(lines: Iterable[str], before: Mapping[str, Any]) -> dict[str, str]:
-    """The attribute FAILURE_REASONS of a file with further points, from the lines of these points.
+    """The attribute FAILURE_REASONS, by name, after new failures.
 
-    before: attributes with the reasons of earlier runs.
+    lines: lines of the new failures. before: attributes of the file, with the reasons of earlier runs.
     """
     # The newest examples first: an earlier one may be a point that has been computed anew.
     return united_reasons(*lines, str(before.get(FAILURE_REASONS, "")))
 
 
 def kernels_sentence(attribute: str) -> str:
-    """Warning that points of a file were computed by several kernels; empty for a single kernel."""
+    """Warning that several BLAS kernels computed the points of a file; empty for a single kernel."""
     kernels = attribute.splitlines()
     if len(kernels) < 2:
         return ""
@@ -103,7 +105,7 @@ def kernels_sentence(attribute: str) -> str:
 
 
 def merged_history(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Attributes of a merged file about the computation of the points, from the attributes of the sources."""
+    """Attributes of a merged file on the runs that computed its points, from its sources' attributes."""
     history: dict[str, Any] = {
         "shard": "",
         KERNELS_ATTRIBUTE: united_kernels(*map(kernels_of, several))[:LONGEST_ATTRIBUTE],
@@ -127,7 +129,7 @@ def merged_history(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 @cache
 def git_commit() -> str:
-    """Commit of the checkout containing this code, marked if files were changed; or unknown."""
+    """Git commit of rodsweep's source tree, with "-dirty" if files were changed; "unknown" without git."""
     root = Path(__file__).resolve().parents[3]
     if not (root / ".git").exists():
         return "unknown"

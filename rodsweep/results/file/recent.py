@@ -1,6 +1,6 @@
-"""Current state of a run: the file, and journalled points not yet in the file.
+"""Current state of a run: the result file together with points that are still in its journals.
 
-Neither is written to: a running run is not disturbed, and no lock is needed.
+File and journals are only read: a run in progress is not disturbed, and no lock is needed.
 """
 
 import os
@@ -21,18 +21,19 @@ from .provenance import now, reasons_added
 from .validation import ResultHeader, is_ours, read_header, reading
 
 MAX_REREADS = 20
-"""Maximum number of attempts to read a file that changes meanwhile. Runs replace a file seconds apart; more
-attempts would point to a fault."""
+"""Maximum number of attempts to read a file that is replaced meanwhile. A run replaces its file every few
+seconds at most; more replacements indicate a fault."""
 SNAPSHOT = "snapshot"
-"""Attribute with the time of a snapshot, which marks a file as a snapshot."""
+"""Name of the attribute with the time of a snapshot; the attribute marks a file as a snapshot."""
 Found = TypeVar("Found")
 
 
 def read_unfolded(path: Path, read: Callable[[], Found]) -> Found:
-    """Result of `read`, which reads a file and journals; repeated if a run folds journals in meanwhile.
+    """Result of `read`, which reads a file and its journals; `read` is called again if the file was replaced.
 
-    A fold replaces the file before the journals are deleted. No journal was deleted if the file is the same
-    before and after the reading. Raises EnvironmentIncomplete if the file keeps changing.
+    A run that moves journalled points into the file replaces the file before it deletes the journals. No
+    journal was deleted if the file is the same before and after the reading. Raises EnvironmentIncomplete if
+    the file keeps changing.
     """
     for _ in range(MAX_REREADS):
         has_journals = journal_directory(path).is_dir()
@@ -44,7 +45,10 @@ def read_unfolded(path: Path, read: Callable[[], Found]) -> Found:
 
 
 def journalled_points(header: ResultHeader, status: np.ndarray) -> np.ndarray:
-    """Records, (n,), of journalled points that are missing in the file by `status`, (points,)."""
+    """Records, (n,), of the points in the journals that are missing in the file.
+
+    status: statuses in the file, (points,).
+    """
     found = np.empty(0, header.layout.record)
     directory = journal_directory(header.path)
     if not directory.is_dir():
@@ -57,14 +61,14 @@ def journalled_points(header: ResultHeader, status: np.ndarray) -> np.ndarray:
 
 
 def journalled_reasons(header: ResultHeader) -> dict[str, str]:
-    """Value of FAILURE_REASONS for the file and its journals together; may be empty."""
+    """The attribute FAILURE_REASONS, by name, including failed points in the journals; may be empty."""
     directory = journal_directory(header.path)
     lines = read_reasons(directory, header.layout, header.fingerprint) if directory.is_dir() else ()
     return reasons_added(lines, header.attributes)
 
 
-def put_in(values: np.ndarray, name: str, records: np.ndarray) -> None:
-    """Writes records, (n,), of a variable into the values, of the shape of points and variable."""
+def insert_records(values: np.ndarray, name: str, records: np.ndarray) -> None:
+    """Copies the variable `name` of records, (n,), into `values`, its array over all points, in place."""
     values.reshape(-1, *records[name].shape[1:])[records["index"]] = records[name]
 
 
@@ -89,7 +93,10 @@ def write_snapshot(path: Path, output: Path) -> tuple[int, int]:
 
 
 def _copied(path: Path, exchange: FileReplacement) -> tuple[int, int]:
-    """Replaces the snapshot by a copy of the file at `path` with its journals folded in."""
+    """Replaces the snapshot by a copy of the file at `path` with the points of its journals.
+
+    Returns (number of computed points, number of all points).
+    """
     header = read_header(path)
     with disk_refusals(exchange.path), exchange.replacing(path) as copy:
         blocks = read_journals(journal_directory(path), header.layout, header.fingerprint, header.points)
@@ -101,7 +108,7 @@ def _copied(path: Path, exchange: FileReplacement) -> tuple[int, int]:
 
 
 def _is_snapshot(path: Path) -> bool:
-    """Whether a file is a snapshot that no run has continued."""
+    """Whether a file is a snapshot. A run that continues a snapshot makes it an ordinary result file."""
     if not is_ours(path):
         return False
     with reading(path), h5py.File(path, "r") as file:

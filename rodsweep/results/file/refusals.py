@@ -1,4 +1,4 @@
-"""Refusals at the start of a run: no room, or another file in the way; and the user's options."""
+"""Refusals at the start of a run: too little disk space, or another file at the path of the result file."""
 
 import shutil
 from pathlib import Path
@@ -12,13 +12,14 @@ from .points import parameters_of
 from .validation import IncompleteFile, ResultHeader, read_header
 
 SPACE_FACTOR = 3
-"""Disk space needed by a run, in units of the file size: the file, the journals, and the replacing copy."""
+"""Disk space that a run needs, divided by the size of its file: for the file, journals and a replacing
+copy."""
 SPACE_FIXED = 300_000
-"""Additional disk space needed by a run, in bytes: attributes, coordinates and checkpoints."""
+"""Further disk space that a run needs, in bytes, for attributes, coordinates and checkpoints."""
 
 
 def require_room(path: Path, plan: Plan) -> None:
-    """Raises EnvironmentIncomplete unless the disk has room for the file, the journals and the copy."""
+    """Raises EnvironmentIncomplete unless the disk has space for the file of a plan, journals and a copy."""
     size = SPACE_FACTOR * plan.points.count * (plan.layout.bytes_per_point + 12) + SPACE_FIXED
     free = shutil.disk_usage(path.parent).free
     if free < size:
@@ -28,7 +29,10 @@ def require_room(path: Path, plan: Plan) -> None:
 
 
 def header_in_the_way(path: Path, plan: Plan, journals: Path) -> ResultHeader:
-    """Header of an existing file at the path of a plan; raises InputError unless it is a complete result."""
+    """Header of the existing file at `path`, where the file of a plan belongs.
+
+    Raises InputError unless the existing file is a complete result. journals: journal directory of the file.
+    """
     if not path.is_file():
         raise InputError(f"{path} is not a file; choose another with -o")
     try:
@@ -38,7 +42,7 @@ def header_in_the_way(path: Path, plan: Plan, journals: Path) -> ResultHeader:
 
 
 def refuse_other(header: ResultHeader, plan: Plan, journals: Path) -> None:
-    """Raises InputError for an existing file whose config differs from the config of the plan."""
+    """Raises InputError for an existing file that was made for another config than the plan's."""
     change = change_between(header.config, plan.config)
     ways = _ways_out(plan, journals)
     try:
@@ -50,7 +54,7 @@ def refuse_other(header: ResultHeader, plan: Plan, journals: Path) -> None:
 
 
 def _ways_out(plan: Plan, journals: Path) -> str:
-    """Phrase with the options of a user whose run finds another file at its path."""
+    """Remedies, as a clause, for an existing file that prevents the run of a plan."""
     if journals_of(journals, plan.fingerprint):
         return f"move it away, and the same command will use the points in {journals}"
     return "choose another file with -o, or replace it with --fresh"

@@ -18,29 +18,29 @@ import h5py
 from .content import SEAL_ATTRIBUTE, digests_of
 
 FRAME_HEAD = b"\nrodsweep seal 2 "
-"""First bytes of the checksum, behind HDF5's end of the file."""
+"""First bytes of the checksum of HDF5's structures, which follows HDF5's own end of the file."""
 FORMER_HEAD = b"\nrodsweep seal 1 "
-"""First bytes of the checksum in files of format 4 and before, refused by their format."""
+"""First bytes of the checksum in files of format 4 and before, which are refused for their format."""
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 """First bytes of every HDF5 file."""
-END_AT = {0: 40, 1: 44, 2: 28, 3: 28}
-"""Offset, by version of the superblock, of the eight bytes with HDF5's end of the file."""
+END_OFFSETS = {0: 40, 1: 44, 2: 28, 3: 28}
+"""Offset of the eight bytes with HDF5's end of the file, by version of HDF5's superblock."""
 LONGEST_FRAME = 100_000
-"""Largest size, in bytes, of the checksum with the places of the numbers left out."""
+"""Maximum size, in bytes, of the text with the checksum and the byte ranges that the checksum omits."""
 BYTES_A_READ = 1 << 20
-"""Number of bytes of a file that the checksum reads at once, to bound the memory."""
+"""Number of bytes per read of a file, which bounds the memory."""
 LARGEST_INCLUDED = 1 << 16
-"""Largest size, in bytes, of a variable, such as an axis, whose numbers the checksum includes."""
+"""Size of a variable, in bytes, up to which the checksum of HDF5's structures includes its numbers."""
 Piece = tuple[int, int]
-"""(offset, size), in bytes, of a part of a file."""
+"""Byte range of a file: (offset, size), in bytes."""
 
 
 class BrokenSeal(ValueError):
-    """Difference of a file from its seal; the message is a clause."""
+    """A file differs from its seal; the message is a clause."""
 
 
 def seal(path: Path) -> None:
-    """Adds new seals to a closed file that rodsweep has just written."""
+    """Adds digests and checksum to a closed file that rodsweep has just written; replaces former ones."""
     with h5py.File(path, "r+") as file:
         file.attrs[SEAL_ATTRIBUTE] = json.dumps(digests_of(file))
     with h5py.File(path, "r") as file:
@@ -54,9 +54,10 @@ def seal(path: Path) -> None:
 
 
 def check_frame(path: Path) -> bool:
-    """Whether HDF5's structures agree with the checksum; False without checksum, after another program.
+    """Whether the file has a checksum that its HDF5 structures match; False without a checksum.
 
-    Raises BrokenSeal at a difference, or OSError. Takes a millisecond.
+    Another program that writes the file removes the checksum. Raises BrokenSeal for a wrong checksum, or
+    OSError. Takes a millisecond.
     """
     with path.open("rb") as stream:
         end = _end(stream)
@@ -81,24 +82,24 @@ def check_frame(path: Path) -> bool:
 
 
 def _end(stream: BinaryIO) -> int:
-    """HDF5's end of the file, from the superblock."""
+    """Offset of HDF5's own end of the file, in bytes, from the superblock."""
     stream.seek(0)
     head = stream.read(64)
-    if not head.startswith(HDF5_SIGNATURE) or len(head) < 64 or head[8] not in END_AT:
+    if not head.startswith(HDF5_SIGNATURE) or len(head) < 64 or head[8] not in END_OFFSETS:
         raise BrokenSeal("it is not HDF5")
-    at = END_AT[head[8]]
+    at = END_OFFSETS[head[8]]
     return int.from_bytes(head[at : at + 8], "little")
 
 
 def _large_pieces(file: h5py.File) -> list[Piece]:
-    """(offset, size) of the numbers of every large contiguous variable, in order."""
+    """Byte ranges of the numbers of contiguous variables larger than LARGEST_INCLUDED, in order."""
     variables = [data for data in map(file.get, file) if isinstance(data, h5py.Dataset)]
     places = {(data.id.get_offset(), data.id.get_storage_size()) for data in variables}
     return sorted((start, size) for start, size in places if start is not None and size > LARGEST_INCLUDED)
 
 
 def _between(pieces: list[Piece], end: int) -> Iterator[Piece]:
-    """Yields the pieces before, between and behind the given pieces."""
+    """Yields the byte ranges from 0 to `end` that the sorted byte ranges `pieces` leave out."""
     at = 0
     for start, size in [*pieces, (end, 0)]:
         if not 0 <= at <= start <= end:
@@ -108,7 +109,7 @@ def _between(pieces: list[Piece], end: int) -> Iterator[Piece]:
 
 
 def _checksum(stream: BinaryIO, pieces: Iterator[Piece]) -> int:
-    """CRC-32 of pieces of a file, in sequence."""
+    """CRC-32 of consecutive byte ranges of a file."""
     checksum = 0
     for start, size in pieces:
         stream.seek(start)

@@ -1,9 +1,9 @@
-"""Result file of a run: created complete at the start, replaced as a whole when points are folded in.
+"""Result file of a run: created with all variables at the start, replaced as a whole when points are added.
 
-The file is netCDF-4-compatible HDF5, is only ever replaced by a rename, and therefore opens at any instant.
-Ranks write finished points to journals beside the file (`rodsweep.results.run.journal`). Journals are folded
-in at the end of a run, or at the start of the next run after a kill. A journal is recognised by the
-fingerprint of the points, even without a file; foreign journals are moved away, never deleted.
+The file is netCDF-4-compatible HDF5, is only ever replaced by a rename, and can be opened at any time. Ranks
+write finished points to journals beside the file (`rodsweep.results.run.journal`). Journals are folded in
+(added to the file) at the end of a run, or at the start of the next run after a kill. A journal is recognised
+by its fingerprint, even without a file; journals of other points are moved away, never deleted.
 """
 
 import json
@@ -41,7 +41,7 @@ from .refusals import header_in_the_way, refuse_other, require_room
 from .validation import ResultHeader, is_ours, reading
 
 BACKUPS = "before-*.h5"
-"""Copies, beside the journals, of the file before an extension that is not complete yet."""
+"""Pattern of the names of copies of the file before an unfinished extension, in the journal directory."""
 
 
 class Store:
@@ -50,13 +50,13 @@ class Store:
     def __init__(self, path: Path, plan: Plan, fresh: bool = False, extend: bool = False):
         """Opens the file of a plan or creates the file; raises InputError for a file of another plan.
 
-        fresh: replaces a result of any plan. extend: extends the file of a smaller config to the plan, and
-        keeps the points that stay.
+        fresh: replaces a result file of any plan. extend: extends the file of a smaller config to the plan,
+        and reuses its points where possible.
         """
         self.path = path
         self.plan = plan
         self.notes: list[str] = []
-        """Notes for the user about points to compute again, journals, and a moved file."""
+        """Notes for the user, on points that are computed again, on journals, and on a moved file."""
         with disk_refusals(path, self._kept):
             self.exchange = FileReplacement(path)
             self.journals = self.exchange.journals
@@ -67,7 +67,7 @@ class Store:
                 raise
 
     def _open(self, fresh: bool, extend: bool) -> None:
-        """Creates, continues or extends the file, or refuses to; moves journals of other files away."""
+        """Creates, continues or extends the file, or raises InputError; moves other points' journals away."""
         if fresh or not self.path.exists():
             self._create(fresh)
         else:
@@ -99,7 +99,7 @@ class Store:
             self.notes.append("the file was missing; a new file holds the points of its journal")
 
     def _extend(self, header: ResultHeader) -> None:
-        """Replaces the file of a smaller config by the file of the plan, with all points that stay."""
+        """Replaces the file of a smaller config by the plan's file, with all points that can be reused."""
         extension = extension_of(header, parameters_of(self.path, header.layout), self.plan)
         require_room(self.path, self.plan)
         blocks = read_journals(self.journals, header.layout, header.fingerprint, header.points)
@@ -122,14 +122,16 @@ class Store:
         self.fold({})
 
     def _keep_before(self) -> Path:
-        """Copies the file beside the journals, where the copy stays until the extension is complete."""
+        """Copies the file into the journal directory until the extension is complete; returns the copy's
+        path.
+        """
         number = 1 + sum(1 for _ in self.journals.glob(BACKUPS))
         copy = self.journals / BACKUPS.replace("*", str(number))
         shutil.copyfile(self.path, copy)
         return copy
 
     def _set_aside(self, paths: Sequence[Path], what: str) -> None:
-        """Moves files away that a later run could use."""
+        """Moves files out of the journal directory, and notes for the user where the files, `what`, are."""
         if paths:
             self.notes.append(f"{what} are kept in {set_aside(self.journals, paths)}")
 
@@ -141,7 +143,7 @@ class Store:
         return names | {"config_resolved": json.dumps(self.plan.config)}
 
     def attributes(self) -> dict[str, Any]:
-        """Attributes of the file."""
+        """Attributes of the result file, by name."""
         with reading(self.path), h5py.File(self.path, "r") as file:
             return dict(file.attrs)
 
@@ -151,7 +153,9 @@ class Store:
             return missing_ranges(self.path)
 
     def finish(self, attributes: dict[str, Any], variables: Sequence[Filled] = ()) -> None:
-        """Folds journals in, and adds variables, also those computed from all points of the complete file."""
+        """Adds journalled points, attributes, `variables`, and variables computed from all points to the
+        file.
+        """
         self.fold(attributes, lambda file: (*variables, *self.plan.afterwards(file)))
 
     def fold(
@@ -170,7 +174,9 @@ class Store:
                 drop_files(self.journals, pattern)
 
     def restore(self) -> None:
-        """Creates a moved or deleted file again; EnvironmentIncomplete if another file took its place."""
+        """Creates the file again if it was moved or deleted; EnvironmentIncomplete if another file replaced
+        it.
+        """
         with disk_refusals(self.path, self._kept):
             self._restore_if_gone()
 
@@ -199,7 +205,11 @@ class Store:
         attributes: dict[str, Any],
         additions: Callable[[h5py.File], Sequence[Filled]] | None = None,
     ) -> None:
-        """Writes blocks of points of the given fingerprint into the file, and deletes the journals."""
+        """Writes records, (n,) in each block, of journals with the fingerprint into the file; deletes the
+        journals.
+
+        layout: layout of the records. attributes, additions: as in `fold`.
+        """
         with disk_refusals(self.path, self._kept):
             journals = journals_of(self.journals, fingerprint)
             first = next(blocks, None)
@@ -216,7 +226,7 @@ class Store:
                 journal.unlink(missing_ok=True)
 
     def _kept(self) -> str:
-        """Clause of a refusal about points that wait in the journals; empty without points."""
+        """Clause for messages that says where journalled points are; empty without points."""
         return kept_sentence(journal_directory(self.path), self.plan.fingerprint)
 
     def status_counts(self) -> dict[str, int]:
@@ -231,7 +241,7 @@ class Store:
         return counts
 
     def close(self) -> None:
-        """Releases the file for another run."""
+        """Releases the lock on the file, so that another run can use it."""
         self.exchange.close()
 
     def _header(self) -> ResultHeader:

@@ -1,4 +1,4 @@
-"""Validation: whether a file is a complete rodsweep result, the config of the file, and refusals."""
+"""Validation of a result file: whether it is a complete rodsweep result, its header, and refusals."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -28,20 +28,20 @@ meaning; files of any other format are refused. Format 5 was the first with seal
 frequencies in Hz, counts from 1, the Hopf points of the lines of limit cycles, and grids over an arm's
 quantities."""
 CONFIGS = (".yaml", ".yml")
-"""File suffixes of configs, for a hint when the user passes a config as a result."""
+"""Suffixes of the names of config files."""
 LONGEST_REASON = 150
-"""Largest number of characters of a library's message in a sentence."""
+"""Maximum number of characters of a library's error message in a message of rodsweep; the message is cut."""
 DAMAGES = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
-"""Exceptions raised by h5py, or by later reading, for a damaged file."""
+"""Exceptions that h5py, or the use of the data it reads, raises for a damaged file."""
 
 
 class IncompleteFile(InputError):
-    """Refusal of a file that is no result, or is damaged or changed."""
+    """The file is no rodsweep result, or is damaged or changed."""
 
 
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """Turns exceptions for a damaged or foreign file into IncompleteFile."""
+    """Context that turns the exceptions DAMAGES, for a damaged or foreign file, into IncompleteFile."""
     try:
         yield
     except DAMAGES as error:
@@ -49,7 +49,7 @@ def reading(path: Path) -> Iterator[None]:
 
 
 def reason_of(error: Exception) -> str:
-    """Message of a library about a file, on a single line."""
+    """Message of a library's exception about a file, on a single line, cut to LONGEST_REASON characters."""
     text = getattr(error, "strerror", None) or str(error) or type(error).__name__
     text = "".join(c if c.isprintable() else " " for c in text)
     return text if len(text) <= LONGEST_REASON else text[: LONGEST_REASON - 3] + "..."
@@ -57,7 +57,10 @@ def reason_of(error: Exception) -> str:
 
 @dataclass(frozen=True, slots=True)
 class ResultHeader:
-    """Description of a complete result file. config: the resolved config; points: their number."""
+    """Description of a complete result file.
+
+    config: the resolved config. fingerprint: of config and points. points: number of points.
+    """
 
     path: Path
     attributes: dict[str, Any]
@@ -68,7 +71,7 @@ class ResultHeader:
 
 
 def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, ResultHeader]:
-    """The open file and the header: the only entry to a result, for reading, continuing and merging.
+    """(open file, its header): every reader of a result file opens it here.
 
     values: whether the numbers are compared with the seal as well, which takes a second for each GB.
     Otherwise only the structures around the large variables are compared, unless another program has written
@@ -90,22 +93,23 @@ def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, ResultHeader
 
 
 def read_header(path: Path) -> ResultHeader:
-    """Header of a file; raises InputError unless the file is a complete result, including the numbers."""
+    """Header of a result file; raises InputError unless file and numbers are complete and unchanged."""
     file, header = open_whole(path)
     file.close()
     return header
 
 
 def refuse_absent(path: Path) -> None:
-    """Raises InputError unless the path is a file."""
+    """Raises InputError unless there is a file at `path`."""
     if not path.is_file():
         raise InputError(f"{path} is not a file" if path.exists() else f"{path} does not exist")
 
 
 def header_of(path: Path, file: h5py.File, check_content: bool = True) -> ResultHeader:
-    """Header of an open file; raises one of DAMAGES unless it is a result with the sealed content.
+    """Header of an open file; raises one of DAMAGES unless the file is a rodsweep result.
 
-    Raises InputError for a format that this version does not read.
+    check_content: whether the content is compared with the seal. Raises InputError for a format that this
+    version does not read.
     """
     attributes = {name: cleaned(value) for name, value in file.attrs.items()}
     if attributes.get("program") != PROGRAM:
@@ -122,7 +126,7 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Result
 
 
 def cleaned(value: Any) -> Any:
-    """Value of an attribute; a text loses control characters, which a terminal would obey."""
+    """Value of an attribute; control characters of a text are escaped, because a terminal would obey them."""
     if isinstance(value, bytes):
         value = value.decode(errors="replace")
     return printable(value) if isinstance(value, str) else value
@@ -147,7 +151,10 @@ def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
 
 
 def refuse_misfit(file: h5py.File, layout: Layout) -> None:
-    """Raises one of DAMAGES unless every variable of the layout is contiguous, of right type and shape."""
+    """Raises one of the exceptions DAMAGES unless the file has the variables of a layout.
+
+    Every variable must be contiguous and have the type and shape of the layout.
+    """
     shape = tuple(len(file[name]) for name in layout.dimensions(is_list="point" in file))
     expected = {v.name: (shape + layout.inner(v), np.dtype(v.dtype)) for v in layout.variables}
     expected |= {name: ((extent,), file[name].dtype) for name, extent in layout.extents.items()}
@@ -160,7 +167,7 @@ def refuse_misfit(file: h5py.File, layout: Layout) -> None:
 
 
 def is_ours(path: Path) -> bool:
-    """Whether a file is a rodsweep result, or an HDF5 file that is too damaged to tell."""
+    """Whether a file is a rodsweep result, or an HDF5 file that is too damaged to be identified."""
     if not path.is_file():
         return False
     with path.open("rb") as stream:

@@ -14,12 +14,12 @@ from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import PARAMETERS
 from ..layouts.variables import TYPED_UNIT
 from .content import is_users
-from .recent import journalled_points, journalled_reasons, put_in, read_unfolded
+from .recent import insert_records, journalled_points, journalled_reasons, read_unfolded
 from .validation import cleaned, open_whole, reading, refuse_absent
 
 LARGEST_CHECKED = 10**9
-"""Largest size, in bytes, of a file whose numbers are compared with the seal before use. Of a larger file
-only HDF5's structures are checked, because the numbers take a second for each GB."""
+"""Size of a file, in bytes, up to which its numbers are compared with the seal before use. In a larger file
+only HDF5's structures are checked, because the comparison of the numbers takes a second for each GB."""
 
 
 class Variables(Mapping[str, np.ndarray]):
@@ -37,7 +37,7 @@ class Variables(Mapping[str, np.ndarray]):
             with reading(self.path):
                 values = self.file[name][...]
                 if len(self.recent) and name in self.recent.dtype.fields:
-                    put_in(values, name, self.recent)
+                    insert_records(values, name, self.recent)
                 self.read[name] = values
         return self.read[name]
 
@@ -54,25 +54,25 @@ class Variables(Mapping[str, np.ndarray]):
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """Read-only view of a result file and its journals: attributes, and variables as NumPy arrays."""
+    """Contents of a result file: attributes, and variables as NumPy arrays, with points still in journals."""
 
     path: Path
     attributes: dict[str, Any]
     variables: Mapping[str, np.ndarray]
     parameters: tuple[str, ...]
-    """Names of the parameters of a point, which are the dimensions of a grid or columns along `point`."""
+    """Names of the parameters of a point: dimensions of a grid, or variables along the dimension `point`."""
     flags: dict[int, str]
-    """Words of the values of `status`, by value."""
+    """Word of each value of the variable `status`."""
     journalled: int
-    """Number of points still in the journals of a running or interrupted run."""
+    """Number of points that are still in the journals of a running or interrupted run."""
     over: tuple[str, ...] = ()
-    """Dimensions of a grid over an arm's quantities."""
+    """Dimensions of a grid over an arm's quantities; empty for other points."""
     typed: dict[str, str] = field(default_factory=dict)
-    """Units in which the user typed an arm's quantities."""
+    """Unit in which the user typed a quantity of an arm, by name of the quantity."""
 
     @property
     def task(self) -> str:
-        """Task of the results."""
+        """Name of the task that computed the results."""
         return str(self.attributes["task"])
 
     @property
@@ -88,21 +88,21 @@ class View:
 
     @property
     def axes(self) -> dict[str, np.ndarray]:
-        """Parameters in the file: axes of a grid, or columns of a list, each (n,)."""
+        """Values of each parameter, (n,), by name: an axis of a grid, or a column of a list."""
         return {name: self.variables[name] for name in PARAMETERS if name in self.variables}
 
     @property
     def quantities(self) -> dict[str, np.ndarray]:
-        """Quantities of an arm in SI units; empty without an arm.
+        """Quantities of an arm in SI units by name; empty without an arm.
 
-        Each has shape (), or is along a parameter or `point`; in a grid over quantities each has its own
-        axes.
+        A quantity has the shape (), or varies along a parameter or the dimension `point`, (n,), or along axes
+        of a grid over quantities, (...,).
         """
         return {name: self.variables[name] for name in ALL_QUANTITIES if name in self.variables}
 
     @property
     def listed(self) -> "View":
-        """A grid over an arm's quantities as the list of points; for all other points the view itself."""
+        """This view with a grid over an arm's quantities as a list of points; unchanged for other points."""
         if not self.over:
             return self
         shape = self.variables["status"].shape
@@ -111,7 +111,10 @@ class View:
         return replace(self, variables=found, over=())
 
     def _listed(self, name: str, shape: tuple[int, ...]) -> np.ndarray:
-        """A variable along the list of points, if along the axes of a grid; else unchanged."""
+        """Variable `name` with the axes of a grid, of the shape `shape`, flattened to the list of points.
+
+        Variables without these axes are unchanged.
+        """
         values = self.variables[name]
         if name in self.over:
             along = [-1 if axis == name else 1 for axis in self.over]
@@ -121,33 +124,37 @@ class View:
 
     @property
     def outcomes(self) -> NDArray[np.str_]:
-        """Word of the status of every point, (points,)."""
+        """Status word of every point, (points,)."""
         return np.array([self.flags.get(int(s), "missing") for s in self.variables["status"].ravel()])
 
     def with_status(self, *words: str) -> NDArray[np.bool_]:
-        """Whether each point has one of the given status words: a mask in the shape of the points."""
+        """Mask of the points whose status is one of `words`, of the shape of `status`."""
         values = [value for value, word in self.flags.items() if word in words]
         return np.isin(self.variables["status"], values)
 
     @property
     def sentences(self) -> dict[str, str]:
-        """Sentence with the meaning of every status of the task, by the word of the status."""
+        """Meaning of every status as a sentence, by status word."""
         return sentences_in(self.attributes)
 
     def by_point(self, name: str) -> np.ndarray:
-        """A variable with all points along its first dimension, (points, ...)."""
+        """Variable `name` with all points flattened to the first dimension, (points, ...)."""
         values = self.variables[name]
         return values.reshape(-1, *values.shape[self.variables["status"].ndim :])
 
     def of_point(self, index: int) -> dict[str, np.ndarray]:
-        """Variables of the point at a flat index, each in its shape at a point."""
+        """Values of every variable at the point with a flat index, by name, each of its extra dimensions'
+        shape.
+        """
         shape = self.variables["status"].shape
         names = (name for name, values in self.variables.items() if values.shape[: len(shape)] == shape)
         return {name: self.by_point(name)[index] for name in names}
 
     @property
     def point_columns(self) -> dict[str, np.ndarray]:
-        """Every parameter at every point, (points,); in a grid the last axis is the fastest."""
+        """Value of each parameter at every point, by name, (points,) each; in a grid the last axis is
+        fastest.
+        """
         columns = [self.variables[name] for name in self.parameters]
         if self.is_grid:
             columns = [table.ravel() for table in np.meshgrid(*columns, indexing="ij")]
@@ -155,18 +162,21 @@ class View:
 
 
 def sentences_in(attributes: Mapping[str, Any]) -> dict[str, str]:
-    """Meaning of every status, by its word, from the attributes of a file."""
+    """Meaning of every status as a sentence, by status word, from the attributes of a file."""
     lines = str(attributes.get("status_sentences", "")).splitlines()
     return dict(line.split(": ", 1) for line in lines if ": " in line)
 
 
 def read_view(path: Path) -> View:
-    """View of a file, which stays open, with journalled points; InputError if the file is no result."""
+    """View of the result file at `path`, which stays open, with journalled points.
+
+    Raises InputError if the file is no result.
+    """
     return read_unfolded(path, lambda: _view(path))
 
 
 def _view(path: Path) -> View:
-    """Reads the file and its journals once, without a repetition if the file changes meanwhile."""
+    """View from one reading of the file and its journals, see `read_view`."""
     refuse_absent(path)
     # Opened only once, because a run may replace the file at any instant.
     file, header = open_whole(path, values=path.stat().st_size <= LARGEST_CHECKED)

@@ -22,17 +22,18 @@ MODULES = {
 LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
     task: module.layout for task, module in MODULES.items()
 }
-"""Function of each task from a resolved config to the layout."""
+"""Function from a resolved config to the layout of the file, by task."""
 INCREASES: dict[str, dict[str, IncreaseRule]] = {task: module.INCREASES for task, module in MODULES.items()}
-"""Rule of each option whose increase extends a file, by task and option. A change of any other option
-requires another file."""
+"""Rules for the options whose larger value requests more data of a point, by task and option. A file cannot
+be extended to another value of any other option."""
 BESIDE_POINTS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
     "spectrum": spectrum.beside_points,
     "modes": lambda config, is_grid: spectrum.FORCE_CHANGES,
     "phase_diagram": phase_diagram.beside_points,
     "limit_cycle": limit_cycle.beside_points,
 }
-"""Variables of each task that all points share or together give, from (resolved config, is_grid)."""
+"""Function from (resolved config, whether the points are a grid) to the variables that belong to all points
+together, by task."""
 
 
 def layout_of(config: dict[str, Any]) -> Layout:
@@ -45,9 +46,9 @@ def layout_of(config: dict[str, Any]) -> Layout:
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables in the file of a resolved config that do not belong to a single point.
+    """Variables of a file that belong to all points together, for a resolved config.
 
-    `extra` names all dimensions of such a variable. is_grid: whether the points are a grid of parameters.
+    is_grid: whether the points are a grid. `extra` of such a variable has all its dimensions.
     """
     found = BESIDE_POINTS.get(config["task"])
     return found(config, is_grid) if found else ()

@@ -35,7 +35,8 @@ HERTZ = "Hz"
 
 
 class SIUnit(NamedTuple):
-    """SI unit of results: a dimensionless unit is the product of `factors` divided by all `divisors`.
+    """SI unit of a result. The dimensionless unit is the product of an arm's quantities `factors` over
+    `divisors`.
 
     Dimensionless frequencies are angular; the conversion to Hz contains 2 pi.
     """
@@ -45,13 +46,13 @@ class SIUnit(NamedTuple):
     divisors: tuple[str, ...] = ()
 
     def scale(self, quantities: Mapping[str, Any]) -> NDArray[Any]:
-        """The dimensionless unit in SI units, from quantities of shape () or (n,); of shape () or (n,)."""
+        """The dimensionless unit in SI units, () or (n,); quantities: the arm's by name, () or (n,) each."""
         up, down = (prod(quantities[name] for name in names) for names in (self.factors, self.divisors))
         return np.asarray(up / (2 * np.pi * down if self.unit == HERTZ else down))
 
 
 NO_UNIT = SIUnit()
-"""Result of `si_unit_of` for variables without an SI unit."""
+"""Stands for variables that are not stored in SI units."""
 SI_UNITS = {
     "tau2": SIUnit("s", ("tau2",)),
     "1/tau2": SIUnit("1/s", (), ("tau2",)),
@@ -62,16 +63,15 @@ SI_UNITS = {
 }
 """SI units of the dimensionless units of time, length, energy and power."""
 FORCE_UNITS = {load: SIUnit(UNITS[load][0], (SCALE_OF[load],)) for load in LOADS}
-"""SI unit in which F is stored, by name of the load of the arm; an arm without load uses that of a pressure.
-"""
+"""SI unit in which the follower force is stored, by name of the arm's load, "pressure" or "force"."""
 LOAD_OF_UNIT = {each.unit: load for load, each in FORCE_UNITS.items()}
-"""Name of the load ("pressure" or "force") by its SI unit."""
+"""Name of the load, "pressure" or "force", by its SI unit."""
 EVENT_FREQUENCIES = {f"{event}_frequency": f"frequency_{event}_hz" for event in ("hopf", "restabilization")}
-"""Names in Hz of the frequencies at thresholds, in the pattern of `pressure_hopf` for F_hopf."""
+"""Name of the variable in Hz, by name of the variable for the angular frequency at a threshold."""
 BRANCH_FORCES = ("special_at", "special_error")
-"""Forces along the branches of an arm; its branches are followed in F only."""
+"""Names of variables of the task branch that are forces for an arm, whose branches are followed in F only."""
 SI_DIMENSIONS = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
-"""Variables with these extra dimensions are stored in SI units too; longer tables are not stored twice."""
+"""Extra dimensions of variables that are stored in SI units too; longer tables are stored once."""
 EFFECTS = (
     "inertia_of_the_arm",
     "inertia_of_the_fluid",
@@ -82,7 +82,7 @@ EFFECTS = (
 )
 """Effects that the model neglects, named as in `rodsweep.model.arm.neglected` with underscores for blanks."""
 NOT_KNOWN = -1
-"""Value of the variable `model_applies` at points where the solver may have missed a motion of the arm."""
+"""Value of the variable model_applies where the solver may have missed a motion."""
 VALIDITY = (
     word(
         "model_applies",
@@ -112,14 +112,16 @@ def with_si(layout: Layout, config: Mapping[str, Any]) -> Layout:
 
 
 def si_variables_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Variable]:
-    """SI variables for a rod's layout and a resolved config, by the name of the dimensionless variable."""
+    """SI variables for the variables of a layout and a resolved config, by name of the dimensionless
+    variable.
+    """
     as_force = any(RELATIVE.get(name, name) == "force" for name in config["parameters"]["arm"])
     units = ((variable, _stored_si_unit(variable, as_force).unit) for variable in layout.variables)
     return {v.name: real(si_name_of(v.name, si), si, _meaning(v, si), *v.extra) for v, si in units if si}
 
 
 def si_name_of(name: str, unit: str) -> str:
-    """Name of the SI variable of a variable; F becomes the kind of load with this unit."""
+    """Name of the variable in the SI unit `unit` for the variable `name`; F becomes "pressure" or "force"."""
     if name in EVENT_FREQUENCIES:
         return EVENT_FREQUENCIES[name]
     words = name.split("_")
@@ -129,7 +131,7 @@ def si_name_of(name: str, unit: str) -> str:
 
 
 def _meaning(variable: Variable, unit: str) -> str:
-    """Long name of a variable in an SI unit; a frequency in Hz is not angular."""
+    """Long name of the SI variable, in the unit `unit`, of a dimensionless variable."""
     if unit != HERTZ:
         return f"{variable.long_name}; in SI units"
     words = variable.long_name.removeprefix("angular ").partition(",")[
@@ -139,12 +141,12 @@ def _meaning(variable: Variable, unit: str) -> str:
 
 
 def _stored_si_unit(variable: Variable, as_force: bool) -> SIUnit:
-    """SI unit in which a variable is stored as well; NO_UNIT for dimensionless storage only."""
+    """SI unit in which a variable is stored too, or NO_UNIT; as_force: whether the arm's load is a force."""
     return si_unit_of(variable, as_force) if variable.extra in SI_DIMENSIONS else NO_UNIT
 
 
 def si_unit_of(variable: Variable, as_force: bool) -> SIUnit:
-    """SI unit of any variable, or NO_UNIT."""
+    """SI unit of a dimensionless variable, or NO_UNIT; as_force: whether the arm's load is a force."""
     if variable.dtype != "<f8":
         return NO_UNIT
     if variable.units == PARAMETERS["F"].unit and (
@@ -155,14 +157,14 @@ def si_unit_of(variable: Variable, as_force: bool) -> SIUnit:
 
 
 def si_variable(variable: Variable, values: Array, quantities: Mapping[str, Array]) -> tuple[Variable, Array]:
-    """A variable and its values, (n,), in SI units; quantities: the arm's, each of shape () or (n,)."""
+    """A variable and its values, (n,), in SI units; quantities: the arm's by name, () or (n,) each."""
     si = si_unit_of(variable, "force" in quantities)
     si_variable = real(si_name_of(variable.name, si.unit), si.unit, _meaning(variable, si.unit))
     return si_variable, values * si.scale(quantities)
 
 
 def over_of(config: Mapping[str, Any]) -> tuple[str, ...]:
-    """Axes of the grid over an arm's quantities of a resolved config; empty for other points."""
+    """Names of the axes of a resolved config's grid over an arm's quantities; empty for other points."""
     parameters = config["parameters"]
     axes = parameters["arm"] | {name: axis for name, axis in parameters.items() if name in PARAMETERS}
     ranges = {name: axis for name, axis in axes.items() if isinstance(axis, Mapping)}
@@ -171,7 +173,7 @@ def over_of(config: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def quantities_of(parameters: Axes, points: Points) -> tuple[Filled, ...]:
-    """Variables of a config's arm besides the axes of a grid of parameters; empty without an arm.
+    """(variable, values) of each quantity and unit of a config's arm; empty without an arm.
 
     For a grid over the arm's quantities the axes come first, and every parameter is included, along the grid.
     """
@@ -196,7 +198,7 @@ def quantities_of(parameters: Axes, points: Points) -> tuple[Filled, ...]:
 
 
 def _filled(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]) -> Filled:
-    """A quantity or a parameter with its values, along the given dimensions."""
+    """(variable, values) of the arm's quantity or parameter `name`, along the given dimensions."""
     units, meaning = DIMENSIONS[name] if name in PARAMETERS else ALL_QUANTITIES[name][:2]
     variable = real(name, units, meaning, *dimensions)
     if name in UNITS and getattr(arm, name) is not None:
@@ -207,7 +209,7 @@ def _filled(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]
 
 
 def at_points(quantities: Iterable[Filled], points: Points) -> dict[str, NDArray[Any]]:
-    """Values of an arm's quantities by name; in a grid over quantities, values at every point, (points,)."""
+    """Values of an arm's quantities by name; in a grid over quantities at every point, (points,)."""
     if not points.over:
         return {variable.name: values for variable, values in quantities}
     dimensions = tuple(points.over)
@@ -225,10 +227,10 @@ def si_record(
     layout: Layout,
     quantities: Mapping[str, NDArray[Any]],
 ) -> dict[str, Any]:
-    """SI variables of one or several points.
+    """Values of the SI variables, by name, of one point or of n points.
 
-    record: dimensionless variables, of a single point, or (n, ...). index: index of the point, or (n,).
-    quantities: the arm's quantities, each of shape () or (points,).
+    record: dimensionless variables by name, of one point, or (n, ...). index: flat index of the point, or
+    (n,). quantities: the arm's quantities by name, () or (points,) each.
     """
     found = {}
     for variable in layout.variables:

@@ -32,22 +32,25 @@ SPECIAL_MEANINGS = {
     "end": "the branch ends here for the reason in special_reason",
     "period_doubling": "a multiplier of a cycle without the symmetry is -1; cycles of twice the period begin",
 }
-"""Kinds of special points with meanings; the file stores the index in the list."""
+"""Meaning of every kind of special point, by word; the file stores the position in this table."""
 SPECIAL_KINDS = tuple(SPECIAL_MEANINGS)
-"""Kinds of special points, in the order of their stored numbers."""
+"""Words for the kinds of special points, in the order of their stored numbers."""
 END_REASONS = ("none", "range_end", "crushed", "no_cycle_found", "list_full")
-"""Reasons for the end of a branch at a special point of the kind `end`."""
+"""Words for the reasons why a branch ends, at a special point of the kind `end`, in the stored order."""
 ERRORS = (
     ("period_error", "the relative error of period"),
     ("amplitude_error", "the relative error of tip_y_max"),
     ("extrema_error", "the error of the tip's other extrema, in units of tip_y_max"),
     ("multiplier_error", "the absolute error of multiplier"),
 )
-"""(variable, meaning) of each error estimate of a cycle, at the stored parameter value."""
+"""(name of a variable with an error estimate of a cycle, its meaning); errors at a fixed parameter value."""
 
 
 def followed_variables(parameter: str) -> tuple[Variable, ...]:
-    """Variables of the cycles of all branches, branch by branch."""
+    """Variables of the cycles on all branches, branch by branch.
+
+    parameter: name of the continuation parameter.
+    """
     unit = PARAMETERS[parameter].unit
     return along_dimension(
         ALONG,
@@ -75,7 +78,7 @@ def followed_variables(parameter: str) -> tuple[Variable, ...]:
 
 
 def special_variables(parameter: str) -> tuple[Variable, ...]:
-    """Variables of the special points of all branches, branch by branch."""
+    """Variables of the special points on all branches; parameter: the continuation parameter's name."""
     unit = PARAMETERS[parameter].unit
     return along_dimension(
         SPECIAL,
@@ -112,9 +115,9 @@ def special_variables(parameter: str) -> tuple[Variable, ...]:
 
 
 def _has(name: str) -> IncreaseRule:
-    """Rule for an option that limits the length of a list; name: variable with the number of all items.
+    """Increase of the maximum length of a list whose number of items is the variable `name`.
 
-    A stored list that is not full already contains all items.
+    A stored list that is not full has all items already.
     """
     return IncreaseRule(lambda records, before: records[name] < before)
 

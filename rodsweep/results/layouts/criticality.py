@@ -15,10 +15,11 @@ LANDAU_UNIT = "1/(tau2 L^2)"
 """Unit of the Landau coefficient c."""
 ALONG = "crossing"
 ABSENT_FROM_HOPF_SEARCH = ("crossing_growth_rate", "solves")
-"""Variables of a search for crossings that a search for Hopf points lacks: its growth rate is 0."""
+"""Names of variables of a search for crossings that a search for Hopf points lacks, since growth rates are
+0."""
 CRITICALITY_WORDS = ((-1, "supercritical"), (0, "undecided"), (1, "subcritical"))
-"""(stored number, word) of each criticality; the number is the sign of the real part of the Landau
-coefficient c."""
+"""(stored number, word) of each criticality. The number is the sign of Re c; nan is stored for an unknown
+c."""
 
 
 def criticality_variable(name: str, decided_by: str) -> Variable:

@@ -25,14 +25,14 @@ from .variables import (
 )
 
 POWER_UNIT = "k3/(L tau2)"
-"""Unit of the power of the force and of the dissipation."""
+"""Dimensionless unit of a power."""
 STORED_MULTIPLIERS = 6
 """Number of stored nontrivial Floquet multipliers, the solver's `MULTIPLIER_LIST.length`; NaN stands for a
 modulus below its `min_modulus`."""
 CYCLE_WORDS = ("cycle", "unstable")
-"""Statuses of points with a cycle, stable or unstable."""
+"""Status words of points with a limit cycle, stable or unstable."""
 SECOND_STATES = ((-1, "not_known"), (0, "none_known"), (1, "straight"), (2, "cycle_possible"))
-"""Knowledge of a second stable state, besides the state in which a point ended."""
+"""(stored number, word) for a second stable state of the rod, besides the state that the solve reached."""
 CYCLE = (
     real("period", "tau2", "period of the limit cycle"),
     real("frequency", ANGULAR_UNIT, "angular frequency of the limit cycle, 2 pi/period"),
@@ -101,11 +101,11 @@ HOPF = "hopf"
 HOPF_ALONG = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 """Parameters along which Hopf points are searched; gamma1 has no influence on Hopf points."""
 PAIR_CROSSINGS = ("none", "hopf", "hopf_reverse", "restabilization")
-"""Kinds of crossings at which a pair of eigenvalues crosses the imaginary axis."""
+"""Words for the kinds of crossings at which a pair of eigenvalues crosses the imaginary axis."""
 
 
 def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
-    """Hopf points of straight rods between the points of a file with these parameters, known beforehand."""
+    """Variables of the Hopf points of the straight rod on lines between the points; names: parameters."""
     at = "at the Hopf point"
     kinds = ((CROSSING_KINDS.index(kind), kind) for kind in PAIR_CROSSINGS)
     return (
@@ -135,7 +135,7 @@ def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
 
 
 NO_CYCLE = IncreaseRule(lambda records, before: np.isnan(records["period"]))
-"""Increase of the data of a cycle; a point without a cycle is complete already."""
+"""Increase of the stored data of a cycle: every point with a cycle is solved again."""
 INCREASES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), NO_CYCLE) | {
     "transient": NEEDS_NEW_SOLVE,
     "time": IncreaseRule(NO_CYCLE.has, ("tau2", "tau1")),
@@ -143,7 +143,7 @@ INCREASES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), NO_CYCLE)
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Hopf points of the lines through the points of a resolved config."""
+    """Variables of the Hopf points on the lines through the points of a resolved config."""
     found = hopf_points_of((*LINEAR_PARAMETERS, *optional_in(config)))
     if has_covering(config):
         return found

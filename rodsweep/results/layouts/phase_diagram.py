@@ -22,9 +22,9 @@ from .variables import (
 )
 
 CLASSES = ((-1, "missing"), *enumerate(("monotone", "oscillatory", "flutter", "undecided", "crushed")))
-"""(stored number, word) of each behaviour of the straight rod at a point of a phase diagram."""
+"""(stored number, word) for the behaviour of the rod at a point of a phase diagram."""
 BAUTIN_ENDS = ("none", "range_end", "plane_edge", "not_found", "list_full", "closed")
-"""Reasons for the end of a curve of generalised Hopf points; the file stores the index in this list."""
+"""Words for the reasons why a curve of generalised Hopf points ends; the file stores the position here."""
 CURVE_ENDS = {
     "none": "the curve goes on",
     "edge": "the curve leaves the diagram",
@@ -33,17 +33,17 @@ CURVE_ENDS = {
     "not_followed": "no further point was found",
     "list_full": "the curve has the maximum number of points",
 }
-"""Reasons for the end of a boundary curve; the file stores the index in this list."""
+"""Meaning of every reason why a boundary curve ends, by word; the file stores the position in this table."""
 CURVE_KINDS = ((0, "double"), (1, "hopf"))
-"""(stored number, word) of each kind of boundary curve: double real eigenvalues, where oscillations set in or
-end, or Hopf points."""
+"""(stored number, word) for boundary curves: of double real eigenvalues, where oscillations set in or end, or
+of Hopf points."""
 STATES = ("neither_known", "straight", "cycle", "both", "undecided", "crushed")
 STABLE_STATES = ((-1, "missing"), *enumerate(STATES))
-"""(stored number, word) of each set of stable states at a point of a phase diagram with cycles."""
+"""(stored number, word) for the stable states of the rod at a point of a phase diagram with cycles."""
 CYCLE_SPECIAL = "cycle_special"
-"""Dimension of the special points of the branches of a row."""
+"""Name of the dimension of the special points on the branches of cycles of a row."""
 MAX_CYCLE_SPECIAL = 64
-"""Largest number of special points stored for a row; cycle_special_count counts all of them."""
+"""Maximum number of special points stored for a row; the variable cycle_special_count counts all."""
 CYCLE_CURVE_ENDS = {
     "none": "the curve goes on",
     "edge": "the curve leaves the diagram",
@@ -55,7 +55,8 @@ CYCLE_CURVE_ENDS = {
     "closed": "the curve returns to its first point",
     "not_followed": "no further point was found",
 }
-"""Reasons for the end of a curve of folds of cycles or torus points; the file stores the index."""
+"""Meaning of every reason why a curve of folds of cycles, or of torus points, ends, by word; the file stores
+the position in this table."""
 INCREASES = dict.fromkeys(("certify", "cycles"), NEEDS_NEW_SOLVE) | {
     "crossings": MORE_CROSSINGS,
     "curves": NEEDS_NO_SOLVE,
@@ -63,7 +64,7 @@ INCREASES = dict.fromkeys(("certify", "cycles"), NEEDS_NEW_SOLVE) | {
 
 
 def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
-    """((parameter along a row, parameter across the rows), number of values of every parameter)."""
+    """((parameter along a row, parameter across rows), number of values by parameter) of a phase diagram."""
     axes = config["parameters"]
     names = (name for name in (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS) if name in axes)
     sizes = {name: len(axes[name].get("values", ())) or axes[name]["num"] for name in names}
@@ -72,7 +73,7 @@ def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables given by all rows together, with or without the options that ask for variables."""
+    """Variables computed from all rows of a phase diagram together, whichever options request them."""
     (line, row), _ = plane_of(config)
     variables = curve_variables(line, row) | criticality_variables(line, row)
     variables |= cycle_curve_variables(line, row)
@@ -99,7 +100,10 @@ def layout(config: dict[str, Any]) -> Layout:
 
 
 def cycle_variables(line: str) -> tuple[Variable, ...]:
-    """Variables that `phase_diagram.cycles` adds to every row: stable states, special points of cycles."""
+    """Variables of a row for `phase_diagram.cycles`: stable states, and special points of branches of cycles.
+
+    line: parameter along the row.
+    """
     unit = PARAMETERS[line].unit
     at = "at the special point"
     error = "estimate of the relative error of cycle_special_"
@@ -120,7 +124,7 @@ def cycle_variables(line: str) -> tuple[Variable, ...]:
 
 
 def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
-    """Variables that `phase_diagram.cycles` adds from all rows, by name: curves of folds and torus points."""
+    """Variables of the curves of folds of cycles and torus points, by name, for `phase_diagram.cycles`."""
     at = "cycle_curve_point"
     force = PARAMETERS[line].unit
     kind = "kind of the special points on the curve, fold or torus"
@@ -142,7 +146,10 @@ def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
 
 
 def end_variables(curve: str, reasons: Iterable[str], along_dimension: str) -> tuple[Variable, Variable]:
-    """Variables with the reasons for both ends of a curve, along its points."""
+    """Variables with the reasons why curves begin and end, along the points of the curves.
+
+    curve: prefix of the names. along_dimension: dimension of the points.
+    """
     reasons = tuple(reasons)
     return (
         word(f"{curve}_start", "why the curve begins at the point", reasons, along_dimension),
@@ -151,7 +158,10 @@ def end_variables(curve: str, reasons: Iterable[str], along_dimension: str) -> t
 
 
 def curve_variables(line: str, row: str) -> dict[str, Variable]:
-    """Variables of a phase diagram from all rows, by name: boundary curves and folds."""
+    """Variables of the boundary curves of a phase diagram and their folds, by name.
+
+    line, row: parameters along and across the rows.
+    """
     kind = "kind of the points on the curve, double real eigenvalues or Hopf points"
     units = {name: PARAMETERS[name].unit for name in (line, row)}
     force = PARAMETERS["F"].unit
@@ -181,7 +191,7 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
 
 
 def criticality_variables(line: str, row: str) -> dict[str, Variable]:
-    """Variables that `phase_diagram.criticality` adds, by name: sign of Re c on Hopf curves, and zeros."""
+    """Variables of the sign of Re c along Hopf curves, and of its zeros, for `phase_diagram.criticality`."""
     units = {name: PARAMETERS[name].unit for name in (line, row)}
     error = "estimate of the error of bautin_"
     variables = (
@@ -212,9 +222,10 @@ def criticality_variables(line: str, row: str) -> dict[str, Variable]:
 
 
 def bautin_curve_variables(line: str, row: str, third: str) -> dict[str, Variable]:
-    """Variables that `phase_diagram.bautin_along` adds, by name: curves of generalised Hopf points.
+    """Variables of the curves of generalised Hopf points, by name, for `phase_diagram.bautin_along`.
 
-    third: the parameter along the curves, besides the two of the diagram.
+    line, row: names of the diagram's two parameters. third: name of the third parameter, which varies along
+    the curves.
     """
     names = (line, row, third)
     at = "bautin_step"

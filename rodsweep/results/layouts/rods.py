@@ -1,4 +1,4 @@
-"""The rods of a resolved config as far as they decide on variables: optional parameters, proofs of lists."""
+"""Properties of the rods of a resolved config that decide on the variables of its result file."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -9,14 +9,14 @@ from .variables import Variable
 
 
 def optional_in(config: Mapping[str, Any]) -> tuple[str, ...]:
-    """Optional parameters of the points of a resolved config: those with an axis or a column of a list."""
+    """Names of the optional parameters that have an axis or a column in a resolved config."""
     parameters = config["parameters"]
     given = (*parameters, *parameters.get("columns", ()))
     return tuple(name for name in OPTIONAL_PARAMETERS if name in given)
 
 
 def estimates_counts(config: Mapping[str, Any]) -> bool:
-    """Whether a resolved config has rods that vary along their length, for which counts are estimates."""
+    """Whether counts of unstable modes are estimates: for rods that vary along their length."""
     parameters = config.get("parameters", {})
     arm = parameters.get("arm", {})
     taper = parameters.get("taper")
@@ -27,7 +27,7 @@ def estimates_counts(config: Mapping[str, Any]) -> bool:
 
 
 def has_covering(config: Mapping[str, Any]) -> bool:
-    """Whether a covering proves the crossings of all rods: those that are uniform and of linear material."""
+    """Whether a covering proves the list of crossings: if all rods are uniform and of linear material."""
     return is_linear(config) and not estimates_counts(config)
 
 
@@ -40,7 +40,7 @@ def is_linear(config: Mapping[str, Any]) -> bool:
 def with_certified_meaning(
     variables: tuple[Variable, ...], config: Mapping[str, Any], noun: str
 ) -> tuple[Variable, ...]:
-    """The variables, with a long name of `certified` for lists confirmed by counts instead of a covering.
+    """The variables; without a covering, `certified` gets a long name for lists confirmed by counts only.
 
     noun: name of the listed items, such as "Hopf points".
     """

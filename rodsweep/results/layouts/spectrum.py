@@ -26,7 +26,7 @@ from .variables import (
 
 
 def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Variable]:
-    """Variables for the real and the imaginary part of a field of every mode."""
+    """Variables for the real and the imaginary part of a complex field of every mode, along the rod."""
     return (
         real(f"{name}_real", units, f"real part of {long_name}", "mode", "u"),
         real(f"{name}_imag", units, f"imaginary part of {long_name}", "mode", "u"),
@@ -51,7 +51,7 @@ ESTIMATED_MEANING = (
     "whether D right of the spectrum, or its winding number, says that the list of leading modes is "
     "complete; for arms that vary along their length it is estimated in part"
 )
-"""Meaning of `certified` in a file of arms that vary along their length."""
+"""Long name of the variable `certified` in a file of arms that vary along their length."""
 EACH_POINT = (UNSTABLE_COUNT, CERTIFIED, *MESH, SECONDS, STATUS)
 SHARED_TIME = "time spent on the point, or its share of the time of a stretch of points"
 EACH_FOLLOWED_POINT = (
@@ -61,7 +61,7 @@ EACH_FOLLOWED_POINT = (
     replace(SECONDS, long_name=SHARED_TIME),
     STATUS,
 )
-"""Variables of a point of the task spectrum, where eigenvalues may be followed from point to point."""
+"""Variables of a point of the task spectrum, whose eigenvalues may be followed from a neighbouring point."""
 VECTORS = (
     *complex_pair("Y", "1", "the eigenmode's deflection, scaled to Y(1) = 1"),
     *complex_pair("Theta", "1", "the eigenmode's angle, with the scale of Y"),
@@ -69,7 +69,7 @@ VECTORS = (
 
 
 def longitudinal(gamma1: float, *along: str, in_closed_form: bool = True) -> tuple[Variable, ...]:
-    """Variables for the longitudinal rates, with an error unless the rates are in closed form.
+    """Variables of the longitudinal eigenvalues, with an error estimate unless there is a closed form.
 
     along: dimensions of the parameters on which the rates depend, or the dimension of all points.
     """
@@ -80,7 +80,7 @@ def longitudinal(gamma1: float, *along: str, in_closed_form: bool = True) -> tup
 
 
 def longitudinal_parameters(in_closed_form: bool, linear: bool) -> tuple[str, ...]:
-    """Parameters on which longitudinal rates depend, besides gamma1.
+    """Names of the parameters, besides gamma1, on which the longitudinal eigenvalues depend.
 
     in_closed_form: whether every arm is uniform and of linear material. linear: whether the material is
     linear, so that the rates do not depend on F.
@@ -92,7 +92,7 @@ def longitudinal_parameters(in_closed_form: bool, linear: bool) -> tuple[str, ..
 
 
 CHANGE = "change"
-"""Dimension of the changes of the straight rod between the points of a file, on lines over F."""
+"""Name of the dimension of the stability changes of the straight rod on lines over F between the points."""
 FORCE_CHANGES = (
     word(
         "change_kind",
@@ -105,13 +105,14 @@ FORCE_CHANGES = (
     real("change_growth_rate", "1/tau2", "growth rate of the modes that change", CHANGE),
     real("change_frequency", ANGULAR_UNIT, "angular frequency of the modes that change", CHANGE),
 )
-"""Forces at which rods start to oscillate, become unstable or stable again; located after the last point."""
+"""Variables of the forces at which the straight rod starts to oscillate, becomes unstable or stable again,
+which are computed after the last point."""
 SOLVED_ANEW = ("modes", "method", "certify", "vectors", "nodes", "follow")
 INCREASES = dict.fromkeys(SOLVED_ANEW, NEEDS_NEW_SOLVE) | {"longitudinal": NEEDS_NO_SOLVE}
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables in the file of a spectrum that do not belong to a single point."""
+    """Variables of a file of the task spectrum that belong to all points together."""
     gamma1 = config["parameters"].get("gamma1")
     if gamma1 is None:
         return FORCE_CHANGES

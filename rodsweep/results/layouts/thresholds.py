@@ -39,13 +39,13 @@ CROSSING_MEANINGS = {
     "real_leads": "a real eigenvalue overtakes the leading pair in growth rate",
     "pair_leads": "a complex pair overtakes the leading real eigenvalue in growth rate",
 }
-"""Meaning of each kind of crossing as the parameter grows, by word."""
+"""Meaning of every kind of crossing, as the parameter grows, by word."""
 CROSSING_KINDS = tuple(CROSSING_MEANINGS)
-"""Kinds of crossings; the file stores the index in this list."""
+"""Words for the kinds of crossings; the file stores the position in this list."""
 
 
 def crossing_variables(line: str, at: str) -> tuple[Variable, ...]:
-    """Variables of the crossings along `line`; at: name of the variable for their position."""
+    """Variables of the crossings along the parameter `line`; at: name of the variable for its value there."""
     units = PARAMETERS[line].unit
     return (
         real(at, units, f"{line} at the crossing", "crossing"),
@@ -60,7 +60,7 @@ def crossing_variables(line: str, at: str) -> tuple[Variable, ...]:
 
 
 def search_variables(line: str, at: str) -> tuple[Variable, ...]:
-    """Variables of a search along `line`; at: name of the variable for the position of a crossing."""
+    """Variables of a search for crossings along the parameter `line`; at: as in `crossing_variables`."""
     units = PARAMETERS[line].unit
     undecided = f"of a range of {line} that may contain a window of flutter too narrow to decide"
     return (
@@ -77,7 +77,7 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
 
 
 MORE_CROSSINGS = IncreaseRule(lambda records, before: records["crossing_count"] <= before)
-"""Increase of the length of the list of crossings; a list with room left is complete already."""
+"""Increase of the maximum number of stored crossings; a stored list that is not full is complete already."""
 INCREASES = {"crossings": MORE_CROSSINGS, "certify": NEEDS_NEW_SOLVE}
 
 

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
 
 NO_NAMES: Mapping[str, str] = {}
-"""Default of `recorded`: fields have the names of their variables."""
+"""No exceptions: in `recorded`, a field has the name of its variable."""
 TYPED_UNIT = "typed_unit"
-"""Attribute of a variable with the unit in which the user typed the values."""
+"""Name of the attribute of a variable with the unit in which the user typed the values."""
 MISSING = -1
-"""Status of a point that has not been computed."""
+"""Value of the variable `status` at a point that has not been computed."""
 ANGULAR_UNIT = "rad/tau2"
 """Unit of every dimensionless frequency. Frequencies are angular: the imaginary part of an eigenvalue, or 2
 pi/period. For an arm a second variable, with a name ending in `_hz`, has cycles per second."""
@@ -44,12 +44,16 @@ DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "shape": ("1", "time in periods, from the instant at which y of the tip rises through its mean"),
     "transient": ("1", "time since the start, in units of the last stored time of the motion"),
 }
-"""(unit, long name) of every dimension of result files, by name."""
+"""(unit, long name) of the coordinate of every dimension, by name."""
 
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """A result variable; the shape is the shape of the points followed by the `extra` dimensions."""
+    """Description of a variable of a result file.
+
+    dtype: NumPy type. fill: value at missing points. extra: dimensions that follow the dimensions of the
+    points.
+    """
 
     name: str
     dtype: str
@@ -58,9 +62,10 @@ class Variable:
     long_name: str
     extra: tuple[str, ...] = ()
     flags: tuple[tuple[int, str], ...] = ()
-    """Values and meanings of a word variable; the meanings of `status` come from the task's solver."""
+    """(stored number, word) pairs of a variable that stands for words; those of `status` come from the
+    solver."""
     typed: str = ""
-    """Unit in which the user typed the quantity, if known; the values are in `units`."""
+    """Unit in which the user typed the quantity, or empty; the stored values are in `units`."""
 
     @property
     def is_boolean(self) -> bool:
@@ -69,41 +74,41 @@ class Variable:
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """Attributes of the variable in a file."""
+        """Attributes of the variable in a result file, by name."""
         typed = {TYPED_UNIT: self.typed} if self.typed else {}
         flags = flag_attributes(self.flags) if self.flags else {}
         return {"units": self.units, "long_name": self.long_name} | typed | flags
 
 
 def dimension_attributes(name: str) -> dict[str, Any]:
-    """Attributes of the coordinate of a dimension."""
+    """Attributes of the coordinate of the dimension `name`: unit and long name."""
     return dict(zip(("units", "long_name"), DIMENSIONS[name], strict=True))
 
 
 def flag_attributes(flags: Iterable[tuple[int, str]]) -> dict[str, Any]:
-    """Attributes with the values and meanings of a word variable."""
+    """netCDF attributes flag_values and flag_meanings from the (stored number, word) pairs of a variable."""
     values, meanings = zip(*flags, strict=True)
     return {"flag_values": np.array(values, dtype="i1"), "flag_meanings": " ".join(meanings)}
 
 
 def real(name: str, units: str, long_name: str, *extra: str) -> Variable:
-    """Variable of floating-point numbers; NaN stands for a missing number."""
+    """Description of a variable of floating-point numbers; nan stands for a missing number."""
     return Variable(name, "<f8", np.nan, units, long_name, extra)
 
 
 NOT_KNOWN = "; -1: not known"
-"""Suffix of the long name of a count that may be unknown; tables leave an unknown count empty."""
+"""End of the long name of a count that may be unknown; tables show an unknown count as an empty cell."""
 
 
 def integer(name: str, long_name: str, *extra: str) -> Variable:
-    """Variable of counts; -1 stands for an unknown count."""
+    """Description of a variable of counts; -1 stands for an unknown count."""
     return Variable(name, "<i4", -1, "1", long_name, extra)
 
 
 def word(name: str, long_name: str, words: Iterable[str | tuple[int, str]], *extra: str) -> Variable:
-    """Variable that stands for a word: by the word's index in a list, or by given numbers.
+    """Description of a variable whose numbers stand for words: positions in a list, or given numbers.
 
-    The fill value is -1 if a word has the number -1, for a missing value; else 0, the first word of a list.
+    The fill value is -1 if a word has the number -1, which means a missing value; otherwise 0.
     """
     flags = tuple(each if isinstance(each, tuple) else (place, each) for place, each in enumerate(words))
     fill = -1 if any(value == -1 for value, _ in flags) else 0
@@ -111,17 +116,17 @@ def word(name: str, long_name: str, words: Iterable[str | tuple[int, str]], *ext
 
 
 def number_of(word: str, words: Iterable[tuple[int, str]]) -> int:
-    """Number that stands for a word."""
+    """Stored number of `word`, from the (stored number, word) pairs `words`."""
     return next(number for number, known in words if known == word)
 
 
 def boolean(name: str, long_name: str) -> Variable:
-    """Variable that is 1 where a statement holds, and 0 elsewhere."""
+    """Description of a variable that is 1 at points where `long_name` is true, and 0 elsewhere."""
     return Variable(name, "|i1", 0, "1", long_name)
 
 
 def along_dimension(dimension: str, *variables: Variable) -> tuple[Variable, ...]:
-    """The variables, each with a value for every entry of a dimension."""
+    """The variables with `dimension` as their only extra dimension."""
     return tuple(replace(v, extra=(dimension,)) for v in variables)
 
 
@@ -131,16 +136,16 @@ MESH = (
     Variable("elements", "<i2", 0, "1", "number of spectral elements"),
     Variable("order", "<i2", 0, "1", "polynomial order of the elements"),
 )
-"""Variables of every layout with a mesh."""
+"""Variables that describe the mesh of a point."""
 
 
 def recorded(
     variables: Iterable[Variable], *outcomes: Any, prefix: str = "", names: Mapping[str, str] = NO_NAMES
 ) -> dict[str, Any]:
-    """Values of variables by name: each is a field of the first outcome with this field.
+    """Values of variables by name, from fields of solver outcomes: of the first outcome that has the field.
 
-    A field has the name of its variable without `prefix`, or the name given by `names`; x_real and x_imag are
-    the parts of a complex field x. Raises AttributeError if no outcome has a field.
+    A field has the name of its variable without `prefix`, or the name in `names`; x_real and x_imag are the
+    parts of a complex field x. Raises AttributeError if no outcome has a field.
     """
     return {v.name: _field(names.get(v.name, v.name.removeprefix(prefix)), outcomes) for v in variables}
 
@@ -158,7 +163,10 @@ def _field(name: str, outcomes: Sequence[Any]) -> Any:
 def listed(
     variables: Iterable[Variable], rows: Sequence[Mapping[str, Any]], room: int | None = None
 ) -> dict[str, list[Any]]:
-    """Rows of items as one list for each variable: at most `room` items, then fill values."""
+    """List of the values of each variable, by name, from rows with the values of one item by name.
+
+    room: length of the lists, by cutting, or by appending fill values; None for the number of rows.
+    """
     kept = rows[:room]
     empty = max(0, (room or 0) - len(rows))
     return {v.name: [row[v.name] for row in kept] + [v.fill] * empty for v in variables}
@@ -166,10 +174,14 @@ def listed(
 
 @dataclass(frozen=True, slots=True)
 class IncreaseRule:
-    """Rule for an option whose larger value requests more data of every point and changes nothing else."""
+    """Rule for an option whose larger value only requests more data of every point of a file.
+
+    The rule says which stored points need no new solve when the option increases.
+    """
 
     has: Callable[[np.ndarray, Any], NDArray[np.bool_]]
-    """Function from stored records, (n,), and the option's stored value to whether each is complete, (n,)."""
+    """Function from stored records, (n,), and the former value of the option to whether each record has the
+    additional data already, (n,)."""
     values: tuple[Any, ...] = ()
     """Values of the option, in increasing order; empty for numbers and booleans."""
 
@@ -181,26 +193,27 @@ class IncreaseRule:
 
 
 NEEDS_NEW_SOLVE = IncreaseRule(lambda records, before: np.zeros(len(records), bool))
-"""Increase for which every point must be solved again."""
+"""Rule for an option whose increase needs a new solve of every point."""
 NEEDS_NO_SOLVE = IncreaseRule(lambda records, before: np.ones(len(records), bool))
-"""Increase for which no point must be solved again, because the addition is computed besides the points."""
+"""Rule for an option whose increase needs no new solve, because the additional data belong to all points
+together."""
 Filled = tuple[Variable, NDArray[Any]]
-"""A variable and its values at all points; `extra` names all dimensions of the values."""
+"""(variable, all its values, (...,)); `extra` names all dimensions."""
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Layout of a result file: its variables, extra dimensions and parameters."""
+    """Layout of a result file: the variables of every point, and the dimensions."""
 
     variables: tuple[Variable, ...]
     extents: dict[str, int]
-    """Lengths of the extra dimensions."""
+    """Length of each extra dimension, by name."""
     parameters: tuple[str, ...] = LINEAR_PARAMETERS
-    """Parameters of a point: dimensions of a grid, or columns along `point`."""
+    """Names of the parameters of a point: dimensions of a grid, or variables along the dimension `point`."""
     over: tuple[str, ...] = ()
-    """Dimensions of the points of a grid over an arm's quantities; empty otherwise."""
+    """Names of the dimensions of a grid over an arm's quantities; empty for other points."""
     needs_all_points: bool = False
-    """Whether the file also needs variables computed from all of its points."""
+    """Whether a finished file also has variables that are computed from all points together."""
 
     def dimensions(self, is_list: bool) -> tuple[str, ...]:
         """Names of the dimensions of the points; is_list: whether the points come from a list."""
@@ -208,20 +221,20 @@ class Layout:
 
     @property
     def record(self) -> np.dtype:
-        """NumPy type of the record of one point: the flat index, then every variable."""
+        """NumPy type of the record of a point: its flat index, then every variable."""
         fields: list[Any] = [(v.name, v.dtype, self.inner(v)) for v in self.variables]
         return np.dtype([("index", "<i8"), *fields])
 
     @property
     def bytes_per_point(self) -> int:
-        """Size of all variables at a point, in bytes, even if it exceeds the limit of a record."""
+        """Size of all variables at a point, in bytes; it may exceed the largest size of a NumPy record."""
         return sum(np.dtype(v.dtype).itemsize * prod(self.inner(v)) for v in self.variables)
 
     @property
     def empty_point(self) -> dict[str, NDArray[Any]]:
-        """Fill values of every variable of a point, each in its shape at a point."""
+        """Fill values of every variable of a point, by name, each of the shape `inner`."""
         return {v.name: np.full(self.inner(v), v.fill, v.dtype) for v in self.variables}
 
     def inner(self, variable: Variable) -> tuple[int, ...]:
-        """Shape of a variable at a single point: the lengths of its extra dimensions."""
+        """Shape of a variable at a single point: lengths of its extra dimensions."""
         return tuple(self.extents[d] for d in variable.extra)

@@ -1,1 +1,1 @@
-"""Files beside the result file of an unfinished run: journals, checkpoints and the lock."""
+"""Files in the journal directory, beside the result file of an unfinished run: journals and checkpoints."""

@@ -1,7 +1,7 @@
-"""Checkpoints of unfinished work beside the journals: states of chains, results of units.
+"""Checkpoints of unfinished work in the journal directory: solver states of chains, results of units.
 
-Each checkpoint is a small file, replaced as a whole and recognised by fingerprint and checksum. A torn or
-foreign file is ignored: the chain starts again, the unit is solved again.
+Each checkpoint is a small file, replaced as a whole and recognised by fingerprint and checksum. A damaged
+file, or a file of another run, is ignored: the chain starts again, the unit is solved again.
 """
 
 import io
@@ -16,30 +16,30 @@ import numpy as np
 from .journal import drop_files
 
 CHECKPOINTS = "chain-*"
-"""Pattern of the names of checkpoints, unfinished files after a kill included."""
+"""Pattern of the file names of checkpoints of chains, including files that a kill left unfinished."""
 UNIT_RESULTS = "unit-*"
-"""Pattern of the names of results of units, unfinished files after a kill included."""
+"""Pattern of the file names of results of units, including files that a kill left unfinished."""
 CHECKPOINT_HEAD = b"rodsweep checkpoint 6\n"
 """First line of a checkpoint; the number grows when a state changes in meaning. Checkpoints with another
 number are ignored."""
 RESULT_HEAD = b"rodsweep unit 1\n"
-"""First line of the result of a unit; the number grows when units or results change in meaning."""
+"""First line of the file of a unit's result; the number grows when units or results change in meaning."""
 CHECKSUM_BYTES = 4
-"""Length of the checksum at the end of a file, in bytes."""
+"""Length of the checksum at the end of a checkpoint file, in bytes."""
 Arrays = dict[str, np.ndarray]
 STATE = "state_"
-"""Prefix of the names of the arrays of a state in a checkpoint file."""
+"""Prefix of the names of a solver state's arrays in a checkpoint file."""
 
 
 class HasArrays(Protocol):
-    """Interface of the state of a chain, which is converted to named arrays."""
+    """Solver state of a chain, which can be written as arrays."""
 
     def arrays(self) -> Arrays:
-        """The whole state as named arrays of any shape."""
+        """The whole solver state as arrays of any shape, (...,), by name."""
 
 
 class KeptArrays:
-    """Base class of small files of named arrays, one file per number, in the journal directory of a run."""
+    """Store of sets of named arrays, a file for each number, in the journal directory of a run."""
 
     pattern: ClassVar[str]
 
@@ -48,7 +48,7 @@ class KeptArrays:
         self.header = head + fingerprint.encode() + b"\n"
 
     def put(self, number: int, arrays: Arrays) -> None:
-        """Stores arrays under a number; replaces earlier arrays of this number."""
+        """Stores arrays by name under `number`; replaces earlier arrays of this number."""
         stream = io.BytesIO()
         np.savez(stream, **arrays)
         content = self.header + stream.getvalue()
@@ -60,7 +60,7 @@ class KeptArrays:
         os.replace(copy, path)
 
     def get(self, number: int) -> Arrays | None:
-        """Arrays under a number; None without an intact file of the run."""
+        """Arrays stored under `number`, by name; None without an intact file of this run."""
         if not self._path(number).is_file():
             return None
         data = self._path(number).read_bytes()
@@ -76,22 +76,22 @@ class KeptArrays:
 
 
 class Checkpoints(KeptArrays):
-    """Checkpoint of each unfinished chain of points: the start state of the next point."""
+    """Store of the last solved point, and the solver state after this point, of each unfinished chain."""
 
     pattern = CHECKPOINTS
 
     def __init__(self, directory: Path, fingerprint: str, state_of: Callable[[Arrays], HasArrays]):
-        """state_of: makes a state from the arrays, of any shape, of the state's method `arrays`."""
+        """state_of: makes a solver state from its arrays (the result of the state's method `arrays`)."""
         super().__init__(directory, fingerprint, CHECKPOINT_HEAD)
         self._state_of = state_of
 
     def write(self, chain: int, index: int, state: HasArrays | None) -> None:
-        """Stores the state from which the point after `index` starts; None for a cold start."""
+        """Stores the solver state after the point at the flat index `index` of a chain; None for no state."""
         parts = state.arrays() if state is not None else {}
         self.put(chain, {"index": np.array(index)} | {STATE + name: part for name, part in parts.items()})
 
     def read(self, chain: int) -> tuple[int, HasArrays | None] | None:
-        """(index, state) of the last checkpoint; None without an intact checkpoint of this run."""
+        """(flat index, solver state) of a chain's last checkpoint; None without an intact checkpoint."""
         arrays = self.get(chain)
         if arrays is None:
             return None
@@ -105,7 +105,7 @@ class Checkpoints(KeptArrays):
 
 
 class UnitResults(KeptArrays):
-    """Results of the finished units of a run, where points are computed from all units together."""
+    """Store of the results of finished units, in runs whose points are computed from all units together."""
 
     pattern = UNIT_RESULTS
 
@@ -113,17 +113,17 @@ class UnitResults(KeptArrays):
         super().__init__(directory, fingerprint, RESULT_HEAD)
 
     def write(self, unit: int, arrays: Arrays) -> None:
-        """Stores the result of a unit."""
+        """Stores the result of the unit number `unit`, as arrays by name."""
         self.put(unit, arrays)
 
     def read(self) -> dict[int, Arrays]:
-        """Results of all units with an intact file, by unit."""
+        """Results of all units with an intact file, by number of the unit."""
         names = (path.name.removeprefix("unit-") for path in self.directory.glob(UNIT_RESULTS))
         found = {int(name): self.get(int(name)) for name in names if name.isdecimal()}
         return {unit: arrays for unit, arrays in found.items() if arrays is not None}
 
     def drop(self) -> None:
-        """Deletes the result files of all units."""
+        """Deletes the results of all units."""
         drop_files(self.directory, UNIT_RESULTS)
 
 

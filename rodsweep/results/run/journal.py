@@ -1,8 +1,9 @@
-"""Journals: finished points on disk at once, in an append-only file per rank beside the result file.
+"""Journals: append-only files, one per rank, beside the result file, with points as soon as they are
+finished.
 
-The records of a point, or of a stretch of points solved at once, are written by a single call. A kill at any
-instant therefore loses only the points in progress. Every record carries a checksum, which reveals a torn
-tail. New reasons why points failed are written by the same call, as text in records that no point has.
+The records of a point, or of a stretch of points, are written by a single call. A kill at any instant
+therefore loses only the points in progress. Every record has a checksum, which reveals an incomplete record.
+Reasons why points failed are written by the same call, as text in records with a negative index.
 """
 
 import os
@@ -16,23 +17,24 @@ import numpy as np
 from ..layouts.variables import Layout
 
 JOURNALS = "rank-*"
-"""Pattern of the names of journals."""
+"""Pattern of the file names of journals."""
 JOURNAL_HEAD = b"rodsweep journal 1\n"
-"""First line of a journal; the second line is its fingerprint."""
+"""First line of a journal. The second line is the fingerprint of config and points."""
 BYTES_A_BLOCK = 1 << 18
-"""Number of bytes of a journal that are read at once, to bound the memory."""
+"""Number of bytes per read of a journal, which bounds the memory."""
 TEXT_GOES_ON, TEXT_ENDS = -2, -1
-"""Indices of records with a piece of a line of text, and with its last piece."""
+"""Values of the index field in records of text: for the last record of a line TEXT_ENDS, for earlier records
+of the line TEXT_GOES_ON."""
 CHECKSUM_BYTES = 4
-"""Length of the checksum behind a record, in bytes."""
+"""Length of the checksum after a record, in bytes."""
 INDEX_BYTES = 8
 """Length of the index, the first field of a record, in bytes."""
 LONGEST_HEAD = 200
-"""Largest length of each of the two first lines of a journal, in bytes."""
+"""Maximum length of each of the first two lines of a journal, in bytes."""
 
 
 def journal_directory(file: Path) -> Path:
-    """Directory of the journals of a result file."""
+    """Path of the directory with the journals of the result file `file`."""
     return file.parent / f"{file.name}.journal"
 
 
@@ -49,9 +51,9 @@ class Journal:
         self.head = len(_head(fingerprint))
 
     def append(self, index: int, values: dict, reasons: Sequence[str] = ()) -> None:
-        """Writes the record of a finished point; `values` has every variable.
+        """Writes the record of the finished point at a flat index; values: every variable by name.
 
-        reasons: lines on why points failed, for `read_reasons`.
+        reasons: lines that say why points failed, for `read_reasons`.
         """
         # One assignment, because assigning single fields takes three times as long.
         self.page[()] = (index, *(values[name] for name in self.names))
@@ -60,7 +62,7 @@ class Journal:
     def append_all(
         self, index: np.ndarray, values: dict[str, np.ndarray], reasons: Sequence[str] = ()
     ) -> None:
-        """Writes the records of finished points: index, (n,), and every variable in `values`, (n, ...).
+        """Writes the records of finished points: flat indices `index`, (n,), and variables by name, (n, ...).
 
         reasons: as in `append`.
         """
@@ -74,7 +76,7 @@ class Journal:
         self._write(b"".join(map(_sealed, (*self._text(reasons), *parts))))
 
     def _text(self, lines: Sequence[str]) -> Iterator[bytes]:
-        """Yields records with lines of text in place of values."""
+        """Yields records that hold lines of text instead of the values of a point."""
         room = self.page.itemsize - INDEX_BYTES
         for line in lines:
             text = line.encode()
@@ -84,7 +86,10 @@ class Journal:
                 yield index.to_bytes(INDEX_BYTES, "little", signed=True) + piece.ljust(room, b"\0")
 
     def close(self) -> None:
-        """Syncs the journal to disk, written again if it was moved; deletes it if it has no points."""
+        """Syncs the journal to disk and closes it; deletes a journal without points.
+
+        A journal whose file was moved or deleted is written again first.
+        """
         empty = os.fstat(self.handle).st_size == self.head
         if not empty and not self._is_in_place():
             self._write_anew()
@@ -94,20 +99,20 @@ class Journal:
             self.path.unlink(missing_ok=True)
 
     def _is_in_place(self) -> bool:
-        """Whether the journal's path still leads to the open file, which a user may have moved."""
+        """Whether the open file is still at the path of the journal."""
         try:
             return os.path.samestat(os.stat(self.path), os.fstat(self.handle))
         except OSError:
             return False
 
     def _create(self) -> None:
-        """Creates the file of the journal under a name that no journal has."""
+        """Creates the file of the journal, under a new name."""
         self.directory.mkdir(parents=True, exist_ok=True)
         self.path = self.directory / f"{self.name}-{os.urandom(4).hex()}"
         self.handle = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_APPEND, 0o644)
 
     def _write_anew(self) -> None:
-        """Writes the whole journal again at its place; an open file can be read even without a name."""
+        """Copies the open journal, which may have lost its name, to a new file in the journal directory."""
         former = self.handle
         at = 0
         self._create()
@@ -117,31 +122,31 @@ class Journal:
         os.close(former)
 
     def _write(self, data: bytes) -> None:
-        """Writes all bytes; a single call of the system may write only a part."""
+        """Writes all bytes of `data`; a single system call may write fewer."""
         while data:
             data = data[os.write(self.handle, data) :]
 
 
 def drop_files(directory: Path, pattern: str) -> None:
-    """Deletes the files of a directory whose names match."""
+    """Deletes the files in a directory whose names match `pattern`."""
     for path in directory.glob(pattern):
         if not path.is_dir():
             path.unlink()
 
 
 def journals_of(directory: Path, fingerprint: str) -> list[Path]:
-    """Journals in a directory with points of the given fingerprint."""
+    """Paths of the journals in a directory that have points and this fingerprint."""
     return [path for path in sorted(directory.glob(JOURNALS)) if _points_of(path) == _head(fingerprint)]
 
 
 def other_journals(directory: Path, fingerprint: str) -> list[Path]:
-    """Journals in a directory with points of other fingerprints, or with a damaged head."""
+    """Paths of the journals in a directory that have points and another fingerprint or a damaged head."""
     known = (b"", _head(fingerprint))
     return [path for path in sorted(directory.glob(JOURNALS)) if _points_of(path) not in known]
 
 
 def set_aside(directory: Path, paths: Iterable[Path]) -> Path:
-    """Moves files from a journal directory into a new directory, which is returned."""
+    """Moves files from a journal directory into a new directory beside it; returns the new directory."""
     number = 1
     while os.path.lexists(kept := directory.with_name(f"{directory.name}-{number}")):
         number += 1
@@ -152,17 +157,17 @@ def set_aside(directory: Path, paths: Iterable[Path]) -> Path:
 
 
 def kept_sentence(directory: Path, fingerprint: str) -> str:
-    """Clause of a refusal: the journals with points of the given fingerprint; empty without points."""
+    """Clause for messages that finished points are in the journals; empty without such points."""
     return f"; what is done is kept in {directory}" if journals_of(directory, fingerprint) else ""
 
 
 def _head(fingerprint: str) -> bytes:
-    """First two lines of a journal."""
+    """First two lines of a journal with this fingerprint."""
     return JOURNAL_HEAD + fingerprint.encode() + b"\n"
 
 
 def _points_of(path: Path) -> bytes:
-    """Head of a journal with points; empty for any other file."""
+    """First two lines of a journal that has points; empty for any other file."""
     if not path.is_file():
         return b""
     with path.open("rb") as file:
@@ -171,14 +176,17 @@ def _points_of(path: Path) -> bytes:
 
 
 def _sealed(record: bytes) -> bytes:
-    """Bytes of a record followed by the checksum of the record."""
+    """The bytes of a record followed by its checksum."""
     return record + zlib.crc32(record).to_bytes(CHECKSUM_BYTES, "little")
 
 
 def read_journals(
     directory: Path, layout: Layout, fingerprint: str, points: int = 2**62
 ) -> Iterator[np.ndarray]:
-    """Yields intact records, (records,), of a run's points from all of its journals in a directory."""
+    """Yields intact records, (records,), of points from all journals with this fingerprint in a directory.
+
+    points: number of points of the sweep; records with a larger index are left out.
+    """
     for path in journals_of(directory, fingerprint):
         for rows in _rows(path, layout, fingerprint):
             whole = rows[_is_whole(rows), :-CHECKSUM_BYTES]
@@ -187,7 +195,7 @@ def read_journals(
 
 
 def read_reasons(directory: Path, layout: Layout, fingerprint: str) -> list[str]:
-    """Reads the reasons of failed points, one per line, from all journals of a run in a directory."""
+    """Lines that say why points failed, from all journals with this fingerprint in a directory."""
     return [
         line
         for path in journals_of(directory, fingerprint)

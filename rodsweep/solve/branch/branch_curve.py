@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...model.floquet import least_outside
+from ...model.floquet import min_unstable_multipliers
 from ..cycle.accuracy.cycle_errors import CycleErrors
 from ..cycle.accuracy.refinement_settings import REFINEMENT
 from ..orbit.measures import Measures
@@ -49,10 +49,9 @@ class BranchPoint:
         )
 
     @property
-    def least_outside(self) -> int:
-        """Smallest possible number of multipliers outside the unit circle; 0: stable, -1: stability
-        undecided."""
-        return least_outside(self.unstable_count, self.multiplier, self.errors.multiplier_error)
+    def min_unstable_multipliers(self) -> int:
+        """Least number of multipliers outside the circle; 0: stable, -1: stability not known."""
+        return min_unstable_multipliers(self.unstable, self.multiplier, self.errors.multiplier_error)
 
 
 def _margin(point: ArcPoint) -> float:

@@ -162,7 +162,7 @@ def _range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
     """(lowest value, highest value, index of the end at which the rod is crushed, -1 for neither)."""
     low = request.start
     high = request.stop
-    share = rod.build.crushing_share(rod.taper)
+    share = rod.build.relative_crushing_force(rod.taper)
     if request.along == "F" and high > (1 - BRANCHES.crushing_margin) * share * rod.k1:
         return low, (1 - BRANCHES.crushing_margin) * share * rod.k1, 1
     if request.along == "k1" and low < rod.F / share * (1 + BRANCHES.crushing_margin):
@@ -178,7 +178,7 @@ def _thinnest(rod: Rod, low: float, high: float) -> float:
     crushes every tip."""
 
     def holds(taper: float) -> bool:
-        return (1 - BRANCHES.crushing_margin) * rod.build.crushing_share(taper) * rod.k1 > rod.F
+        return (1 - BRANCHES.crushing_margin) * rod.build.relative_crushing_force(taper) * rod.k1 > rod.F
 
     if holds(low) or not holds(high):
         return low if holds(low) else high

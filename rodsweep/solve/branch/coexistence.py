@@ -202,7 +202,9 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
     interval."""
     intervals = []
     for one, other in zip(curve.special[:-1], curve.special[1:], strict=True):
-        signs = {point.least_outside for point in curve.points[one.after + 1 : other.after + 1]} - {-1}
+        signs = {
+            point.min_unstable_multipliers for point in curve.points[one.after + 1 : other.after + 1]
+        } - {-1}
         # Stability can change at special points only; cycles that disagree between two of them leave it open.
         stable = -1
         if signs == {0}:

@@ -1,1 +1,1 @@
-"""The points of a sweep: grids, lists, lines, stretches, chains and shards."""
+"""The points of a sweep: grids and lists, and their division into lines, stretches, chains and shards."""

@@ -1,5 +1,4 @@
-"""Grid over the SI quantities of an arm: each point has its own rod, or a status that says why there is no
-rod."""
+"""Grid over the quantities of an arm: each point has its own rod, or a status that says why it has no rod."""
 
 from collections.abc import Callable, Mapping, Sequence
 from operator import attrgetter, methodcaller
@@ -20,12 +19,11 @@ from .flutter_forces import FlutterForce
 from .points import Points
 
 FlutterOf = Callable[[SlenderArm, float | None], FlutterForce]
-"""Function from (arm, taper) to the first flutter with the likeliest drag; a taper of None means that of the
-arm."""
+"""Function from (arm, taper that replaces the arm's taper or None) to the force of first flutter."""
 Forces = NDArray[np.object_]
-"""Array of `FlutterForce` objects, (arms, 1, combinations of parameters given beside the arm)."""
+"""Array of `FlutterForce` objects, (arms, 1, combinations of replaced parameters)."""
 UNCOVERED = FlutterForce(np.nan)
-"""Placeholder for the flutter force of an arm that the rod model does not cover."""
+"""Force of an arm without a rod, or without load: nan."""
 
 
 def grid_of_arms(
@@ -35,10 +33,11 @@ def grid_of_arms(
     flutter: FlutterOf,
     build: Build = STANDARD,
 ) -> Points:
-    """Points of the grid over an arm's quantities and over the parameters of `beside` with several values.
+    """Points of a grid over an arm's quantities, and over the parameters in `beside` that have several
+    values.
 
-    beside: values of parameters, (n,), in place of the arm's. names: the parameters of the task. flutter:
-    force of flutter, for relative loads. Raises ValueError if no rod covers any point.
+    beside: values, (n,), of parameters that replace the arm's. names: the parameters of the task. flutter:
+    force of first flutter of an arm, for relative loads. Raises ValueError if no point has a rod.
     """
     arms, statuses = zip(*(_arm_or_status(section, values) for values in section.sections()), strict=True)
     loads = section.given[section.load_axis].array() if section.load_axis else np.zeros(1)
@@ -59,7 +58,7 @@ def grid_of_arms(
     table |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
     builds = tuple(arm.build if arm else STANDARD for arm in arms) if section.varies else ()
     if "F" in table:
-        shares = build.crushing_shares(table.get("taper", np.ones(1)))
+        shares = build.relative_crushing_forces(table.get("taper", np.ones(1)))
         if builds:
             shares = _of_each(arms, lambda arm: arm.crushing_force / arm.k1)
         crushed = np.broadcast_to(table["F"] >= CRUSHED_FROM * table["k1"] * shares, shape)
@@ -76,12 +75,12 @@ def grid_of_arms(
 
 
 def _of_each(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:
-    """A quantity of all arms, along the dimension of arms; NaN for arms without a rod."""
+    """Values of `quantity` of all arms, (arms, 1, 1); nan for None, an arm without a rod."""
     return _along(0, [quantity(arm) if arm else np.nan for arm in arms])
 
 
 def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
-    """(arm of a section without load, status); the arm is None without a rod."""
+    """(arm without load for these values of its quantities, status); the arm is None if it has no rod."""
     try:
         return section.made(values), SLENDER
     except UncoveredArm as error:
@@ -91,7 +90,10 @@ def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[Sl
 def _forces(
     section: ArmSection, arms: Sequence[SlenderArm | None], tapers: Array | None, flutter: FlutterOf
 ) -> Forces:
-    """F of a load of 1 on each arm. tapers: values in place of the taper of the arms, or None."""
+    """Dimensionless force F that a load of size 1 exerts on each arm, see `_force_of`.
+
+    tapers: values, (n,), that replace the arms' taper; None for no replacement.
+    """
     beside = [None] if tapers is None or section.load_axis not in RELATIVE else tapers.ravel().tolist()
     forces = np.empty((len(arms), 1, len(beside)), object)
     for i, arm in enumerate(arms):
@@ -103,7 +105,10 @@ def _forces(
 def _force_of(
     section: ArmSection, arm: SlenderArm | None, taper: float | None, flutter: FlutterOf
 ) -> FlutterForce:
-    """Force F of a load of 1 N, 1 Pa or 1 flutter load on an arm; UNCOVERED for no arm or no load."""
+    """Dimensionless force F that a load of size 1 exerts on an arm; UNCOVERED without load or rod.
+
+    The load is 1 Pa or 1 N, or the load at first flutter for a load relative to flutter.
+    """
     if arm is None or not section.load:
         return UNCOVERED
     if section.load_axis in RELATIVE:
@@ -112,20 +117,26 @@ def _force_of(
 
 
 def _with_flutter(coverage: Array, flutter: Array) -> Array:
-    """Status codes of points, with a failure code where no flutter gives a relative load its value."""
+    """Status codes `coverage`, with NO_FLUTTER and FLUTTER_UNKNOWN where a relative load has no value.
+
+    flutter: F at flutter; inf without flutter, nan if unknown. The shapes broadcast to (arms, loads, n).
+    """
     found = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
     codes: Array = np.where(coverage == SLENDER, found, coverage)
     return codes
 
 
 def _failures(coverage: Array, forces: Forces) -> dict[int, str]:
-    """Reason of each failed flutter search, by flat index; coverage: codes over the grid of arms."""
+    """Reasons why the search for flutter failed, by flat index of the point.
+
+    coverage: status codes, (arms, loads, combinations of replaced parameters).
+    """
     each = np.broadcast_to(forces, coverage.shape).ravel()
     return {int(index): each[index].failure for index in np.flatnonzero(coverage == FLUTTER_UNKNOWN)}
 
 
 def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bool, forces: Forces) -> None:
-    """Raises ValueError with the reason why no point has a rod; no_flutter: whether an arm has no flutter."""
+    """Raises ValueError that says why no point has a rod; no_flutter: whether some arm does not flutter."""
     section.made(section.firsts, loaded=True)
     for force in forces.ravel():
         if force.failure:
@@ -140,5 +151,5 @@ def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bo
 
 
 def _along(dimension: int, values: Any) -> Array:
-    """Reshapes values, (n,), along a dimension: 0 arms, 1 loads, 2 combinations of parameters."""
+    """Values, (n,), as an array along dimension 0 (arms), 1 (loads) or 2 (replaced parameters) of three."""
     return np.asarray(values).reshape([-1 if i == dimension else 1 for i in range(3)])

@@ -20,20 +20,20 @@ Arrays = dict[str, Array]
 
 
 class ChainState(Protocol):
-    """State of the previous point in a chain, from which the next point starts."""
+    """Solver state after a point of a chain, from which the solve of the next point starts."""
 
     def arrays(self) -> Arrays:
-        """The whole state as named arrays of any shape, for a checkpoint."""
+        """The whole state as arrays of any shape, (...,), by name, for a checkpoint."""
 
 
 State = ChainState | None
-"""State of the previous point of the chain; None for a cold start."""
+"""Solver state after the previous point of the chain; None at the first point."""
 ChainStep = Callable[[int, Any], tuple[Any, Any]]
-"""Function from (flat index, start state) of a point to (outcome, start state of the next point)."""
+"""Function from (flat index of a point, initial state) to (outcome, initial state of the next point)."""
 
 
 class ChainStates(Protocol):
-    """Interface of checkpoints: last solved point of each unfinished chain, and the state after it."""
+    """Store of checkpoints: (flat index of last solved point, state after it) of each unfinished chain."""
 
     def write(self, chain: int, index: int, state: State) -> None: ...
 
@@ -44,7 +44,10 @@ class ChainStates(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Chains:
-    """Chains of a grid of `shape` points along `axis`, solved in increasing order if `upward`."""
+    """All chains of a grid of shape `shape` along its axis number `axis`.
+
+    upward: whether points are solved in order of increasing values on the axis.
+    """
 
     shape: tuple[int, ...]
     axis: int
@@ -66,13 +69,16 @@ class Chains:
         return indices_along(self.shape, self.axis, chain, along if self.upward else along[::-1])
 
     def todo(self, missing: IndexSet) -> list[IndexRange]:
-        """Ranges of the numbers of chains with missing points; missing: ranges of flat indices of points."""
+        """Ranges of the numbers of those chains that have missing points."""
         return merged_ranges((n, n + 1) for n in range(self.count) if missing[self.indices(n)].any())
 
 
 @dataclass(frozen=True, slots=True)
 class ChainedWork:
-    """Chains, and the functions that solve one point and that restore a state from its arrays."""
+    """The chains of a sweep, and how to solve them.
+
+    solve_from: solves a point from a state. state_of: makes a state from the arrays of `ChainState.arrays`.
+    """
 
     chains: Chains
     solve_from: ChainStep
@@ -81,7 +87,7 @@ class ChainedWork:
 
 @dataclass(frozen=True, slots=True)
 class ChainSolver:
-    """Function that solves a chain of a run; yields only `missing` points, for storage."""
+    """Function from the number of a chain to the outcomes of its missing points; resumes from checkpoints."""
 
     work: ChainedWork
     missing: IndexSet
@@ -89,12 +95,10 @@ class ChainSolver:
     stop: StopRequest
 
     def __call__(self, chain: int) -> Iterator[tuple[int, Any]]:
-        """Yields (flat index, outcome) of the missing points of a chain, until a stop request.
+        """Yields (flat index, outcome) of each missing point of a chain; ends early after a stop request.
 
-        The caller stores the point before the checkpoint of the chain is written. A kill between the two
-        writes
-        therefore makes a later run solve the point again; in reverse order a kill would lose the point for
-        good.
+        The state is stored after the point. A kill in between then costs a second solve of the point; in the
+        reverse order a kill could lose the point for good.
         """
         order = list(map(int, self.work.chains.indices(chain)))
         first, state = self._resume(chain, order)
@@ -109,7 +113,7 @@ class ChainSolver:
         self.checkpoints.remove(chain)
 
     def _resume(self, chain: int, order: list[int]) -> tuple[int, State]:
-        """(position in `order` of the first point to solve, its start state).
+        """(position in the chain of the first point to solve, its initial state).
 
         The checkpoint is used if no point before it is missing; otherwise the chain starts again from a cold
         start.

@@ -1,7 +1,8 @@
-"""First flutter force of arms whose load is given relative to flutter, solved once per rod before the sweep.
+"""Forces of first flutter, for arms with a load relative to flutter, computed once for each rod.
 
-The search takes most of the time in which points are made, so the ranks of a run may share it. A search that
-fails gives its points a status. The solver is imported on demand.
+The forces are needed before the points of a sweep are made. The search takes most of the time in which points
+are made, so the ranks of a run may divide the rods. Points get a status if the search fails. The solver is
+imported on demand.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -20,29 +21,30 @@ from ...model.rod import Rod
 
 @dataclass(frozen=True, slots=True)
 class FlutterForce:
-    """Force F of first flutter with the likeliest drag: inf without flutter, NaN after a failed search.
+    """Force F of first flutter at the likeliest drag: inf without flutter, nan if the search fails.
 
-    failure: why the search failed; empty otherwise."""
+    failure: reason why the search failed, or empty.
+    """
 
     F: float
     failure: str = ""
 
 
 FlutterForces: TypeAlias = Mapping[Rod, FlutterForce]
-"""Flutter force by rod; the rods have no load and move in one plane."""
+"""Force of first flutter by rod; the rods are without load and move in one plane."""
 Tapers: TypeAlias = Sequence[float | None]
-"""Values of the parameter `taper` (tip radius over base radius) given beside an arm; None keeps the taper of
-the arm."""
+"""Tapers (tip radius over base radius) that replace an arm's taper; None keeps the arm's own taper."""
 OWN_TAPER: Tapers = (None,)
+"""No replacement: the arm keeps its own taper."""
 
 
 def rods_of_flutter(
     section: ArmSection | None, build: Build | None = None, tapers: Tapers = OWN_TAPER
 ) -> list[Rod]:
-    """Distinct rods whose flutter force the points of `section` need; empty unless its load is relative.
+    """The distinct rods whose flutter forces the points of an arm need; none unless its load is relative.
 
-    build: law and profile given beside the section, None for those of the arm. Raises InputError for an
-    invalid arm.
+    build: constitutive law and profile of the config section `material`, None without. Raises InputError for
+    an invalid arm.
     """
     if section is None or section.load_axis not in RELATIVE:
         return []
@@ -53,7 +55,7 @@ def rods_of_flutter(
 
 
 def _arms(section: ArmSection) -> Iterable[SlenderArm]:
-    """Yields the arms of a section to which the rod model applies, without their load."""
+    """Yields the arms of a config section to which the rod model applies, without load."""
     for values in section.sections():
         try:
             yield section.made(values)
@@ -64,8 +66,8 @@ def _arms(section: ArmSection) -> Iterable[SlenderArm]:
 
 
 def flutter_of_rod(rod: Rod) -> FlutterForce:
-    """Flutter force of one rod; a failed search is returned as a `FlutterForce`, not raised."""
-    from ...verdict.relative import FlutterSearchFailed, first_hopf_force
+    """Force of first flutter of one rod; a failed search is a `FlutterForce` too, not an exception."""
+    from ...verdict.relative import FlutterUnknown, first_hopf_force
 
     try:
         return FlutterForce(first_hopf_force(rod))
@@ -76,10 +78,10 @@ def flutter_of_rod(rod: Rod) -> FlutterForce:
 def flutter_of_arm(
     arm: SlenderArm, taper: float | None, known: FlutterForces, build: Build | None = None
 ) -> FlutterForce:
-    """Smallest flutter force of an arm over its planes of motion; a failure if any plane fails.
+    """Force of first flutter of an arm, in the arm's k3/L^2: the smallest over its planes of motion.
 
-    taper: replaces the taper of the arm, unless None. known: flutter forces of the arm's rods. build: as in
-    `rods_of_flutter`.
+    The result is a failure if the search failed in a plane. taper: replaces the arm's taper unless None.
+    known: forces of all rods of `rods_of_flutter`. build: as in `rods_of_flutter`.
     """
     from ...verdict.relative import plane_rods
 

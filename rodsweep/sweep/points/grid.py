@@ -1,4 +1,4 @@
-"""Points of a sweep from a config; values outside the model are refused."""
+"""Points of a sweep from a config; parameter values outside the model are refused."""
 
 import math
 from collections.abc import Iterable
@@ -23,16 +23,18 @@ from .points import Points
 
 
 def grid_size(config: Config) -> int:
-    """Number of points of a grid of parameters, without making the axes; 0 for other points."""
+    """Number of points of a grid of parameters, without making its axes; 0 for a list or a grid over an
+    arm's quantities."""
     if config.parameters.is_list or config.parameters.over:
         return 0
     return math.prod(config.parameters.axes[name].size for name in config.names)
 
 
 def points_of(config: Config, directory: Path, flutter: FlutterForces | None = None) -> Points:
-    """Points of the sweep of a config; raises InputError for any value outside the model.
+    """Points of the sweep that a config describes; raises InputError for a parameter value outside the model.
 
-    flutter: flutter forces of all rods of `flutter_rods`; if None, this function computes the forces.
+    directory: folder of relative file names. flutter: flutter forces of all rods of `flutter_rods`; if None,
+    they are computed here.
     """
     parameters = config.parameters
     for name, value in parameters.numbers.items():
@@ -57,15 +59,17 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
 
 
 def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | None:
-    """Codes of `coverage`, (points,), for a grid of parameters with some points crushed by an arm's load.
+    """Status codes CRUSHED or SLENDER, (points,), of a grid of parameters in which a load crushes some
+    points.
 
-    None if all points are crushed or no point is, and for grids of more than MOST_POINTS points.
+    None if all points or no points are crushed, and for grids of more than MOST_POINTS points. axes: values
+    of each parameter, (n,).
     """
     count = math.prod(map(len, axes.values()))
     if not set(CRUSHING) <= axes.keys() or count > MOST_POINTS:
         return None
     along = {name: axes[name].reshape([-1 if each == name else 1 for each in axes]) for name in axes}
-    shares = build.crushing_shares(along.get("taper", np.ones(1)))
+    shares = build.relative_crushing_forces(along.get("taper", np.ones(1)))
     if axes["F"].max() < axes["k1"].min() * shares.min():
         return None
     shape = tuple(map(len, axes.values()))
@@ -74,7 +78,7 @@ def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | 
 
 
 def flutter_rods(config: Config) -> list[Rod]:
-    """Distinct rods whose flutter force the points of a config need; InputError for an invalid arm."""
+    """The distinct rods whose flutter forces the points of a config need; InputError for an invalid arm."""
     given = config.parameters.given_axes.get("taper")
     if given is None:
         return rods_of_flutter(config.parameters.arm, config.stated_build)
@@ -85,7 +89,10 @@ def flutter_rods(config: Config) -> list[Rod]:
 def refuse_outside(
     allowed: Range, name: str, values: Iterable[float], where: str = "", why: str = ""
 ) -> None:
-    """Raises InputError for the first of `values` outside `allowed`; where, why: phrases of the message."""
+    """Raises InputError for the first of `values` outside the range `allowed` of the parameter `name`.
+
+    where, why: further phrases of the message.
+    """
     bad = allowed.first_outside(values)
     if bad is not None:
         raise InputError(
@@ -94,7 +101,7 @@ def refuse_outside(
 
 
 def refuse_axes(axes: dict[str, Array], into_crushed: bool = False, build: Build = STANDARD) -> None:
-    """Raises InputError for a value out of range on any axis, (n,), and for crushed rods.
+    """Raises InputError for a parameter value outside its range on an axis, (n,) each, and for crushed rods.
 
     into_crushed: whether the grid may contain crushed rods, as long as not all are crushed.
     """
@@ -102,7 +109,7 @@ def refuse_axes(axes: dict[str, Array], into_crushed: bool = False, build: Build
         refuse_outside(PARAMETERS[name].allowed, name, column)
     if not set(CRUSHING) <= axes.keys():
         return
-    shares = build.crushing_shares(axes.get("taper", np.ones(1)))
+    shares = build.relative_crushing_forces(axes.get("taper", np.ones(1)))
     if (shares == 1).all():
         _refuse_crushed(axes["F"], axes["k1"], into_crushed)
     elif into_crushed and axes["F"].min() >= axes["k1"].max() * shares.max():
@@ -118,7 +125,10 @@ def refuse_axes(axes: dict[str, Array], into_crushed: bool = False, build: Build
 
 
 def _refuse_crushed(F: Array, k1: Array, some: bool) -> None:
-    """Raises InputError for crushed rods of a grid; if `some` may be crushed, only if all are."""
+    """Raises InputError if rods of a grid are crushed: any rod, or, if `some` may be crushed, all rods.
+
+    F, k1: values on the axes, (n,).
+    """
     if some and F.min() >= k1.max():
         raise InputError(
             f"parameters.F starts at {F.min():.15g} and parameters.k1 ends at {k1.max():.15g}; the rod is "

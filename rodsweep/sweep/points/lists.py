@@ -18,13 +18,14 @@ from ...model.rod import Rod
 from .points import NEUTRAL
 
 LONGEST_LINE = 10_000
-"""Largest number of characters in a line of a CSV file; a longer line could fill the memory."""
+"""Number of characters from which a line of a CSV file is refused; a longer line could fill the memory."""
 
 
 def read_points(path: Path, names: tuple[str, ...], build: Build = STANDARD) -> tuple[Array, ...]:
-    """Reads the columns `names`, each (n,), from a CSV file whose header has these names in any order.
+    """Columns, (points,) each, of a CSV file that lists points, in the order of the parameters `names`.
 
-    Raises InputError for an unreadable file, a wrong header, no point, or an impossible rod.
+    The header has the same names in any order. Raises InputError for an unreadable file, a wrong header, a
+    file without points, or parameter values outside the model.
     """
     try:
         if path.exists() and not path.is_file():  # opening a pipe would wait for its other end
@@ -51,14 +52,17 @@ def read_points(path: Path, names: tuple[str, ...], build: Build = STANDARD) -> 
 
 
 def _header_fault(header: list[str]) -> str:
-    """Phrase that says what is wrong with a header; quotes the header only if it contains names."""
+    """Fault of a wrong header as a phrase.
+
+    A header without parameter names is not quoted: it may be anything.
+    """
     if set(header) & set(PARAMETERS) and all(cell.isidentifier() for cell in header):
         return f"the header is {short(','.join(header))}"
     return "the first line names no parameter"
 
 
 def _lines(file: TextIO, path: Path) -> Iterator[str]:
-    """Yields the lines of a text; raises InputError for a line that is too long."""
+    """Yields the lines of a text file; raises InputError for a line of LONGEST_LINE characters or more."""
     while line := file.readline(LONGEST_LINE):
         if len(line) == LONGEST_LINE:
             raise InputError(f"{path}: a line has {LONGEST_LINE} characters or more, which no point needs")
@@ -66,7 +70,7 @@ def _lines(file: TextIO, path: Path) -> Iterator[str]:
 
 
 def _row(row: list[str], header: list[str], where: str, build: Build) -> list[float]:
-    """Numbers in a line of the file; InputError for a cell that is no number, or an invalid rod."""
+    """Numbers in a line of the file; InputError for a cell without a number, or values outside the model."""
     if len(row) != len(header):
         raise InputError(f"{where} has {len(row)} values, but the header names {len(header)}")
     numbers = []

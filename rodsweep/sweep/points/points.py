@@ -18,62 +18,61 @@ from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 
 NEUTRAL = {name: parameter.neutral for name, parameter in PARAMETERS.items()}
-"""Values of parameters without a column. A rod that is invalid with neutral values is invalid with any
-values."""
+"""Neutral value of each parameter by name, for parameters without a column. Parameter values that are invalid
+with neutral values of the other parameters are invalid with any."""
 
 
 @dataclass(frozen=True, slots=True)
 class Points:
-    """Values of parameters: axes of a grid (row-major, the last axis fastest), or columns of equal length.
+    """Points of a sweep: a grid of parameters (row-major, the last axis fastest), or columns of equal length.
 
-    Columns describe the points of a list, or of a grid over the quantities of an arm.
+    Columns describe a list of points, or a grid over the quantities of an arm.
     """
 
     names: tuple[str, ...]
-    """The parameter of each column."""
+    """Name of the parameter in each element of `columns`."""
     columns: tuple[Array, ...]
-    """Values of each parameter: along its axis, or at every point, (points,)."""
+    """Values of each parameter: along its axis, (n,), or at every point, (points,)."""
     is_grid: bool
-    """Whether the columns are the axes of a grid."""
+    """Whether the points are a grid of parameters, whose axes are `columns`."""
     over: dict[str, Array] = field(default_factory=dict)
-    """Axes of a grid over an arm's quantities, in SI units."""
+    """Axes of a grid over an arm's quantities by name, in SI units, (n,) each; empty for other points."""
     units: dict[str, Array] = field(default_factory=dict)
-    """Units of time, force and pressure that the arm defines, by name, at every point of a grid over
-    quantities, (points,)."""
+    """The arm's units of time, force and pressure at every point of a grid over its quantities, (points,)."""
     build: Build = STANDARD
-    """Law and profile of all rods."""
+    """Constitutive law and profile of all rods, unless `builds` is given."""
     builds: tuple[Build, ...] = ()
-    """Law and profile of each arm of a grid over quantities, in the order of the points; every arm has
-    equally many points. Empty if all rods have the same `build`."""
+    """Constitutive law and profile of each arm of a grid over an arm's quantities, in the order of the
+    points; each is valid for the same number of points. Empty if all points have `build`."""
     coverage: NDArray[np.int8] | None = None
-    """Code of each point of an arm, (points,): SLENDER if the rod model applies, else a code of
-    `rodsweep.config.arm.axes` for the reason. None for other points."""
+    """Status code of each point of an arm, (points,): SLENDER, or the reason why the point has no rod, from
+    `rodsweep.config.arm.axes`. None if every point has a rod."""
     failures: dict[int, str] = field(default_factory=dict)
-    """Reason of a failed search for the flutter force of a relative load, by flat index of the point."""
+    """Reason why the search for flutter failed at a point with a relative load, by flat index."""
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of a result variable: one dimension per axis, or (point,)."""
+        """Shape of the array of all points: one dimension per axis of a grid, or (points,) for a list."""
         return tuple(map(len, self.axes.values())) or (len(self.columns[0]),)
 
     @property
     def axes(self) -> dict[str, Array]:
-        """Axes by name, of a grid of parameters or of a grid over quantities; empty for a list."""
+        """Axes of the grid by name, (n,) each: parameters or an arm's quantities; empty for a list."""
         return self.by_name if self.is_grid else self.over
 
     @property
     def moved(self) -> tuple[str, ...]:
-        """The parameter that varies along each axis; empty for several parameters or no parameter."""
+        """The only parameter that varies along each axis; "" for an axis of several parameters or none."""
         return self.names if self.is_grid else tuple(map(parameter_of_axis, self.over))
 
     @property
     def identity(self) -> list[Array]:
-        """All axes and columns by name, each (n,); two sweeps with equal identity have the same points."""
+        """Axes in `over` and `columns`, (n,) each: two sweeps have the same points if these are equal."""
         return [*self.over.values(), *self.columns]
 
     @property
     def of_rods(self) -> dict[str, Array]:
-        """Values of each parameter at the points that have a rod, (rods,), by name."""
+        """`columns` by name of the parameter, without points that have no rod, (n,) each."""
         if self.coverage is None:
             return self.by_name
         return self.values_of(np.flatnonzero(self.coverage == SLENDER))
@@ -84,7 +83,7 @@ class Points:
 
     @property
     def by_name(self) -> dict[str, Array]:
-        """Axes or columns, each (n,), by name of the parameter."""
+        """`columns` by name of the parameter."""
         return dict(zip(self.names, self.columns, strict=True))
 
     @property
@@ -93,7 +92,7 @@ class Points:
         return math.prod(self.shape)
 
     def values(self, index: int) -> dict[str, float]:
-        """Value of each parameter at the point with flat index `index`, by name."""
+        """Parameter values of the point at a flat index, by name."""
         values = {}
         for name, column in zip(reversed(self.names), reversed(self.columns), strict=True):
             place = index
@@ -103,49 +102,50 @@ class Points:
         return {name: values[name] for name in self.names}
 
     def values_of(self, indices: NDArray[np.int64]) -> dict[str, Array]:
-        """Values of each parameter at the points with the flat indices `indices`, both (n,), by name."""
+        """Parameter values, (n,) each, of the points at flat indices, (n,), by name."""
         places = np.unravel_index(indices, self.shape) if self.is_grid else [indices] * len(self.names)
         each = zip(self.names, self.columns, places, strict=True)
         return {name: column[place] for name, column, place in each}
 
     def rod(self, index: int, **beside: float) -> Rod:
-        """Rod at a flat index; parameters without a column have the value in `beside`, or else in NEUTRAL.
+        """Rod of the point at a flat index; raises Crushed.
 
-        Raises Crushed for a force that crushes the rod."""
+        Parameters without a column have the value in `beside`, otherwise the value in NEUTRAL.
+        """
         parameters: dict[str, Any] = {**NEUTRAL, **self.values(index), **beside}
         return Rod(**parameters, build=self.build_of(index))
 
     @property
     def builds_of_rods(self) -> tuple[list[Build], NDArray[np.int64]]:
-        """(distinct laws and profiles, index of the build of each rod of `of_rods`, (rods,))."""
+        """(distinct builds, index into them for each point of `of_rods`, (rods,))."""
         different = list(dict.fromkeys(self.builds)) or [self.build]
         of_arms = np.array([different.index(build) for build in self.builds] or [0])
         numbers = of_arms[np.arange(self.count) * len(of_arms) // self.count]
         return different, numbers if self.coverage is None else numbers[self.coverage == SLENDER]
 
     def build_of(self, index: int) -> Build:
-        """Law and profile of the rod at a flat index."""
+        """Constitutive law and profile of the rod at a flat index."""
         return self.builds[index * len(self.builds) // self.count] if self.builds else self.build
 
 
 @dataclass(frozen=True, slots=True)
 class ParameterLine:
-    """Points of a sweep that differ only in the parameter `name`, in the order of the sweep."""
+    """Points of a sweep that differ in one parameter only, in the order of the sweep."""
 
     name: str
-    """The parameter that varies."""
+    """Name of the parameter that varies."""
     parameters: dict[str, float]
-    """Values of the fixed parameters, by name."""
+    """Values of the other parameters, by name."""
     x: Array
-    """Values of the varying parameter, shape (n,)."""
+    """Values of the parameter that varies, (n,)."""
     at: np.ndarray
-    """Flat indices of the points, shape (n,)."""
+    """Flat indices of the points in the sweep, (n,)."""
 
 
 def lines_over(columns: Mapping[str, Array], name: str) -> Iterator[ParameterLine]:
-    """Splits points into lines along the parameter `name`, ordered by first point; skips infinite values.
+    """Yields the lines of points along the parameter `name`, in the order of their first points.
 
-    columns: every parameter at every point, (points,).
+    Points at which the parameter is inf are left out. columns: each parameter at every point, (points,).
     """
     x = columns[name]
     others = [other for other in columns if other != name]

@@ -10,19 +10,19 @@ import numpy as np
 from ...errors import InputError
 
 BLOCKS_A_SHARD = 64
-"""Number of blocks of neighbouring units in a shard. Many blocks make shards nearly equal in cost; too many
-would separate neighbouring points in the file of a shard."""
+"""Number of blocks of consecutive units in a shard. Many blocks make shards equal in cost; more blocks would
+separate neighbouring points in the result file of the shard."""
 IndexRange = tuple[int, int]
-"""Range of indices: (first index, last index + 1)."""
+"""Range of flat indices of points, or of numbers of units: (first index, index after the last)."""
 
 
 def index_count(ranges: Iterable[IndexRange]) -> int:
-    """Total number of indices in `ranges`."""
+    """Total number of indices in disjoint ranges."""
     return sum(end - first for first, end in ranges)
 
 
 def merged_ranges(ranges: Iterable[IndexRange]) -> list[IndexRange]:
-    """Merges adjacent ranges; `ranges` must be sorted."""
+    """The sorted disjoint ranges `ranges`, with adjacent ranges merged."""
     result: list[IndexRange] = []
     for first, end in ranges:
         touches = bool(result) and result[-1][1] == first
@@ -31,10 +31,10 @@ def merged_ranges(ranges: Iterable[IndexRange]) -> list[IndexRange]:
 
 
 def indices_along(shape: tuple[int, ...], axis: int, line: Any, along: Any) -> Any:
-    """Flat indices of grid points on the line number `line` parallel to `axis`, at the axis indices `along`.
+    """Flat indices of grid points with index `along` on axis number `axis`, on the grid line number `line`.
 
-    Lines are numbered in row-major order of the remaining axes. line, along: numbers or arrays, which
-    broadcast to the shape of the result.
+    Lines along the axis are numbered in row-major order of the remaining axes. line, along: integers or
+    arrays, which broadcast to the shape of the result, (...,).
     """
     inner = math.prod(shape[axis + 1 :])
     outer, within = np.divmod(line, inner)
@@ -42,7 +42,7 @@ def indices_along(shape: tuple[int, ...], axis: int, line: Any, along: Any) -> A
 
 
 class IndexSet:
-    """Set of the indices in sorted ranges; takes no memory for the indices themselves."""
+    """Set of all indices in sorted disjoint ranges; needs memory for the ranges only."""
 
     def __init__(self, ranges: Sequence[IndexRange]):
         # An empty first range, so that an index before all ranges also has a range on its left.
@@ -56,7 +56,7 @@ class IndexSet:
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """Part of a sweep that one job solves: part `number` of `of` parts. 1/1 is the whole sweep."""
+    """Shard `number` of `of` shards of a sweep, which separate runs solve; 1/1 is the whole sweep."""
 
     number: int = 1
     of: int = 1
@@ -65,7 +65,10 @@ class Shard:
         return f"{self.number}/{self.of}"
 
     def part(self, todo: Sequence[IndexRange], units: int) -> list[IndexRange]:
-        """Ranges of units of `todo` in this shard; blocks of the `units` units go to the shards in turn."""
+        """Ranges of the units in `todo` that belong to this shard.
+
+        Blocks of the sweep's `units` units are assigned to the shards in turn.
+        """
         if self.of == 1:
             return list(todo)
         block = max(1, units // (self.of * BLOCKS_A_SHARD))
@@ -80,7 +83,7 @@ class Shard:
 
 
 def shard_of(text: str) -> Shard:
-    """Parses a text such as "2/8" to a shard; raises InputError for any other form."""
+    """The `Shard` from a text like "2/8"; raises InputError for any other text."""
     number, _, of = text.partition("/")
     if number.isdecimal() and of.isdecimal() and len(text) < 20 and 1 <= int(number) <= int(of):
         return Shard(int(number), int(of))

@@ -1,7 +1,7 @@
-"""Stretches: neighbouring points of a grid solved at once, cut from lines along an axis.
+"""Stretches: neighbouring points on a grid line, which are solved together.
 
-The cuts follow from the grid alone. Results therefore depend neither on the number of ranks nor on points of
-an earlier run: a stretch with any missing point is solved again as a whole.
+The division of lines into stretches depends on the grid alone. Results therefore depend neither on the number
+of ranks nor on points of an earlier run: a stretch with any missing point is solved again as a whole.
 """
 
 import math
@@ -15,20 +15,20 @@ from numpy.typing import NDArray
 from .ranges import IndexRange, IndexSet, index_count, indices_along, merged_ranges
 
 STRETCH_POINTS = 64
-"""Largest number of points in a stretch."""
+"""Maximum number of points in a stretch."""
 SHORTEST_AXIS = 8
-"""Minimum number of values on the axis of stretches. On shorter axes neighbours are too far apart for
-following eigenvalues from point to point."""
+"""Minimum number of values on the axis of stretches. On a shorter axis, neighbouring points differ too much
+for eigenvalues to be followed."""
 STRETCHES_PER_BLOCK = 1 << 12
-"""Number of stretches tested for missing points in one array operation, to bound the memory."""
+"""Number of stretches tested for missing points in a single array operation, which bounds the memory."""
 
 
 @dataclass(frozen=True, slots=True)
 class StretchResult:
-    """Result of the n points of a stretch.
+    """Result of a stretch of n points solved together.
 
-    values: every variable of the file, shape (n, ...). succeeded: whether each point succeeded, (n,).
-    message: function from the position of a failed point in the stretch to its status and message.
+    values: every variable of the result file at the points, (n, ...), by name. succeeded: whether the solve
+    of each point succeeded, (n,). message: status and message of a failed point, by position in the stretch.
     """
 
     values: dict[str, NDArray]
@@ -36,43 +36,43 @@ class StretchResult:
     message: Callable[[int], str]
 
     def at(self, places: NDArray[np.int64]) -> dict[str, NDArray]:
-        """Values of every variable at the points with positions `places` in the stretch, (places,)."""
+        """Variables of the points at the positions `places` in the stretch, (m,), as arrays (m, ...)."""
         return {name: column[places] for name, column in self.values.items()}
 
 
 SolveStretch = Callable[[NDArray[np.int64]], StretchResult]
-"""Function that solves the points with flat indices (n,) of one stretch and returns their `StretchResult`."""
+"""Function from the flat indices of the points of a stretch, (n,), to the result of the stretch."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stretches:
-    """Stretches that cut a grid of `shape` points along `axis`."""
+    """All stretches of a grid of shape `shape` along its axis number `axis`."""
 
     shape: tuple[int, ...]
     axis: int
 
     @property
     def lines(self) -> int:
-        """Number of grid lines parallel to the axis."""
+        """Number of grid lines along the axis."""
         return math.prod(self.shape) // self.shape[self.axis]
 
     @property
     def count(self) -> int:
-        """Number of stretches.
+        """Number of stretches in the grid.
 
-        Stretches are numbered first by position on the grid line, then in row-major order of the other axes.
-        Consecutive stretches are therefore neighbours in the file.
+        Stretches are ordered by position along the axis, and at equal positions in row-major order of the
+        remaining axes. Consecutive stretches are therefore neighbours in the file.
         """
         return self.lines * -(-self.shape[self.axis] // STRETCH_POINTS)
 
     def indices(self, stretch: int) -> NDArray[np.int64]:
-        """Flat indices of the points of a stretch, shape (n,)."""
+        """Flat indices of the points of the stretch number `stretch`, (n,)."""
         part, line = divmod(stretch, self.lines)
         along = np.arange(part * STRETCH_POINTS, min((part + 1) * STRETCH_POINTS, self.shape[self.axis]))
         return indices_along(self.shape, self.axis, line, along)
 
     def missing_of(self, stretches: IndexRange, missing: IndexSet) -> NDArray[np.int64]:
-        """Number of missing points of each stretch in a range, shape (stretches,)."""
+        """Number of points in `missing` of each stretch in a range of stretch numbers, (stretches,)."""
         part, line = np.divmod(np.arange(*stretches)[:, None], self.lines)
         along = part * STRETCH_POINTS + np.arange(STRETCH_POINTS)
         index = indices_along(self.shape, self.axis, line, along)
@@ -92,7 +92,7 @@ class Stretches:
         return merged_ranges(ranges)
 
     def missing_in(self, stretches: Sequence[IndexRange], missing: Sequence[IndexRange]) -> int:
-        """Total number of missing points in `stretches`, ranges of stretch numbers."""
+        """Total number of points in `missing`, flat indices, that belong to stretches in the given ranges."""
         missing_points = IndexSet(missing)
         number = 0
         for first, end in stretches:
@@ -103,9 +103,9 @@ class Stretches:
 
 
 def stretches_along_longest_axis(shape: tuple[int, ...], moved: Sequence[str]) -> Stretches | None:
-    """Stretches along the longest usable axis of a grid; None if shorter than SHORTEST_AXIS.
+    """Stretches of a grid along the first of its longest usable axes; None if every usable axis is too short.
 
-    moved: the parameter that varies along each axis; empty for an axis of several parameters, which is not
+    moved: the only parameter that varies along each axis; "" for an axis of several parameters, which is not
     usable.
     """
     able = [axis for axis, name in enumerate(moved) if name]
@@ -115,14 +115,14 @@ def stretches_along_longest_axis(shape: tuple[int, ...], moved: Sequence[str]) -
 
 @dataclass(frozen=True, slots=True)
 class StretchSolver:
-    """Function that solves a stretch of a run; yields only `missing` points, for storage."""
+    """Function from the number of a stretch to the result of its missing points."""
 
     stretches: Stretches
     solve_stretch: SolveStretch
     missing: IndexSet
 
     def __call__(self, stretch: int) -> Iterator[tuple[NDArray[np.int64], Any]]:
-        """Yields (flat indices, `StretchResult`) of the missing points of a stretch, once."""
+        """Solves a stretch; yields once (flat indices of its missing points, (n,), their `StretchResult`)."""
         indices = self.stretches.indices(stretch)
         result = self.solve_stretch(indices)
         places = np.flatnonzero(self.missing[indices])

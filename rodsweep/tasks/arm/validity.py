@@ -207,7 +207,7 @@ class ArmValidity:
         if build.law != LINEAR.law:
             return np.full(np.shape(F), np.nan)
         tapers = self._column("taper", index)
-        shares = build.crushing_shares(np.ones(()) if tapers is None else tapers)
+        shares = build.relative_crushing_forces(np.ones(()) if tapers is None else tapers)
         return np.asarray(F) / shares.reshape(shares.shape + (1,) * max(np.ndim(F) - shares.ndim, 0))
 
     def _column(self, name: str, index: int | NDArray[np.int64]) -> Array | None:

@@ -61,7 +61,7 @@ class HopfLine:
     @property
     def _crushing_share(self) -> float:
         """The force that crushes the rods, in units of k1."""
-        return self.build.crushing_share(self.fixed.get("taper", 1.0))
+        return self.build.relative_crushing_force(self.fixed.get("taper", 1.0))
 
 
 def hopf_lines_of(points: Points) -> list[HopfLine]:

@@ -11,7 +11,7 @@ from surveyed import RODS
 from rodsweep.discretization.straight.dense_form import dense_form
 from rodsweep.discretization.straight.slaving import tip_layer_ratio
 from rodsweep.discretization.straight.transverse_mesh import mesh_for, pencil_on
-from rodsweep.model.adjoint import slaving_layer
+from rodsweep.model.adjoint import tip_layer_factor
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
@@ -201,9 +201,7 @@ def test_the_slaved_layer_of_an_arm_solves_its_riccati_equation(rod):
 @pytest.mark.parametrize("k2", [30.0, 1e4, 1e9])
 def test_the_slaved_layer_of_a_uniform_arm_is_the_closed_form(k2):
     values = {"F": 15.0, "k1": 1e4, "k2": k2, "gamma3": 0.0}
-    assert tip_layer_ratio(Rod(**values, build=ONES)) == pytest.approx(
-        slaving_layer(Rod(**values)), rel=1e-12
-    )
+    assert slaving_of(Rod(**values, build=ONES)) == pytest.approx(tip_layer_factor(Rod(**values)), rel=1e-12)
 
 
 @pytest.mark.parametrize("rod", SLAVED[:2], ids=str)

@@ -1,1 +1,1 @@
-"""Combination of files: merging, joining and extension, and comparison of the configs of two files."""
+"""Combination of result files: merging, joining, extension, and comparison of the configs of two files."""

@@ -1,8 +1,8 @@
-"""Extension of a stored file to a larger config: whether possible, and which stored points stay.
+"""Extension of a result file to a larger config: whether it is possible, and which stored points are reused.
 
-A stored point stays only if a run of the whole larger config would give the same bits. The parameters must be
-the same bits, and every result asked for must be present. The same must hold for all previous points of a
-chain, or for all points of a stretch.
+A stored point is reused only if a run of the larger config would give results that are equal bit by bit: the
+parameters are equal bit by bit, and every requested result is present. The same must hold for all previous
+points of a chain, or for all points of a stretch.
 """
 
 from collections.abc import Iterator
@@ -26,25 +26,26 @@ from ..points import stored_points
 from ..validation import ResultHeader
 from .identity import config_difference
 
-SAME_VALUE = 4 * np.finfo(float).eps
-"""Largest relative difference of two values on an axis that counts as rounding."""
+ROUNDING_TOLERANCE = 4 * np.finfo(float).eps
+"""Relative difference of two values on an axis up to which the difference counts as rounding error."""
 Indices = NDArray[np.int64]
-"""Flat indices of points, or indices of values on an axis, (n,); -1 for a missing point or value."""
+"""Flat indices of points, or positions on an axis, (n,); -1 for none."""
 
 
 @dataclass(frozen=True, slots=True)
-class StoredPlaces:
-    """Map from flat indices of stored points to flat indices of new points, axis by axis."""
+class StoredPointMap:
+    """Map from stored points to new points: by the positions on each axis of a grid, or in a list."""
 
     shape: tuple[int, ...]
-    """Shape of the stored points."""
+    """Shape of the stored grid or list."""
     new_shape: tuple[int, ...]
+    """Shape of the new grid or list."""
     places: tuple[Indices, ...]
-    """For each axis or the list: new index of every stored value, (n,); -1 if its points are computed again.
-    """
+    """For each axis, the position of every stored value on the new axis, (n,); -1 if the points with this
+    value are computed again."""
 
     def __call__(self, index: Indices) -> Indices:
-        """Maps stored flat indices to new flat indices, both (n,); -1 for points computed again."""
+        """New flat indices of the points with the stored flat indices `index`, (n,); -1 if computed again."""
         each = [place[i] for place, i in zip(self.places, np.unravel_index(index, self.shape), strict=True)]
         stays = np.min(each, axis=0) >= 0
         new = np.ravel_multi_index([np.maximum(place, 0) for place in each], self.new_shape)
@@ -53,19 +54,22 @@ class StoredPlaces:
 
 @dataclass(frozen=True, slots=True)
 class Extension:
-    """Which points of a stored file remain valid in the file of a larger config."""
+    """The stored points of a result file that the file of a larger config reuses.
+
+    path: stored file. old, new: layouts of both files.
+    """
 
     path: Path
     old: Layout
     new: Layout
-    places: StoredPlaces
+    places: StoredPointMap
     grown: tuple[tuple[IncreaseRule, Any], ...]
-    """(rule, stored value) of every option whose value the larger config increases."""
+    """(rule, former value) for every option that the new config increases."""
     nothing_stays: bool
     """Whether every stored point is computed again."""
 
     def kept(self) -> Iterator[np.ndarray]:
-        """Yields records, (n,) in the new layout, of the stored points that need no new solve."""
+        """Yields records, (n,) in the new layout, of the stored points that are reused."""
         if self.nothing_stays:
             return
         for records in stored_points(self.path, self.old):
@@ -77,7 +81,10 @@ class Extension:
                 yield self._converted(records[stays], index[stays])
 
     def _converted(self, records: np.ndarray, index: Indices) -> np.ndarray:
-        """Records in the new layout; values that the old layout lacks are filled."""
+        """Stored records converted to the new layout, (n,), at new flat indices `index`, (n,).
+
+        Values that the old layout lacks are fill values.
+        """
         found = np.empty(len(records), self.new.record)
         found["index"] = index
         for variable in self.new.variables:
@@ -91,9 +98,9 @@ class Extension:
 
 
 def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
-    """Extension of a stored file with the given points to a larger plan.
+    """Extension of the stored file of `header`, with the points `points`, to the file of `plan`.
 
-    Raises InputError, naming the difference, if the plan lacks anything that the file was made for.
+    Raises InputError, naming the difference, if the plan lacks a point or a result of the stored file.
     """
     theirs = config_of(header.config).meaning
     ours = config_of(plan.config).meaning
@@ -123,7 +130,7 @@ def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
 
 
 def _refuse(header: ResultHeader, difference: str) -> None:
-    """Raises InputError: the stored file cannot be extended because of `difference`, a phrase."""
+    """Raises InputError for a difference between file and config, unless it is empty."""
     if difference:
         raise InputError(
             f"{header.path} cannot be extended to this config ({difference}); choose another file with -o, "
@@ -131,8 +138,8 @@ def _refuse(header: ResultHeader, difference: str) -> None:
         )
 
 
-def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPlaces:
-    """Finds the stored points among the points of the plan; raises InputError for a missing point."""
+def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPointMap:
+    """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a point."""
     new = plan.points
     if tuple(old.axes) != tuple(new.axes) or old.names != new.names:
         kinds = [
@@ -141,7 +148,7 @@ def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPlaces:
         ]
         _refuse(header, config_difference(kinds[0], kinds[1], "parameters"))
     if not old.axes:
-        return StoredPlaces(old.shape, new.shape, (_places_in_list(header, old, new),))
+        return StoredPointMap(old.shape, new.shape, (_places_in_list(header, old, new),))
     places = [_places_on_axis(header, name, axis, new.axes[name]) for name, axis in old.axes.items()]
     if plan.chains:
         axis = plan.chains.axis
@@ -151,11 +158,11 @@ def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPlaces:
         before = stretches_along_longest_axis(old.shape, old.moved)
         same = _same_stretches(places[axis], new.shape[axis])
         places[axis] = np.where(same & (before is not None and before.axis == axis), places[axis], -1)
-    return StoredPlaces(old.shape, new.shape, tuple(places))
+    return StoredPointMap(old.shape, new.shape, tuple(places))
 
 
 def _places_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> Indices:
-    """New index of every old value on the axis `name`, (n,); -1 where rounding has changed the value.
+    """Position of every old value, (n,), on the new axis, (m,); -1 where the values differ by rounding.
 
     Raises InputError for an old value that is not on the new axis.
     """
@@ -164,21 +171,24 @@ def _places_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> 
     with np.errstate(invalid="ignore"):
         nearest = np.where(np.abs(new[left] - old) < np.abs(new[right] - old), left, right)
         apart = np.abs(new[nearest] - old)
-        near = (new[nearest] == old) | (np.isfinite(apart) & (apart <= SAME_VALUE * np.abs(old)))
+        near = (new[nearest] == old) | (np.isfinite(apart) & (apart <= ROUNDING_TOLERANCE * np.abs(old)))
     if not near.all():
         _refuse(header, f"parameters.{name} = {old[~near][0]:.15g} is in the file and not in the config")
     return np.where(new[nearest] == old, nearest, -1).astype(np.int64)
 
 
 def _same_from_the_start(places: Indices, count: int, upward: bool) -> Indices:
-    """Indices of the points of a chain, (n,), with -1 from the first changed point of the chain on."""
+    """Positions `places` of the values along chains, (n,), up to the first changed position; then -1.
+
+    count: number of values on the new axis. upward: direction of the chains.
+    """
     ahead = places if upward else np.where(places < 0, -1, count - 1 - places)[::-1]
     stays = np.logical_and.accumulate(ahead == np.arange(len(ahead)))
     return np.where(stays if upward else stays[::-1], places, -1)
 
 
 def _same_stretches(places: Indices, count: int) -> NDArray[np.bool_]:
-    """Whether the stretch of each old point, (n,), has the same points on an axis of `count` values."""
+    """Whether the stretch of each old value, (n,), has the same values on a new axis of `count` values."""
     at = np.arange(len(places))
     first = at // STRETCH_POINTS * STRETCH_POINTS
     same_length = np.minimum(first + STRETCH_POINTS, len(places)) == np.minimum(first + STRETCH_POINTS, count)
@@ -187,7 +197,7 @@ def _same_stretches(places: Indices, count: int) -> NDArray[np.bool_]:
 
 
 def _places_in_list(header: ResultHeader, old: Points, new: Points) -> Indices:
-    """Index in the new list of every old point, (n,); raises InputError for a point that is not listed."""
+    """Position of every old point in the new list, (n,); InputError for a point not in the new list."""
     # Adding 0.0 turns -0.0 into 0.0, so that equal rows have equal bytes.
     rows = [np.column_stack(points.columns) + 0.0 for points in (new, old)]
     known: dict[bytes, int] = {}

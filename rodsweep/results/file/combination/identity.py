@@ -1,7 +1,7 @@
-"""Identity of configs: whether two configs ask for the same results, and the difference in words.
+"""Comparison of configs: whether two configs request the same results, and their difference in words.
 
-Configs are compared by meaning. The notation of an axis, the title, the name of a list of points, and unused
-options do not count.
+Configs are compared by `Config.meaning`. The notation of an axis, the title, the name of a list of points,
+and unused options do not count.
 """
 
 import json
@@ -17,13 +17,13 @@ from ....config.axes import Axes
 from ....config.document.reading import config_of
 
 LONGEST_VALUE = 80
-"""Maximum number of characters of a value in a message; a longer value is shortened."""
+"""Maximum number of characters of a value in a message; longer values are cut."""
 
 
 def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
-    """Fingerprint of a resolved config and the points; equal for files that can continue each other.
+    """SHA-256 of a resolved config and its points: two runs with equal fingerprints have the same results.
 
-    columns: the `identity` of the points, each (n,). Raises ValueError for an invalid config.
+    columns: `Points.identity`, (n,) each. Raises ValueError for an invalid config.
     """
     asked = config_of(config)
     meant = {"meaning": asked.meaning, "grid": not asked.parameters.is_list}
@@ -59,7 +59,7 @@ def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
 
 
 def _kind(parameters: Axes) -> str:
-    """Kind of the points of a config, in words."""
+    """In words, whether the points of a config are a grid, a grid over an arm's quantities, or a list."""
     if parameters.over:
         return f"a grid over {' and '.join(parameters.over)}"
     return "a list of points" if parameters.is_list else "a grid"
@@ -68,7 +68,10 @@ def _kind(parameters: Axes) -> str:
 def config_difference(
     theirs: Any, ours: Any, key: str = "", places: tuple[str, str] = ("the file", "the config")
 ) -> str:
-    """Phrase with the first key in which two configs differ and both values; places: names of the configs."""
+    """Text with the first key in which two configs differ, and both values; empty for equal configs.
+
+    key: key of both values. places: names of the origins of both configs.
+    """
     if isinstance(theirs, dict) and isinstance(ours, dict):
         for name in [*ours, *(n for n in theirs if n not in ours)]:
             inner = f"{key}.{name}" if key else name
@@ -86,7 +89,7 @@ def config_difference(
 
 
 def _list_difference(theirs: list[Any], ours: list[Any], places: tuple[str, str]) -> str:
-    """Difference of two lists too long to show: their lengths, and the first different value."""
+    """Difference of two lists that are too long to show: their lengths, and the first pair that differs."""
     sizes = f"{len(theirs)} values in {places[0]} and {len(ours)} in {places[1]}"
     pairs = enumerate(zip_longest(theirs, ours), 1)
     number, values = next((i, pair) for i, pair in pairs if pair[0] != pair[1])

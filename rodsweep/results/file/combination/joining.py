@@ -1,7 +1,8 @@
-"""Joining of files of a task with different points: grids into a larger grid, lists into a longer list.
+"""Joining of result files of a task with different points: grids into a larger grid, lists into a longer
+list.
 
-The joined grid must be complete: every point was asked for by some file. A point present in several files
-must have the same values in all files.
+The joined grid must be complete: every point belongs to the grid of some file. A point computed in several
+files must have the same values in all files.
 """
 
 from collections.abc import Callable, Sequence
@@ -24,33 +25,33 @@ from ..creation import Plan
 from ..points import parameters_of, points_at, stored_points, write_points
 from ..provenance import LONGEST_ATTRIBUTE, kernels_of
 from ..validation import ResultHeader
-from .extension import SAME_VALUE, StoredPlaces
+from .extension import ROUNDING_TOLERANCE, StoredPointMap
 from .identity import config_difference
 
-OF_ONE_FILE = (
+NOT_INHERITED_ATTRIBUTES = (
     "program", "format", "fingerprint", "config_resolved", "coordinates", "finished", "snapshot",
     SEAL_ATTRIBUTE,
 )  # fmt: skip
-"""Attributes that describe one file only; a joined file does not copy them from its sources."""
+"""Names of the attributes that a joined file does not copy from the first source."""
 ROUNDING_FACTOR = 1e3
-"""Maximum relative difference of two values that counts as rounding, in units of the accuracy of the config.
-"""
+"""Relative difference of two results, divided by the requested accuracy, up to which the difference counts as
+rounding error."""
 Planner = Callable[[Config, Points], Plan]
-"""Function that makes the plan of a config for given points, without attributes and flags."""
+"""Function from a config and its points to the plan of the result file, without attributes and flags."""
 
 
 @dataclass(frozen=True, slots=True)
 class JoinedFile:
-    """Plan of the joined file, and for each source the map from its points to the joined points."""
+    """Plan of the joined file, its source files, and for each source the map to the points of the plan."""
 
     plan: Plan
     sources: Sequence[ResultHeader]
-    places: Sequence[StoredPlaces]
+    places: Sequence[StoredPointMap]
 
     def write(self, path: Path) -> list[ResultHeader]:
-        """Writes the points of all sources into a file of the plan; returns the sources that gave points.
+        """Writes the points of all sources into the file at `path`; returns the sources of stored points.
 
-        Raises InputError if two sources disagree about a point.
+        Raises InputError if two sources have different values of a point.
         """
         owner = np.full(self.plan.points.count, -1, np.int32)
         for number, (source, places) in enumerate(zip(self.sources, self.places, strict=True)):
@@ -63,7 +64,11 @@ class JoinedFile:
         return [self.sources[number] for number in np.unique(owner[owner >= 0])]
 
     def _compare(self, path: Path, records: np.ndarray, owner: np.ndarray, number: int) -> None:
-        """Raises InputError if records, (n,), differ from the stored points by more than rounding."""
+        """Raises InputError if records, (n,), of the source `number` differ from stored values of their
+        points.
+
+        Rounding errors are allowed. owner: number of the source of each stored point, (points,).
+        """
         if not len(records):
             return
         stored = points_at(path, records["index"], self.plan.layout)
@@ -83,8 +88,9 @@ class JoinedFile:
     def _is_rounding(
         self, name: str, first: Any, second: Any, sources: tuple[ResultHeader, ResultHeader]
     ) -> bool:
-        """Whether two values differ by rounding only, as results of different BLAS kernels or of different
-        stretches do.
+        """Whether two values of the variable `name` differ by rounding error only.
+
+        Results of different BLAS kernels, or of different stretches, may differ so.
         """
         kernels = {kernel for source in sources for kernel in kernels_of(source.attributes)}
         if (len(kernels) < 2 and not self.plan.stretches) or name == "status":
@@ -98,12 +104,12 @@ class JoinedFile:
 
 
 def _place(points: Points, index: int) -> str:
-    """Phrase with the parameter values of the point at a flat index."""
+    """Parameters of the point at a flat index, in words."""
     return ", ".join(f"{name} = {value:.15g}" for name, value in points.values(index).items())
 
 
 def joined_file_of(sources: Sequence[ResultHeader], planner: Planner) -> JoinedFile:
-    """Joined file of sources with different points; raises InputError if they cannot be joined."""
+    """The `JoinedFile` of sources with different points; raises InputError if the files cannot be joined."""
     first, *others = sources
     meant = config_of(first.config).meaning
     grids = [parameters_of(source.path, source.layout) for source in sources]
@@ -131,12 +137,15 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: Planner) -> JoinedF
     return JoinedFile(_with_attributes(plan, first, config), sources, places)
 
 
-def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPlaces]]:
-    """(grid with the union of the values on every axis, map from the points of each grid to this grid)."""
+def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]:
+    """(grid with all values of all grids on every axis, map from each grid to it).
+
+    Raises InputError if points of the large grid are in no grid, or if values differ by rounding only.
+    """
     axes = []
     for name in grids[0].names:
         axis = np.unique(np.concatenate([grid.by_name[name] for grid in grids]))
-        close = np.flatnonzero(np.diff(axis) <= SAME_VALUE * np.abs(axis[:-1]))
+        close = np.flatnonzero(np.diff(axis) <= ROUNDING_TOLERANCE * np.abs(axis[:-1]))
         if len(close):
             values = " and ".join(repr(float(value)) for value in axis[close[0] : close[0] + 2])
             raise InputError(
@@ -149,7 +158,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPlaces]]:
     for grid in grids:
         each = [np.searchsorted(axis, column) for axis, column in zip(axes, grid.columns, strict=True)]
         covered[np.ix_(*each)] = True
-        places.append(StoredPlaces(grid.shape, whole.shape, tuple(each)))
+        places.append(StoredPointMap(grid.shape, whole.shape, tuple(each)))
     if not covered.all():
         raise InputError(
             f"together the files do not form a full grid: {np.count_nonzero(~covered)} of {covered.size} "
@@ -159,8 +168,8 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPlaces]]:
     return whole, places
 
 
-def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPlaces]]:
-    """(points of all lists, each point once, list by list; places of each list in the joined list)."""
+def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]:
+    """(list of the points of all lists, each point once; map from each list to it)."""
     known: dict[bytes, int] = {}
     rows = [np.column_stack(points.columns) + 0.0 for points in lists]
     places = [np.array([known.setdefault(row.tobytes(), len(known)) for row in each]) for each in rows]
@@ -169,11 +178,13 @@ def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPlaces]]:
         whole[place] = each
     joined = Points(lists[0].names, tuple(np.ascontiguousarray(whole.T)), is_grid=False)
     shapes = (points.shape for points in lists)
-    return joined, [StoredPlaces(shape, joined.shape, (p,)) for shape, p in zip(shapes, places, strict=True)]
+    return joined, [
+        StoredPointMap(shape, joined.shape, (p,)) for shape, p in zip(shapes, places, strict=True)
+    ]
 
 
 def _joined_config(first: ResultHeader, meant: dict[str, Any], points: Points) -> Config:
-    """Config of the first file with the axes of the joined points; options are stored by their meaning."""
+    """Config of the first file with the axes of the joined points; meant: the `meaning` of this config."""
     task = first.config["task"]
     parameters = dict(first.config["parameters"])
     if points.is_grid:
@@ -184,7 +195,7 @@ def _joined_config(first: ResultHeader, meant: dict[str, Any], points: Points) -
 
 
 def _axis(own: Axis, values: Array) -> Axis:
-    """Axis of given values in the shortest notation: a range if the bits are equal, else a list."""
+    """The axis with the given values, (n,): `own` or a range if equal bit by bit, otherwise a list."""
     if np.array_equal(own.array(), values):
         return own
     if len(values) > 2 and np.isfinite(values).all():
@@ -198,7 +209,7 @@ def _axis(own: Axis, values: Array) -> Axis:
 
 
 def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Points], plan: Plan) -> None:
-    """Raises InputError if chains of the joined file would consist of pieces from several files."""
+    """Raises InputError if the points of a chain of the joined file would come from several files."""
     if not plan.chains:
         return
     name = plan.points.names[plan.chains.axis]
@@ -222,5 +233,5 @@ def _with_attributes(plan: Plan, first: ResultHeader, config: Config) -> Plan:
         described = file["status"].attrs
         pairs = zip(described["flag_values"], str(described["flag_meanings"]).split(), strict=True)
         flags = tuple((int(value), word) for value, word in pairs if value != MISSING)
-    kept = {name: value for name, value in first.attributes.items() if name not in OF_ONE_FILE}
+    kept = {name: value for name, value in first.attributes.items() if name not in NOT_INHERITED_ATTRIBUTES}
     return replace(plan, attributes=kept | {"config": text}, flags=flags)

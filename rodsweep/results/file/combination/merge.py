@@ -1,6 +1,6 @@
-"""Merging: all points of the shards of a run, or of the parts of a larger grid, in a single file.
+"""Merging of the result files of a run's shards, or of files with parts of a larger grid, into a single file.
 
-Points are streamed a block at a time, in constant memory. The new file appears complete, by a rename.
+Points are copied a block at a time, in constant memory. The new file appears complete, by a rename.
 """
 
 import os
@@ -24,7 +24,7 @@ from .joining import JoinedFile, Planner, joined_file_of
 
 @dataclass(frozen=True, slots=True)
 class MergeResult:
-    """Number of points in the merged file and of missing points, and whether the file is finished."""
+    """Outcome of a merge: numbers of computed and of missing points, whether the file is finished."""
 
     points: int
     missing: int
@@ -34,12 +34,12 @@ class MergeResult:
 
 
 def merge(output: Path, paths: Sequence[Path], planner: Planner) -> MergeResult:
-    """Writes `output` from all points of the result files `paths`: parts of a grid or list, or several grids.
+    """Writes `output` with all points of the result files `paths`: shards of one sweep, or several grids.
 
-    An existing `output` is the first source. Of two values of a point the first stays; files of different
-    grids must agree. Raises InputError for a file that is no result, was made for another config, or has
-    points in a journal, and for grids that do not make up a larger grid; EnvironmentIncomplete if the disk
-    fails.
+    An existing `output` is the first source. Of two values of a point in shards the first is written; files
+    of different grids must have equal values. Raises InputError for a file that is no result, was made for
+    another config, or has points in a journal, and for grids that do not form a larger grid;
+    EnvironmentIncomplete if the disk fails.
     """
     sources = _opened(paths)
     with disk_refusals(output):
@@ -56,7 +56,7 @@ def merge(output: Path, paths: Sequence[Path], planner: Planner) -> MergeResult:
 
 
 def _merge(exchange: FileReplacement, sources: Sequence[ResultHeader], planner: Planner) -> MergeResult:
-    """Replaces the output by the first source with the additional points of all sources."""
+    """Replaces the output by a copy of the first source with the points of all other sources added."""
     first = sources[0]
     plan = planner(config_of(first.config), parameters_of(first.path, first.layout))
     with exchange.replacing(first.path) as copy:
@@ -76,7 +76,10 @@ def _join(exchange: FileReplacement, joint: JoinedFile) -> MergeResult:
 
 
 def _finished(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResult:
-    """Stores the history of the points in the merged file, and completes a file without missing points."""
+    """Stores in the merged file how its points were computed, and finishes a file without missing points.
+
+    gave: sources of the stored points.
+    """
     left = missing_ranges(copy)
     finished = not left and not plan.layout.needs_all_points
     history = merged_history([source.attributes for source in gave])
@@ -92,7 +95,7 @@ def _finished(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResu
 
 
 def _opened(paths: Sequence[Path]) -> list[ResultHeader]:
-    """Reads the headers of the files to merge; raises InputError for a file with points in its journal."""
+    """Headers of the result files at `paths`; raises InputError for a file with points in its journal."""
     files = []
     for path in paths:
         files.append(read_header(path))

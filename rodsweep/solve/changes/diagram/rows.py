@@ -84,7 +84,7 @@ def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
     values = request.values
     F = values if name == "F" else np.full(len(values), rod.F)
     k1 = values if name == "k1" else np.full(len(values), rod.k1)
-    share = rod.build.crushing_share(rod.taper)
+    share = rod.build.relative_crushing_force(rod.taper)
     crushing = k1 * share
     alive = crushing * (1 - CHANGE_COUNTS.crushing_margin) > F
     crushed = crushing * (1 - CHANGE_COUNTS.meets_crushing) <= F
