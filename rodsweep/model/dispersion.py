@@ -17,17 +17,17 @@ from ..arrays import Array
 from .material.build import Build, LocalCoefficients
 from .rod import Rod
 
-SAMPLES = 64
+SAMPLE_COUNT = 64
 """Number of samples of K = kappa^2, at equal ratios. Neighbours differ by 13 %, enough for an estimate."""
 SAMPLES_PER_INTERVAL = 33
 """Number of points in each interval between two breaks of an arm's profile at which local waves are
 evaluated."""
 CACHED_ARM_COUNT = 16
 """Number of arms, or builds, whose latest results the caches of this module hold."""
-MIN_FRACTION = 1e-4
+MIN_K_FRACTION = 1e-4
 """Smallest sample of K = kappa^2, divided by F g. Every wave with K > F g decays."""
-FRACTIONS: Array = MIN_FRACTION ** (1 - np.arange(SAMPLES) / SAMPLES)
-"""Samples of K = kappa^2 divided by F g, increasing, (SAMPLES,)."""
+K_FRACTIONS: Array = MIN_K_FRACTION ** (1 - np.arange(SAMPLE_COUNT) / SAMPLE_COUNT)
+"""Samples of K = kappa^2 divided by F g, increasing, (SAMPLE_COUNT,)."""
 
 
 def most_amplified_wave(rod: Rod) -> tuple[float, float]:
@@ -65,7 +65,7 @@ def sampled(rod: Rod) -> SampledArm:
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)
 def _points_of(build: Build) -> tuple[Array, Array]:
-    """(midpoints, lengths) of short intervals of u between the breaks of a build's profile, both (points,)."""
+    """(midpoints, lengths) of short intervals of u between the breaks of a profile, both (points,)."""
     lengths = np.diff(build.breaks)
     inside = (np.arange(SAMPLES_PER_INTERVAL) + 0.5) / SAMPLES_PER_INTERVAL
     points = (build.breaks[:-1, None] + lengths[:, None] * inside).ravel()
@@ -87,7 +87,7 @@ def local_growth(rod: Rod) -> tuple[Array, Array]:
 
 
 def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:
-    """(K, growth rates) of the sampled waves, both (..., SAMPLES), for k3 = gamma2 = 1.
+    """(K, growth rates) of the sampled waves, both (..., SAMPLE_COUNT), for k3 = gamma2 = 1.
 
     A decaying wave has the growth rate 0. top: F g. relaxation: g nu. All arguments are numbers, or arrays
     (n, 1) for n rods.

@@ -23,7 +23,7 @@ ANSWER_TAG = 72
 """MPI tag of the answer to a request, an `IndexRange`."""
 STOP_TAG = 73
 """MPI tag of a stop request, the name of the signal."""
-PLACE_TAG = 74
+PROGRESS_TAG = 74
 """MPI tag of a report of progress within a long point, a `SolvePosition`."""
 POLL_SECONDS = 2e-3
 """Seconds between two polls for messages by the thread of the first rank. Each poll takes 20 microseconds or
@@ -31,12 +31,12 @@ more from the solve on that rank."""
 RELIEVED_POLL_SECONDS = 5e-3
 """Seconds between two polls for messages by the thread while the first rank also answers between its
 points."""
-FIRST_PAUSE_SECONDS = 1e-4
+FIRST_CHUNK_POLL_SECONDS = 1e-4
 """First pause, in seconds, between two polls of a rank that waits for a chunk."""
-LONGEST_PAUSE_SECONDS = 1e-2
+LONGEST_CHUNK_POLL_SECONDS = 1e-2
 """Longest pause, in seconds, between two polls of a rank that waits for a chunk: an idle rank must not take
 processor time from solving ranks."""
-PAUSE_RATIO = 1.1
+CHUNK_POLL_GROWTH = 1.1
 """Ratio of a waiting rank's pause to the previous pause. Slow growth hardly prolongs a wait of a
 millisecond."""
 WAIT_SECONDS = 0.05
@@ -189,11 +189,11 @@ class OtherRankClaims:
         """
         self.comm.send(report, dest=0, tag=REQUEST_TAG)
         # A blocking receive would spin and take the processor from the ranks that compute.
-        pause = FIRST_PAUSE_SECONDS
+        pause = FIRST_CHUNK_POLL_SECONDS
         while not self.comm.Iprobe(source=0, tag=ANSWER_TAG):
             self.between_points()
             time.sleep(pause)
-            pause = min(PAUSE_RATIO * pause, LONGEST_PAUSE_SECONDS)
+            pause = min(CHUNK_POLL_GROWTH * pause, LONGEST_CHUNK_POLL_SECONDS)
         chunk: IndexRange = self.comm.recv(source=0, tag=ANSWER_TAG)
         if chunk != NO_WORK_LEFT:
             self.comm.send(RankReport(ahead=True), dest=0, tag=REQUEST_TAG)

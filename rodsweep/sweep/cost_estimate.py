@@ -19,7 +19,7 @@ from .points.stretches import Stretches
 
 MAX_SAMPLE = 200
 """Largest number of points whose meshes are computed for an estimate."""
-HARDER_IF_LARGER = frozenset({"k1", "F"})
+COSTLIER_IF_LARGER = frozenset({"k1", "F"})
 """Parameters whose large values make branches of cycles expensive. For all other parameters, small values
 do."""
 FIXED_MS = 0.03

@@ -11,7 +11,7 @@ from surveyed import few
 from test_paper import run, stated
 
 import rodsweep as rs
-from rodsweep.api.dataset import view_of
+from rodsweep.api.dataset import view_of_dataset
 from rodsweep.model.floquet import min_unstable_multipliers
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import RodBranches, intersection, stability_of_pieces, union

@@ -7,12 +7,12 @@ from numpy.typing import ArrayLike
 
 from ...arrays import Array
 
-LEAST_S = 1e-6
+MIN_S = 1e-6
 """Smallest frequency s of the flow, in eta k^2/rho. A smaller s is replaced by it, since rounding error would
 hide the phase lag, about 1e-6."""
 SUBINTERVAL_COUNT = 64
 """Number of subintervals into which `frequency_of_phase` divides its current interval of ln s."""
-DIVISION_COUNT = 10
+REFINEMENT_COUNT = 10
 """Number of divisions in `frequency_of_phase`: 64^10 = 2^60 subintervals of an initial interval 20 to 30 wide
 reach rounding error with few calls on arrays."""
 
@@ -40,9 +40,9 @@ def frequency_of_phase(phase: float, logarithm: float) -> float:
 
     logarithm: Lambda = 4 pi eta/gamma2.
     """
-    low = log(LEAST_S)  # there the real part of the mobility is -1/2
+    low = log(MIN_S)  # there the real part of the mobility is -1/2
     high = 2 * logarithm
-    for _ in range(DIVISION_COUNT):
+    for _ in range(REFINEMENT_COUNT):
         edges = np.linspace(low, high, SUBINTERVAL_COUNT + 1)
         below = np.count_nonzero(unsteady_phase(np.exp(edges[1:-1]), logarithm) < phase)  # the phase rises
         low = float(edges[below])

@@ -106,8 +106,8 @@ def is_known(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 
 
 def span_of(v: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -> str:
-    """Range of the known values of the variable `name` over the points in `mask`, as text with the digits
-    that the errors allow.
+    """Range of the known values of the variable `name` over the points in `mask`, (...,), as text with the
+    digits that the errors allow.
     """
     chosen = mask & is_known(v, name) if name == "transient_time" else mask
     return span(v[name][chosen], errors_of(v, name)[chosen])

@@ -102,7 +102,7 @@ def _proof_lines(view: View) -> list[str]:
 
 
 def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:
-    """Line on the stability of the only cycle in a file. v: variables of the file."""
+    """Line on the stability of the only cycle in a file. v: variables of the file, each (1, ...)."""
     if np.isnan(v["multiplier"]).all():
         return "the motion in time settles on the cycle; no Floquet multiplier is computed"
     if stable:
@@ -111,7 +111,7 @@ def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:
 
 
 def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
-    """Table of the numbers of the only cycle in a file, with errors. v: variables of the file."""
+    """Table of the numbers of the only cycle in a file, with errors. v: variables, each (1, ...)."""
     rows = []
     for words, name, unit in CYCLE_NUMBERS:
         value = float(np.nanmax(v[name], initial=-np.inf))

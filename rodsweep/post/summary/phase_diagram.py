@@ -119,7 +119,7 @@ def start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
 
 
 def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
-    """Lines about the changes of the straight rod along the rows in the mask `done`."""
+    """Lines about the changes of the straight rod along the rows in the mask `done`, (...,)."""
     v = view.variables
     of_row = view.point_columns[row].reshape(done.shape)
     lines = start_lines(view, done, line)

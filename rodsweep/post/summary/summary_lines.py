@@ -64,7 +64,8 @@ def varied(view: View) -> dict[str, np.ndarray]:
 
 
 def region(view: View, mask: np.ndarray) -> str:
-    """Ranges of the varied parameters over the points in `mask`, as text; empty if the file has one rod."""
+    """Ranges of the varied parameters over the points in `mask`, (...,), as text; empty if the file has one
+    rod."""
     ranges = []
     for name, column in varied(view).items():
         values = column[mask.ravel()]

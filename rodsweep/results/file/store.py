@@ -122,9 +122,7 @@ class Store:
         self.fold({})
 
     def _keep_before(self) -> Path:
-        """Copies the file into the journal directory until the extension is complete; returns the copy's
-        path.
-        """
+        """Path of a copy of the file in the journal directory, kept until the extension is complete."""
         number = 1 + sum(1 for _ in self.journals.glob(BACKUPS))
         copy = self.journals / BACKUPS.replace("*", str(number))
         shutil.copyfile(self.path, copy)

@@ -51,7 +51,7 @@ class BranchPoint:
     @property
     def min_unstable_multipliers(self) -> int:
         """Least number of multipliers outside the circle; 0: stable, -1: stability not known."""
-        return min_unstable_multipliers(self.unstable, self.multiplier, self.errors.multiplier_error)
+        return min_unstable_multipliers(self.unstable_count, self.multiplier, self.errors.multiplier_error)
 
 
 def _margin(point: ArcPoint) -> float:

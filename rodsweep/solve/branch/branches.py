@@ -119,8 +119,7 @@ def solve_branches(
 
 @cache
 def warm_up() -> None:
-    """Loads compiled code and creates solver objects by solving one rod, so that the first point takes no
-    extra time."""
+    """Loads compiled code and makes solver objects by solving one rod, to save time at the first point."""
     solve_branches(
         Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), BranchRequest("F", 0.0, 40.0, 1e-5, False, 100, 10)
     )

@@ -33,8 +33,7 @@ from .transient.motion_mesh import coarse_mesh
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HopfStartSettings:
-    """Settings for the search for the Hopf point below a force, and for the start of Newton's method near
-    this Hopf point."""
+    """Settings for the search for the Hopf point below a force, and for Newton's method from there."""
 
     scan_step: float = 0.07
     """Relative decrease between successive forces at which the search evaluates the leading growth rate."""
@@ -209,8 +208,7 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
 
 
 def _normal_form(form: StressForm, w: complex) -> NormalForm:
-    """Normal form of the rod in `form`, with the exact eigenvalue `w` instead of its approximation on the
-    mesh."""
+    """Normal form of the rod in `form`, with the exact eigenvalue `w` in place of the mesh's."""
     normal = accurate_normal_form(form.rod, w, HOPF_START.normal_form_accuracy)
     return replace(normal, w=w)
 

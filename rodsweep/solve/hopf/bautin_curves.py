@@ -199,8 +199,7 @@ def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
 
 
 def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
-    """A generalised Hopf point of a plane as a point of a curve. third: value of the plane's third
-    parameter."""
+    """A generalised Hopf point of a plane as a point of a curve. third: third parameter of the plane."""
     return BautinCurvePoint(
         values=np.array([*point.values, third]),
         errors=np.array([*point.errors, 0.0]),

@@ -8,7 +8,7 @@ import numpy as np
 from ...determinant.arm.hull.hull import hull_of
 from ...determinant.certificate.box import eigenvalue_box
 from ...discretization.straight.dense_form import AnyPencil, dense_form
-from ...discretization.straight.slaving import slaving_of
+from ...discretization.straight.slaving import tip_layer_ratio
 from ...model.adjoint import hermitian_tip_coefficients
 from ...model.rod import Rod
 from .propagator import shifted_inverse
@@ -39,7 +39,7 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     nan if no shift lies above it, which is possible only for a rod without rotational drag and with g < 0.
     """
     form = dense_form(rod, pencil)
-    A = form.with_tip_terms(*hermitian_tip_coefficients(rod.F, slaving_of(rod)))
+    A = form.with_tip_terms(*hermitian_tip_coefficients(rod.F, tip_layer_ratio(rod)))
     B = form.B
     bound, _ = eigenvalue_box(rod) if rod.standard else hull_of(rod).box()
     # Any shift above the abscissa will do; the bound of eigenvalues is only a first guess of it.

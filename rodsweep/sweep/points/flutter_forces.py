@@ -67,7 +67,7 @@ def _arms(section: ArmSection) -> Iterable[SlenderArm]:
 
 def flutter_of_rod(rod: Rod) -> FlutterForce:
     """Force of first flutter of one rod; a failed search is a `FlutterForce` too, not an exception."""
-    from ...verdict.relative import FlutterUnknown, first_hopf_force
+    from ...verdict.relative import FlutterSearchFailed, first_hopf_force
 
     try:
         return FlutterForce(first_hopf_force(rod))

@@ -36,7 +36,8 @@ NO_CYCLE_WORDS = {
 
 
 def arm_answer(view: View, done: np.ndarray) -> Lines:
-    """Lines with the answer about the arms at the points in the mask `done`; an empty list for a rod."""
+    """Lines with the answer about the arms at the points in the mask `done`, (...,); an empty list for a
+    rod."""
     return [*plane_lines(view.quantities), *_applied(view, done)] if view.quantities else []
 
 

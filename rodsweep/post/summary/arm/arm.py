@@ -89,8 +89,8 @@ def given_columns(view: View) -> dict[str, np.ndarray]:
 
 
 def region_of_arms(view: View, mask: np.ndarray) -> str:
-    """Ranges of an arm's quantities and of the taper over the points in `mask`; empty if all points have the
-    same arm.
+    """Ranges of an arm's quantities and of the taper over the points in `mask`, (...,); empty if all points
+    have the same arm.
     """
     chosen = mask.ravel()
     ranges = [quantity_range(view, name, column, chosen) for name, column in given_columns(view).items()]
@@ -126,7 +126,7 @@ def _unit(view: View, name: str) -> str:
 
 
 def arm_lines(view: View, done: np.ndarray) -> list[str]:
-    """Lines with the ranges of all variables in SI units, over the points in the mask `done`."""
+    """Lines with the ranges of all variables in SI units, over the points in the mask `done`, (...,)."""
     if not view.quantities:
         return []
     si_variables = si_variables_of(LAYOUTS[view.task](view.config), view.config)
@@ -174,7 +174,7 @@ def wrapped(text: str) -> list[str]:
 
 def errors_in_si(v: Mapping[str, np.ndarray], own: str, si_name: str) -> np.ndarray:
     """Absolute errors, in SI units, of the SI variable `si_name`, from the errors of the dimensionless
-    variable `own`.
+    variable `own`; both have the shape of the points, (...,).
     """
     known = np.isfinite(v[own]) & (v[own] != 0)
     scale = np.divide(v[si_name], v[own], out=np.zeros_like(v[si_name]), where=known)
