@@ -28,7 +28,7 @@ from .cycles import Case, broken_promises, cycle_of, finer, random_case
 from .fourier import period_and_largest_y
 
 RODS, BATCH = int(os.environ.get("RODSWEEP_RODS", "6")), 3
-SUBCRITICAL = "go to smaller forces"
+SUBCRITICAL = "towards smaller forces"
 
 CASES = {
     "next to its Hopf point, to 1e-9": Case(1.39e5, inf, 4.7e-7, 0.93, 1.00038, 1e-9),

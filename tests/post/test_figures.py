@@ -453,7 +453,7 @@ def test_a_section_of_a_grid_is_what_a_run_of_its_own_gives(command, monkeypatch
     for words, said in (
         (("--at", "k2=70"), "no point there; it has k2 = 50, 100"),
         (("--at", "k3=1"), "has no such axis"),
-        (("--at", "k2"), "must be a parameter with a number"),
+        (("--at", "k2"), "--at k2 must be NAME=VALUE, such as k1=150"),
         (("--width", "tall"), "width = 'tall' is not allowed; choose single, double, or a length as '89 mm'"),
         (("--width", "1 km"), "from 64 to 508 mm"),
         (("--what", "map"), "is for results of thresholds"),
@@ -533,7 +533,7 @@ def test_several_lines_of_spectra_are_panels_of_one_figure(command, drawn):
     assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
     assert "only lines of spectra" in refused.stderr
     assert (
-        "only files of limit_cycle, spectrum or thresholds share a figure"
+        "only results of limit_cycle, spectrum or thresholds can share a figure"
         in command("plot", "m.h5", "m.h5", "-o", "x.png").stderr
     )
     alone = command("plot", "t.h5", "t.h5", "-o", "x.png")
