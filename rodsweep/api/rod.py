@@ -222,7 +222,7 @@ def _number(name: str, value: Any) -> float:
     try:
         return as_number(plain_value(value))
     except ValueError as error:
-        raise InputError(f"the parameter {name} of the rod: {error}") from None
+        raise InputError(f"parameters.{name}: {error}") from None
 
 
 _KEYWORDS = [

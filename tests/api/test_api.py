@@ -305,7 +305,7 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
             lambda: rs.Rod(**ROD | {"gamma3": -1}),
             "parameters.gamma3 = -1 is not allowed; it must be a finite",
         ),
-        (lambda: rs.Rod(**ROD | {"k1": "stiff"}), "the parameter k1 of the rod: 'stiff' is not a number"),
+        (lambda: rs.Rod(**ROD | {"k1": "stiff"}), "parameters.k1: 'stiff' is not a number"),
         (lambda: rs.Rod(**ROD | {"F": 2e4}), "parameters.F reaches 20000 and parameters.k1 starts at 10000;"),
         (lambda: rs.Rod(**ROD, K1=3), "a rod has no parameter K1; did you mean k1?"),
         (
