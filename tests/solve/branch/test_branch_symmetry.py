@@ -165,7 +165,7 @@ def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):
 def test_a_multiplier_that_passes_minus_one_is_told_by_the_symmetry(has, kind):
     here, there = (
         SimpleNamespace(
-            rises=1.0,
+            parameter_rate=1.0,
             partial_multipliers=np.array([h, 0.1, 0.2j, -0.2j]),
             orbit=SimpleNamespace(symmetric=has),
         )
