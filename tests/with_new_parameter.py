@@ -17,7 +17,7 @@ ENTRY = """
             scales=("gamma3",),
         ),
 """
-END = '    )\n}\n"""All parameters by name'
+END = '    )\n}\n"""All parameters of the rod by name'
 
 
 def add_to_table() -> None:
