@@ -19,6 +19,10 @@ from .section import Circle, Section, Tube
 BUCKLING_NODE_COUNT = 400
 """Number of midpoint-rule nodes in the integrals for the buckling weight, whose relative error is then 5e-5
 for a uniform arm."""
+BUCKLING_TOLERANCE = 1e-12
+"""Relative change of the largest eigenvalue in one step at which the power iteration ends."""
+BUCKLING_MAX_ITERATIONS = 1000
+"""Maximum number of steps of the power iteration; twenty are usual."""
 MAX_RADIUS_RATIO = 1.3
 """Largest ratio of a cone's radii at neighbouring u of its profile. The cubics between them approximate the
 logarithms of the drag to 3e-4 for tapers from 0.01 to 100."""
@@ -138,17 +142,26 @@ class Shape:
 
         weight: weight per volume, in N/m^3. theta' = m/(E I) and m' = -W theta, with the weight W(u) beyond
         u, have a solution with theta(0) = 0 and m(1) = 0 if 1 is an eigenvalue of the operator theta ->
-        int_0^u (1/(E I)) int_u^1 W theta. The ratio is the largest eigenvalue.
+        int_0^u (1/(E I)) int_u^1 W theta. The ratio is the largest eigenvalue, by power iteration: the kernel
+        of the operator is positive, and the next eigenvalue of a uniform arm is a seventh of the largest.
         """
         h, area, stiffness = self._at_midpoints()
-        # Weight above each midpoint, with half the weight of its own interval.
-        beyond = np.tril(np.ones((len(h), len(h)))).T * (weight * area * h)
-        np.fill_diagonal(beyond, weight * area * h / 2)
-        moment = np.tril(np.ones((len(h), len(h)))).T * h * beyond.sum(axis=1)
-        moment[np.diag_indices_from(moment)] /= 2
-        turn = np.tril(np.ones((len(h), len(h)))) * (h / stiffness)
-        turn[np.diag_indices_from(turn)] /= 2
-        return float(np.abs(np.linalg.eigvals(turn @ moment)).max())
+        if weight == 0:
+            return 0.0
+        # Integrals up to a midpoint include half of its own interval.
+        own = weight * area * h
+        beyond = np.cumsum(own[::-1])[::-1] - own / 2
+        theta = np.ones(len(h))
+        ratio = before = 0.0
+        for _ in range(BUCKLING_MAX_ITERATIONS):
+            load = beyond * theta * h
+            turn = (np.cumsum(load[::-1])[::-1] - load / 2) * h / stiffness
+            theta = np.cumsum(turn) - turn / 2
+            before, ratio = ratio, float(theta[-1])
+            theta /= ratio
+            if abs(ratio - before) <= BUCKLING_TOLERANCE * ratio:
+                break
+        return ratio
 
     def _at_midpoints(self) -> tuple[Array, Array, Array]:
         """(length, A, E I) of the subintervals of the quadrature, each (subintervals,), in m, m^2, N m^2."""

@@ -60,11 +60,14 @@ def test_energy_of_a_section_is_convex_where_the_hessian_by_differences_is_posit
     assert verdicts[0] and not verdicts[-1]
 
 
-def test_rubber_that_loses_its_stiffness_leaves_the_model():
+@pytest.mark.parametrize("step", range(8))
+def test_rubber_that_loses_its_stiffness_leaves_the_model(step):
+    """At forces that differ by rounding errors only: the last accepted state may be convex or not."""
     soft_end = (0.2267, 7.722, 0.1047, 1.0, 1.0, 2.409)
     profile = Profile((0.0, 0.283, 0.283, 1.0), ((1.0,) * 6, (1.0,) * 6, soft_end, soft_end))
     build = Build("neo_hookean", "swelling", profile)
-    rod = Rod(F=81.05, k1=222.81, k2=9.0225, gamma3=3.95e-5, gamma1=1.0, build=build)
+    F = 81.05 * (1 + step * 1e-13)
+    rod = Rod(F=F, k1=222.81, k2=9.0225, gamma3=3.95e-5, gamma1=1.0, build=build)
     cycle = solve_cycle(rod, CycleRequest(1e-6, 0.1, 1, 0, 0, 0, 400))
     assert cycle.status == CycleStatus.left_the_model
     assert "not convex" in cycle.message

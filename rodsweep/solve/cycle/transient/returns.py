@@ -32,6 +32,9 @@ class ReturnSettings:
     """Largest number of returns of the tip per period of a recognised cycle."""
     max_steps_per_run: int = 20_000
     """Maximum number of time steps in one run."""
+    last_states: int = 200
+    """Number of states before the end of a failed run that are examined for a section whose energy is not
+    convex. The equations are ill-posed there, and the integrator may fail some steps later."""
     bisections: int = 50
     """Number of bisections of a time step for the time of a crossing; enough for all digits."""
 
@@ -75,14 +78,18 @@ def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:
     if run.ending == RunEnding.left_the_model:
         h1 = beam.least_stretch(run.states[-1])
         return EarlyEnd(True, f"h1 = {h1:.3g} somewhere on the rod, {returns} returns from the start")
-    end = run.states[-1]
-    if not run.message and np.isfinite(end).all() and not beam.is_convex(end):
+    if not run.message and _loses_convexity(beam, run.states[-RETURNS.last_states :]):
         why = f"the energy of a section is not convex, {returns} returns from the start"
         return EarlyEnd(True, why)
     why = "the integrator finds no step of acceptable error"
     if run.ending == RunEnding.too_many_steps:
         why = "the integrator reached its maximum number of steps"
     return EarlyEnd(False, run.message or why)
+
+
+def _loses_convexity(beam: Beam, states: Array) -> bool:
+    """Whether the energy of a section is not convex in one of the `states`, (k, unknowns)."""
+    return any(np.isfinite(state).all() and not beam.is_convex(state) for state in states[::-1])
 
 
 def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
