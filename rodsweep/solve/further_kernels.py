@@ -1,23 +1,40 @@
-"""Compiled functions that a run calls seldom, compiled at the installation.
+"""Compiled functions that not every run calls, compiled at the installation.
 
 A run loads what every point needs by the functions `warm_up` of the solvers. The first branch with a fold,
-and the first spectra between which a rod loses its stability, would wait for the functions below.
+the first spectra between which a rod loses its stability, and the first arm that varies along its length
+would wait for the functions below, up to 40 s.
 """
 
 import numpy as np
 
+from ..determinant.parameter_path import Path
 from ..determinant.stability_changes import stability_change_between
 from ..discretization.elements.mesh import mesh
 from ..discretization.stress.form import StressForm
+from ..model.material.build import Build
+from ..model.material.profile import Profile
 from ..model.rod import Rod
+from .changes.thresholds import ThresholdsRequest, solve_thresholds
+from .cycle.limit_cycle import CycleRequest, solve_cycle
 from .orbit.matrix.linearisation import change_along, reduced_variations
 from .orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from .orbit.orbit import Orbit
 from .orbit.symmetry import REFLECTION
 from .spectrum.path.carried_count import widest_gap
 from .spectrum.path.prediction import Track
+from .spectrum.path.stretch import Stretch, solve_stretch
+from .spectrum.spectrum import SpectrumRequest
 
 SAMPLE_ROD = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2)
+SAMPLE_CONE = Rod(F=6.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5)
+SAMPLE_SEGMENTS = Rod(
+    F=30.0,
+    k1=1e4,
+    k2=1e2,
+    gamma3=1e-2,
+    build=Build(profile=Profile((0.0, 0.5, 0.5, 1.0), ((1.0,) * 6,) * 2 + ((0.8,) * 6,) * 2)),
+)
+SAMPLE_ACCURACY = 1e-4
 SAMPLE_INTERVALS = 2
 """Number of intervals in time, the smallest for which an orbit has a mesh."""
 SAMPLE_STAGES = 3
@@ -25,6 +42,23 @@ SAMPLE_STAGES = 3
 
 
 def warm_up() -> None:
+    """Compiles the functions for uniform rods and for arms."""
+    warm_up_uniform()
+    warm_up_arms()
+
+
+def warm_up_arms() -> None:
+    """Solves spectra along a sweep, thresholds and a cycle of arms that vary along their length."""
+    path = Path(SAMPLE_CONE, "F")
+    spectra = SpectrumRequest(2, SAMPLE_ACCURACY, certify=True)
+    solve_stretch(Stretch(path, np.linspace(SAMPLE_CONE.F, 1.2 * SAMPLE_CONE.F, 12)), spectra)
+    search = ThresholdsRequest(SAMPLE_SEGMENTS.F, SAMPLE_ACCURACY, certify=True, crossings=1)
+    for arm in (SAMPLE_CONE, SAMPLE_SEGMENTS):
+        solve_thresholds(arm, search)
+    solve_cycle(SAMPLE_SEGMENTS, CycleRequest(1e-3, 0.1, 1, 4, 1, 4, 50), None, "F")
+
+
+def warm_up_uniform() -> None:
     """Calls each function with arrays of the types that runs have, and of values without a meaning."""
     w = np.ones((1, 2), dtype=complex)
     stability_change_between((SAMPLE_ROD.coefficients, SAMPLE_ROD.direction("F")), (1.0, 2.0), -w[0], w[0], 2)
