@@ -1,8 +1,9 @@
 """Arc-length continuation of a branch of cycles: the step from one cycle to the next.
 
-The cubic through two cycles and their tangents predicts the next cycle; Newton's method corrects the
-prediction at a given arc length (`bordered`). The step length follows from the prediction error and from the
-curvature of the branch.
+The cubic through the last two cycles and the tangents at both cycles predicts the next cycle. Newton's method
+corrects the prediction at a prescribed arc length (`bordered`). The step length is chosen from the prediction
+error and from the angle between successive tangents. N is the number of orbit values; a tangent also has the
+parameter coordinate.
 """
 
 from dataclasses import dataclass, replace
@@ -34,13 +35,13 @@ ARC_STEPS = StepControl(
     max_angle=0.45,
     max_ratio=2.0,
 )
-"""Control of the arc-length steps along a branch. Arc length is dimensionless (`Scale`): a step of 0.1
-changes the deflection, the period and the parameter by at most about a tenth."""
+"""Control of the arc-length steps along a branch. Arc length is dimensionless (`Scale`): on a step of 0.1 the
+deflection, the period and the parameter each change by at most about a tenth."""
 
 
 @dataclass(frozen=True, eq=False)
 class PreviousCycle:
-    """The previous orbit of a branch, and the tangent of the branch there, of any length, (N + 1,)."""
+    """The previous orbit of a branch. tangent: tangent of the branch at `orbit`, of any length, (N + 1,)."""
 
     orbit: Orbit
     tangent: Array
@@ -48,23 +49,23 @@ class PreviousCycle:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ArcPoint:
-    """A cycle of a branch, with the tangent of the branch, the calibrated errors, and the length of the next
-    step."""
+    """A cycle of a branch, with the derivatives of the branch at this cycle, the error calibration, and the
+    length of the next step."""
 
     cycle: RefinedCycle
     derivatives: BranchDerivatives
     length: float
     """Arc length of the step to the next cycle."""
     calibration: BranchCalibration
-    """Measured errors of the last cycle whose errors were measured; the errors of this cycle follow from
-    these."""
+    """Measured errors of the last cycle with measured errors, from which the errors of this cycle are
+    estimated."""
     unmeasured: int = 0
     """Number of steps since the last cycle with measured errors; 0 if the errors of this cycle were measured.
     """
     arc_since_measured: float = 0.0
     """Arc length of the branch since the last cycle with measured errors."""
     before: PreviousCycle | None = None
-    """The previous cycle of the branch; None for the first."""
+    """The previous cycle of the branch; None for the first cycle."""
 
     @property
     def scale(self) -> Scale:
@@ -87,7 +88,7 @@ class ArcPoint:
 
     @property
     def workspace(self) -> NewtonWorkspace:
-        """Memory of Newton's matrices, which contains the matrix of this cycle."""
+        """Memory of Newton's matrices, in which the matrix of this cycle was assembled."""
         return self.cycle.converged.workspace
 
     @property
@@ -97,35 +98,36 @@ class ArcPoint:
 
     @property
     def parameter_rate(self) -> float:
-        """Derivative of the scaled parameter coordinate by arc length; at a fold the sign changes."""
+        """Derivative of the scaled parameter coordinate by arc length; it changes sign at a fold."""
         return self.derivatives.rate
 
     @property
     def deflection(self) -> float:
-        """Deflection of the cycle at t = 0, in L, as `deflection_of` defines it."""
+        """Deflection of the cycle at t = 0, in L (see `deflection_of`)."""
         return deflection_of(self.orbit)
 
     @cached_property
     def partial_multipliers(self) -> Complex:
-        """Nontrivial multipliers, (rank - 1,): of the half-period map composed with the reflection for a
-        symmetric cycle, of the whole period for an asymmetric cycle."""
+        """Nontrivial Floquet multipliers, (rank - 1,). Asymmetric cycle: eigenvalues of the map over the
+        period. Symmetric cycle: eigenvalues of the map over half a period, composed with the reflection."""
         values = bordered_matrix_of(self.cycle.converged).partial_multipliers
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
     def condition(self, length: float) -> BorderCondition:
-        """The condition that the next cycle lies at an arc length `length` from this cycle."""
+        """The condition that the next cycle has the arc length `length` from this cycle."""
         return BorderCondition.at(self.scale, self.ahead, self.orbit, length)
 
     def predicted(self, length: float) -> Orbit:
-        """Predicted orbit at an arc length `length` ahead, on the cubic through this cycle and the previous
-        cycle; raises Unsolvable."""
+        """Predicted orbit at the arc length `length` ahead, on the cubic through this cycle and the previous
+        cycle, or on the tangent if there is no previous cycle; raises Unsolvable."""
         change = length * self.tangent
         if self.before is not None:
             change = length ** np.arange(1, 4) @ self._taylor(self.before)
         return moved_orbit(self.orbit, self.scale.name, change)
 
     def _taylor(self, before: PreviousCycle) -> Array:
-        """Coefficients, (3, N + 1), of the arc length, its square and its cube in the predicting cubic."""
+        """Coefficients, (3, N + 1), of the predicting cubic: factors of the arc length, of its square and of
+        its cube."""
         name = self.scale.name
         mesh = mesh_of(self.orbit)
         last = mesh.carry(before.orbit)
@@ -145,9 +147,10 @@ class ArcPoint:
 
 
 def branch_derivatives(found: ConvergedOrbit, scale: Scale, tangent: Array) -> BranchDerivatives:
-    """Scale and unit tangent of a branch at a cycle. tangent: tangent of any length, (N + 1,).
+    """Derivatives of a branch at the cycle `found`: its scale and unit tangent. scale: scale of another cycle
+    of the branch. tangent: tangent of any length, (N + 1,).
 
-    Curvature and multiplier rate are 0 in the result; the caller replaces both.
+    In the result curvature and multiplier rate are 0; the caller must set both.
     """
     own = Scale.of(found.orbit, scale.name, scale.min_deflection_unit)
     ahead = own.moved(found.orbit, tangent)
@@ -156,31 +159,30 @@ def branch_derivatives(found: ConvergedOrbit, scale: Scale, tangent: Array) -> B
 
 
 def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix) -> Array:
-    """Tangent of the branch at an orbit, (N + 1,), from its bordered matrix. side: direction in components
-    (deflection, log period, parameter), (3,), with which the tangent makes an acute angle."""
+    """Tangent of the branch at an orbit, (N + 1,), from the orbit's bordered matrix. side: direction in
+    components (deflection, log period, parameter), (3,); the sign of the tangent is such that their angle is
+    acute."""
     tangent = matrix.direction(side)
     # A null vector has no sign; the branch must not turn back.
     return tangent if scale.moved(orbit, tangent) @ side > 0 else -tangent
 
 
 def next_point(start: ArcPoint, accuracy: float) -> ArcPoint:
-    """The next cycle of a branch; raises Unsolvable if the shortest step fails."""
+    """The next cycle of a branch after `start`; raises Unsolvable if the shortest step fails."""
     end, length = advance(partial(_stepped, start, accuracy), start.length, ARC_STEPS)
     # The cubic through two cycles with tangents errs in the fourth power of the step, hence the order.
     return replace(end.solution, length=ARC_STEPS.next_length(length, end, ARC_STEPS.prediction_order))
 
 
 def cycle_at_length(start: ArcPoint, length: float, accuracy: float) -> ArcPoint:
-    """The cycle at an arc length `length` from `start`; raises Unsolvable if the cycle may lie on another
-    branch."""
+    """The cycle at the arc length `length` from `start`; raises Unsolvable if none is found or if the
+    prediction error or the angle is so large that the cycle may lie on another branch."""
     return ARC_STEPS.accepted(_stepped(start, accuracy, length)).solution
 
 
 def _stepped(start: ArcPoint, accuracy: float, length: float) -> StepResult[ArcPoint]:
-    """The cycle at an arc length `length` from `start`, with prediction error and angle; raises Unsolvable.
-
-    The next step gets the same length.
-    """
+    """The cycle at the arc length `length` from `start`, with the prediction error and the cosine of the
+    angle between the tangents; raises Unsolvable. The next step is given the same length."""
     condition = start.condition(length)
     predicted = start.predicted(length)
     tolerance = newton_tolerance(accuracy)
@@ -196,15 +198,15 @@ def _stepped(start: ArcPoint, accuracy: float, length: float) -> StepResult[ArcP
 
 
 def arc_length_between(start: ArcPoint, end: ArcPoint) -> float:
-    """Arc length from the cycle `start` to the cycle `end`, projected on the tangent at `start`."""
+    """Arc length from the cycle `start` to the cycle `end`, measured along the tangent at `start`."""
     return float(start.ahead @ (start.scale.components(end.orbit) - start.scale.components(start.orbit)))
 
 
 def unmeasured_cycle(
     start: ArcPoint, found: ConvergedOrbit, tangent: Array, length: float, ahead: float, accuracy: float
 ) -> ArcPoint:
-    """The solved orbit `found` as a cycle of the branch at an arc length `length` from `start`, with errors
-    calibrated at an earlier cycle.
+    """The solved orbit `found` as the cycle of the branch at the arc length `length` from `start`, with
+    errors estimated from the calibration of `start`.
 
     tangent: tangent of the branch at the new cycle, (N + 1,). ahead: length of the next step.
     """

@@ -1,8 +1,8 @@
 """The first cycle of a branch, from the normal form of the Hopf point where the branch starts.
 
 The normal form relates the amplitude of a cycle to the distance of the parameter from the Hopf point.
-Newton's method starts at the cycle predicted for a small amplitude, with the deflection prescribed and the
-parameter unknown: this system is regular at the Hopf point too.
+Newton's method starts at the cycle predicted for a small amplitude. The deflection is prescribed and the
+parameter is unknown; this system is regular at the Hopf point too.
 """
 
 from dataclasses import dataclass
@@ -37,14 +37,13 @@ class BeginningSettings:
     first_amplitudes: tuple[float, ...] = (0.02, 0.008, 0.003)
     """Amplitudes (largest tip y, in L) of the first cycle, tried in this order."""
     max_amplitude_share: float = 0.05
-    """Upper limit of the amplitude of the first cycle, in units of `HopfBirth.amplitude_coefficient`. Beyond
-    this limit the third-order normal form is too inaccurate."""
+    """Upper limit of the amplitude of the first cycle, divided by |`HopfBirth.amplitude_coefficient`|. At
+    larger amplitudes the third-order normal form is too inaccurate."""
     min_deflection_amplitude: float = 0.1
-    """Amplitude (largest tip y, in L) of the cycle whose deflection is the smallest unit of deflections in a
-    `Scale`."""
+    """Amplitude (largest tip y, in L) of the cycle whose deflection is `min_deflection_unit` in a `Scale`."""
     amplitude_ratios: tuple[float, float] = 0.5, 2.0
-    """Allowed range of the amplitude of the first cycle, in units of the amplitude predicted by the normal
-    form."""
+    """Smallest and largest allowed ratio of the solved amplitude of the first cycle to the amplitude
+    predicted by the normal form."""
     frequency_rounding: float = 1e-14
     """Relative rounding error of the frequency of a Hopf point, a root of D."""
 
@@ -58,7 +57,8 @@ ALONG_DEFLECTION = np.array([1.0, 0.0, 0.0])
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HopfBirth:
-    """A Hopf point along the continuation parameter `name`, with the normal form of the cycles born there."""
+    """A Hopf point along the continuation parameter `name`, with the normal form of the cycles that branch
+    off."""
 
     crossing: Crossing
     rod: Rod
@@ -66,9 +66,9 @@ class HopfBirth:
     coordinate: float
     """Coordinate of the parameter at the Hopf point: 1/k for a stiffness k, otherwise the value itself."""
     slope: complex
-    """Derivative dw/d(coordinate) of the critical eigenvalue w at the Hopf point, w in 1/tau2."""
+    """Derivative dw/d(coordinate) of the critical eigenvalue w, in 1/tau2, at the Hopf point."""
     normal_form: NormalForm
-    """Normal form on a mesh that is fine enough for the prediction of the first cycle."""
+    """Normal form on a mesh that suffices for the prediction of the first cycle."""
     coefficients: HopfCoefficients
     """Coefficients of the normal form from a finer mesh, with error estimates."""
 
@@ -81,8 +81,8 @@ class HopfBirth:
     def amplitude_coefficient(self) -> float:
         """Amplitude coefficient a, in L, of the branch born at the Hopf point with the parameter value p.
 
-        A cycle at a nearby parameter value p' has the largest tip y |a| sqrt(|p' - p|/p). a < 0 if the cycles
-        exist at p' < p.
+        The cycle at a nearby parameter value p' has a largest tip y of |a| sqrt(|p' - p|/p). The sign of a is
+        that of p' - p: negative if the cycles exist at p' < p.
         """
         # Along a stiffness the coordinate is 1/k, which falls as the parameter rises.
         turned = -1.0 if Path(self.rod, self.name).inverse else 1.0
@@ -104,13 +104,14 @@ class HopfBirth:
 
     @property
     def period_error(self) -> float:
-        """Relative error of `period`: the relative change of the frequency over the parameter error of the
-        Hopf point, plus rounding error."""
+        """Relative error of `period`: the relative change of the frequency when the parameter changes by its
+        error at the Hopf point, plus the rounding error."""
         place = self.crossing.error / abs(self.crossing.at) * abs(self.coordinate)
         return abs(self.slope) * place / self.crossing.frequency + BEGINNING.frequency_rounding
 
     def moved_by(self, amplitude: float) -> tuple[float, float]:
-        """(change of the coordinate, frequency) of the cycle with a given largest tip y, in L."""
+        """(change of the parameter coordinate from the Hopf point, frequency in 1/tau2) of the cycle with the
+        largest tip y `amplitude`, in L, by the normal form."""
         c = self.normal_form.c
         # The growth rate of the cycle vanishes: Re slope dp + Re c a^2 = 0.
         change = -c.real * amplitude**2 / self.slope.real
@@ -118,8 +119,8 @@ class HopfBirth:
 
 
 def hopf_point(path: Path, crossing: Crossing) -> HopfBirth:
-    """The Hopf point with its normal form, from a crossing of the imaginary axis along a path; raises
-    Unsolvable."""
+    """The Hopf point with its normal form, at a crossing of the imaginary axis along the parameter path
+    `path`; raises Unsolvable."""
     w = complex(0.0, crossing.frequency)
     at = path.at(path.variable(crossing.at))
     _, slope, _ = path_problem(path).eigenvalue(w, path.variable(crossing.at))
@@ -136,7 +137,7 @@ def hopf_point(path: Path, crossing: Crossing) -> HopfBirth:
 
 
 def hopf_as_special_point(hopf: HopfBirth) -> SpecialPoint:
-    """The Hopf point as the first or last special point of a branch."""
+    """The Hopf point as a special point, for the start or the end of a branch."""
     return SpecialPoint(
         kind=SpecialKind.hopf,
         at=hopf.crossing.at,
@@ -157,7 +158,7 @@ def first_cycle(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) ->
     """
     a = abs(hopf.amplitude_coefficient)
     usual = max(accuracy, REFINEMENT.first_accuracy)
-    # A coarse mesh may have no cycle here, because the mesh's own Hopf point lies beyond.
+    # On a coarse mesh the Hopf point is displaced, so that this mesh may have no cycle here.
     for aim, finer in ((usual, False), (REFINEMENT.first_accuracy, True)):
         for share in BEGINNING.first_amplitudes:
             amplitude = min(share, BEGINNING.max_amplitude_share * a)
@@ -171,18 +172,18 @@ def first_cycle(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) ->
 def _cycle_of(
     hopf: HopfBirth, amplitude: float, aim: float, finer: bool, accuracy: float, workspace: NewtonWorkspace
 ) -> ArcPoint:
-    """The cycle near the normal form's cycle with a given amplitude (largest tip y, in L), to a relative
+    """The cycle near the normal form's cycle with the largest tip y `amplitude`, in L, to a relative
     accuracy; raises Unsolvable.
 
-    aim: accuracy for which the first mesh is chosen. finer: whether Newton's method starts on this mesh,
-    instead of the coarser mesh of the normal form.
+    aim: accuracy for which the second mesh is chosen. finer: whether Newton's method starts on a mesh chosen
+    for `aim`, instead of the coarser mesh of the normal form.
     """
     start = predicted_cycle(hopf, amplitude)
     if finer:
         start = wanted_mesh(start, aim, stages_for(aim)).carry(start)
     least = abs(deflection_of(start)) * BEGINNING.min_deflection_amplitude / amplitude
     scale = Scale.of(start, hopf.name, least)
-    # The deflection is prescribed, not the parameter: it cannot collapse onto the straight rod.
+    # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
     border = np.sign(deflection_of(start)) * ALONG_DEFLECTION
     condition = BorderCondition.at(scale, border, start)
     rough = condition.solved(start, REFINEMENT.nearby_tolerance, workspace)
@@ -199,8 +200,8 @@ def _cycle_of(
 
 
 def predicted_cycle(hopf: HopfBirth, amplitude: float) -> Orbit:
-    """The normal form's cycle with a given amplitude (largest tip y, in L), on the normal form's mesh in
-    space and on a coarse mesh in time; raises Unsolvable."""
+    """The normal form's cycle with the largest tip y `amplitude`, in L, on the normal form's mesh in space
+    and a coarse mesh in time; raises Unsolvable."""
     change, frequency = hopf.moved_by(amplitude)
     form = StressForm(hopf.rod, hopf.normal_form.form.mesh)
     try:

@@ -22,19 +22,20 @@ class BranchPoint:
     at: float
     """Value of the continuation parameter."""
     at_error: float
-    """Relative error of the parameter, for the exact cycle with the same deflection."""
+    """Relative difference of `at` from the parameter value of the exact cycle with the same deflection."""
     measures: Measures
     errors: CycleErrors
     """Errors relative to the exact cycle at the same value of the parameter."""
     multiplier: float
     """Modulus of the largest nontrivial Floquet multiplier."""
     unstable_count: int
-    """Number of multipliers outside the unit circle; -1 if a multiplier lies on the circle within its error.
-    """
+    """Number of Floquet multipliers outside the unit circle; -1 if a multiplier lies on the circle within its
+    error."""
 
     @classmethod
     def of(cls, point: ArcPoint, accuracy: float) -> "BranchPoint":
-        """The stored quantities of the cycle `point`, which was solved to a relative accuracy."""
+        """The stored quantities of the cycle `point`. accuracy: relative accuracy to which the cycle was
+        solved."""
         cycle = point.cycle
         sizes = np.abs(cycle.multipliers)
         beyond = sizes - 1
@@ -50,16 +51,14 @@ class BranchPoint:
 
     @property
     def min_unstable_multipliers(self) -> int:
-        """Least number of multipliers outside the circle; 0: stable, -1: stability not known."""
+        """Least number of multipliers outside the unit circle: 0 if the cycle is stable, -1 if its stability
+        is unknown."""
         return min_unstable_multipliers(self.unstable_count, self.multiplier, self.errors.multiplier_error)
 
 
 def _margin(point: ArcPoint) -> float:
-    """Error of the moduli of multipliers near 1; a multiplier with a modulus closer to 1 is undecided.
-
-    The relative error of the largest multiplier is used for all multipliers. The error of the trivial
-    multiplier is known, because its exact value is 1.
-    """
+    """Error of the modulus of a multiplier near the unit circle. It is the sum of the relative error of the
+    largest multiplier and of a multiple of the error of the trivial multiplier, whose exact value is 1."""
     cycle = point.cycle
     relative = cycle.errors.multiplier_error / max(cycle.largest_multiplier, 1.0)
     return relative + REFINEMENT.multiplier_error_factor * cycle.trivial_error
@@ -67,10 +66,8 @@ def _margin(point: ArcPoint) -> float:
 
 @dataclass(frozen=True, slots=True)
 class BranchEnd:
-    """The last special point of a branch, and whether the branch truly ends there.
-
-    complete, end_hopf, end_breaking and list_full: as in `BranchCurve`.
-    """
+    """The last special point of a branch; complete, end_hopf, end_breaking and list_full: as in
+    `BranchCurve`."""
 
     special: SpecialPoint
     complete: bool
@@ -88,37 +85,37 @@ class BranchCurve:
     points: list[BranchPoint] = field(default_factory=list)
     special: list[SpecialPoint] = field(default_factory=list)
     end_hopf: int = -1
-    """Index of the Hopf point where the branch ends; -1 if the branch ends elsewhere."""
+    """Index of the Hopf point where the branch ends; -1 if the branch has another end."""
     start_breaking: SymmetryBreaking | None = None
     """Symmetry breaking where an asymmetric branch starts; None for a branch from a Hopf point."""
     end_breaking: SymmetryBreaking | None = None
-    """Symmetry breaking where an asymmetric branch ends; None if the branch ends elsewhere."""
+    """Symmetry breaking where an asymmetric branch ends; None if the branch has another end."""
     complete: bool = False
     """Whether the branch was followed to a true end: Hopf point, symmetry breaking, end of the range, or end
     of the model."""
     list_full: bool = False
-    """Whether following stopped at the maximum number of cycles."""
+    """Whether the continuation stopped at the maximum number of cycles."""
     multipliers_explained: bool = True
     """Whether special points explain every multiplier that crosses the unit circle along the branch."""
 
     def add(self, special: SpecialPoint) -> None:
-        """Appends a special point; the present last cycle precedes it."""
+        """Appends a special point that lies behind the present last cycle."""
         self.special.append(replace(special, after=len(self.points) - 1))
 
     def add_found(self, between: Sequence[SpecialPoint], explained: bool) -> None:
-        """Appends special points that follow the present last cycle. explained: whether these points explain
-        the multipliers of the next cycle."""
+        """Appends the special points `between`, which lie between the present last cycle and the next cycle.
+        explained: whether these points explain every multiplier that crosses the unit circle there."""
         for special in between:
             self.add(special)
         self.multipliers_explained &= explained
 
     def judge(self, points: Sequence[BranchPoint]) -> None:
-        """Replaces the last len(points) cycles by `points`: the same cycles with measured or interpolated
+        """Replaces the last len(points) cycles by `points`, the same cycles with measured or interpolated
         errors."""
         self.points[-len(points) :] = points
 
     def cut(self, count: int) -> None:
-        """Removes the last `count` cycles, and the special points that follow the removed cycles."""
+        """Removes the last `count` cycles, and all special points behind the first removed cycle."""
         del self.points[-count:]
         self.special[:] = [point for point in self.special if point.after < len(self.points)]
 

@@ -1,5 +1,4 @@
-"""The task branch for one rod: all branches of cycles born at Hopf points along a parameter, followed to
-their ends.
+"""The task `branch` for one rod: all branches of cycles from Hopf points along a parameter, to their ends.
 
 The Hopf points come from the covering of `task: thresholds`. A branch between two Hopf points is followed
 only once, from the first Hopf point. At a symmetry breaking on such a branch, the branch of asymmetric cycles
@@ -27,12 +26,11 @@ from .work import fractions_before_branches
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchesSettings:
-    """Settings for all branches of a rod: margin from crushing, and maximum number of cycles on a row of a
-    diagram."""
+    """Settings for all branches of a rod."""
 
     crushing_margin: float = 1e-4
-    """Relative distance of F from the crushing force at which a branch ends. Closer to the crushing force,
-    the rod at rest is almost crushed. Branches along k1 or taper have the same margin."""
+    """A branch ends where the relative distance of F from the crushing force is this number, because the rod
+    at rest is then almost crushed. Branches along F, k1 or taper have this margin."""
     taper_accuracy: float = 1e-9
     """Relative tolerance of the smallest taper at which the force does not crush the tip."""
     max_row_cycles: int = 500
@@ -43,7 +41,7 @@ BRANCHES = BranchesSettings()
 
 
 class BranchStatus(PointStatus):
-    """Outcome of the search for Hopf points of one rod and of following the branches."""
+    """Outcome of the search for Hopf points of one rod and of the continuation of its branches."""
 
     ok = (
         0,
@@ -73,9 +71,9 @@ class BranchStatus(PointStatus):
 
 @dataclass(frozen=True, slots=True)
 class BranchRequest:
-    """Request for every rod: name and range of the continuation parameter, relative accuracy of the cycles,
-    whether to prove that no Hopf point is missing, and maximum numbers of stored cycles and special points.
-    """
+    """Request for every rod. along, start, stop: name and range of the continuation parameter. accuracy:
+    relative accuracy of the cycles. certify: whether to prove that no Hopf point is missing. cycles, special:
+    maximum numbers of stored cycles and special points."""
 
     along: str
     start: float
@@ -88,9 +86,9 @@ class BranchRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchesOfRod:
-    """Outcome of the task branch for one rod: all branches. crossings: Hopf points within the range, ordered
-    by the parameter. unstable_at_start: number of unstable modes of the straight rod at the start of the
-    range, -1 if unknown. proved: whether `crossings` is proved complete."""
+    """Outcome of the task `branch` for one rod. crossings: Hopf points within the range, by ascending
+    parameter. unstable_at_start: number of unstable modes of the straight rod at the start of the range, -1
+    if unknown. proved: whether `crossings` is proved complete. curves: all branches."""
 
     status: BranchStatus
     message: str = ""
@@ -104,9 +102,9 @@ class BranchesOfRod:
 def solve_branches(
     rod: Rod, request: BranchRequest, workspace: NewtonWorkspace | None = None
 ) -> BranchesOfRod:
-    """All branches born at Hopf points of a rod along a parameter; a failure becomes a status, never an
-    exception. rod: its value of the continuation parameter is ignored. workspace: memory of Newton's
-    matrices, shared by many rods; None makes a new workspace."""
+    """All branches that start at Hopf points of a rod along a parameter; a failure becomes a status, never an
+    exception. The rod's own value of this parameter is not used. workspace: memory of Newton's matrices,
+    which rods may share; None: a new workspace."""
     memory = workspace or NewtonWorkspace()
     try:
         return solved(
@@ -119,7 +117,7 @@ def solve_branches(
 
 @cache
 def warm_up() -> None:
-    """Loads compiled code and makes solver objects by solving one rod, to save time at the first point."""
+    """Solves one rod, so that compiled code is loaded and solver objects exist before the first point."""
     solve_branches(
         Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), BranchRequest("F", 0.0, 40.0, 1e-5, False, 100, 10)
     )
@@ -158,7 +156,8 @@ def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> Bran
 
 
 def _range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
-    """(lowest value, highest value, index of the end at which the rod is crushed, -1 for neither)."""
+    """(smallest value, largest value of the parameter without crushing, index of the end at which the rod is
+    crushed, -1 if it is crushed at neither end)."""
     low = request.start
     high = request.stop
     share = rod.build.relative_crushing_force(rod.taper)
@@ -188,8 +187,8 @@ def _thinnest(rod: Rod, low: float, high: float) -> float:
 
 
 def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
-    """Branches from all Hopf points, then from all symmetry breakings. name: continuation parameter. A branch
-    that connects two Hopf points, or two symmetry breakings, occurs only once."""
+    """Branches from all Hopf points, then from all symmetry breakings. A branch between two Hopf points, or
+    between two symmetry breakings, is followed only once. name: continuation parameter."""
     curves: list[BranchCurve] = []
     arrived: set[int] = set()
     left = limits.max_cycles
@@ -224,8 +223,9 @@ def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
 def _judged(
     found: Transitions, curves: list[BranchCurve], failures: list[str], request: BranchRequest
 ) -> tuple[BranchStatus, str]:
-    """(status, message) of all branches of a rod. The gravest problem determines the status; the message
-    names every problem."""
+    """(status, message) of all branches of a rod: status of the first problem in the order of `BranchStatus`,
+    and all messages. found: search for Hopf points. failures: messages for Hopf points without a normal form.
+    """
     messages = [
         f"branch {number}: {special.message} at {request.along} = {special.at:.9g}"
         for number, curve in enumerate(curves, 1)

@@ -1,8 +1,8 @@
-"""Rows of a phase diagram with cycles: the stable states of the rod at each parameter value of the row.
+"""Rows of a phase diagram with cycles: the stable states of the rod at each parameter value of a row.
 
-The special points divide a branch into sections, and each section covers an interval of the parameter. A
-stable cycle exists at every parameter value in the interval of a section whose multipliers lie inside the
-unit circle. The ends of an interval are located special points, not parameter values of the row.
+The special points divide a branch into sections, and each section covers an interval of the parameter. If the
+multipliers of a section lie inside the unit circle, a stable cycle exists at every parameter value of its
+interval. The ends of an interval are located special points, not parameter values of the row.
 """
 
 from dataclasses import dataclass
@@ -24,14 +24,14 @@ from .special.point import EndReason, SpecialPoint
 
 
 def _shared_status(status: ThresholdStatus) -> tuple[int, str, bool]:
-    """(value, sentence, success) of a `ThresholdStatus`, for the status with the same name of a row with
-    cycles."""
+    """(value, sentence, success) of a `ThresholdStatus`, from which the `CoexistenceStatus` with the same
+    name is made."""
     return int(status), status.sentence, status.succeeded
 
 
 class CoexistenceStatus(PointStatus):
-    """Outcome of a row with cycles. A failed search for stability changes determines the status; otherwise
-    the branches do."""
+    """Outcome of a row with cycles: the status of the search for stability changes unless it is ok, otherwise
+    the status of the branches."""
 
     ok = _shared_status(ThresholdStatus.ok)
     not_certified = _shared_status(ThresholdStatus.not_certified)
@@ -56,11 +56,8 @@ class CoexistenceStatus(PointStatus):
 
 
 class StableStates(IntEnum):
-    """Stable states of a rod at one parameter value: straight state, cycle, or both.
-
-    neither_known: the straight rod is unstable and no branch has a stable cycle. crushed: the force crushes
-    the rod.
-    """
+    """Stable states of a rod at one parameter value: straight state, cycle, or both. neither_known: the
+    straight rod is unstable and no branch has a stable cycle. crushed: the force crushes the rod."""
 
     neither_known = 0
     straight = 1
@@ -72,11 +69,8 @@ class StableStates(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoexistenceRow:
-    """Outcome for a row of a phase diagram: stable states at each parameter value, (values,), and special
-    points of all branches.
-
-    row: outcome for the straight rod.
-    """
+    """Outcome for a row of a phase diagram. row: outcome for the straight rod. stable_states: `StableStates`
+    at each parameter value, (values,). special: special points of all branches."""
 
     row: DiagramRow
     stable_states: NDArray[np.int8]
@@ -116,7 +110,8 @@ def solve_coexistence(
 def row_branches(
     rod: Rod, request: RowRequest, special: int, workspace: NewtonWorkspace | None = None
 ) -> BranchesOfRod:
-    """All branches of cycles born at Hopf points of a row; special, workspace: as in `solve_coexistence`."""
+    """All branches of cycles that start at Hopf points of a row; special, workspace: as in
+    `solve_coexistence`."""
     asked = BranchRequest(
         along=request.name,
         start=float(request.values[0]),
@@ -135,8 +130,8 @@ def special_points_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:
 
 
 def _undecided(name: str, values: Array) -> str:
-    """Message that names the parameter values, (n,), at which the cycles leave the stable states undecided;
-    empty for n = 0."""
+    """Message about the `values` of the parameter `name`, (n,), at which the stable states are undecided
+    because of the cycles; empty for n = 0."""
     if not len(values):
         return ""
     count = counted(len(values), "value")
@@ -146,12 +141,11 @@ def _undecided(name: str, values: Array) -> str:
 def _judged(
     row: DiagramRow, branches: BranchesOfRod, special: int, undecided: Array
 ) -> tuple[CoexistenceStatus, str]:
-    """(status, message) of a row. Problems in the search for stability changes take precedence.
-
-    undecided: parameter values, (n,), at which the cycles leave the stable states undecided.
-    """
+    """(status, message) of a row; a problem in the search for stability changes determines the status before
+    problems of the branches. special: maximum number of stored special points. undecided: parameter values,
+    (n,), at which the stable states are undecided because of the cycles."""
     message = "; ".join(filter(None, [row.message, branches.message]))
-    # The gravest first: without the changes of the straight rod, branches may be missing.
+    # The most serious problem first: without all changes of the straight rod, branches may be missing.
     if row.status is not ThresholdStatus.ok:
         return CoexistenceStatus[row.status.name], message
     if len(special_points_of(branches)) > special:
@@ -165,12 +159,9 @@ def _judged(
 
 @dataclass(frozen=True, slots=True)
 class StabilityInterval:
-    """Interval of the parameter that a branch covers between two successive special points, and the stability
-    there.
-
-    certain_range: interval surely covered. possible_range: interval covered at most, within the errors of the
-    special points. stable: 1 if the cycles are stable, 0 if unstable, -1 if undecided.
-    """
+    """Interval of the parameter that a branch covers between two successive special points, with the
+    stability of the cycles. certain_range, possible_range: the interval, shortened and extended by the errors
+    of the special points. stable: 1 if the cycles are stable, 0 if unstable, -1 if undecided."""
 
     certain_range: tuple[float, float]
     possible_range: tuple[float, float]
@@ -179,10 +170,8 @@ class StabilityInterval:
 
 def stable_cycles_at(values: Array, branches: BranchesOfRod, certify: bool) -> NDArray[np.int8]:
     """Existence of a stable cycle at each parameter value, (values,): 1 if a stable cycle exists, 0 if no
-    branch has a stable cycle, -1 if undecided.
-
-    certify: whether a 0 needs a proof that no Hopf point is missing.
-    """
+    branch has a stable cycle, -1 if undecided. certify: whether 0 requires a proof that no Hopf point is
+    missing."""
     complete = branches.status in (BranchStatus.ok, BranchStatus.special_undecided)
     known = complete and (branches.proved or not certify)
     found = np.full(len(values), 0 if known else -1, dtype=np.int8)
@@ -205,7 +194,8 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
         signs = {
             point.min_unstable_multipliers for point in curve.points[one.after + 1 : other.after + 1]
         } - {-1}
-        # Stability can change at special points only; cycles that disagree between two of them leave it open.
+        # Stability changes at special points only. If cycles between two special points disagree, it is
+        # undecided.
         stable = -1
         if signs == {0}:
             stable = 1
@@ -219,8 +209,8 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
 
 
 def _closed(point: SpecialPoint) -> int:
-    """Sign with which the error of a special point shrinks the interval surely covered: 1, or -1 at an end of
-    the parameter range, because the branch has a cycle exactly there."""
+    """Sign of the error of a special point in `certain_range`: 1 (the interval is shortened), or -1 at an end
+    of the parameter range, where the branch has a cycle exactly at the end."""
     return -1 if point.reason is EndReason.range_end else 1
 
 

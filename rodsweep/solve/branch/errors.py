@@ -1,12 +1,12 @@
-"""Error estimates of the cycles of a branch: of period, extrema and multiplier at equal parameter, and of the
-parameter.
+"""Error estimates for the cycles of a branch: errors of period, extrema and multiplier at equal parameter,
+and the error of the parameter.
 
-The cycle is solved at the same arc length on two finer meshes, one finer in space and one finer in time; this
-system is regular at a fold. The three cycles have slightly different parameter values. The finer cycles are
-therefore moved along the branch to the parameter value of the rough cycle. The remaining differences are the
-errors of period, extrema and multiplier at equal parameter. The error of the parameter is the parameter
-difference of the cycles at equal deflection. This error stays small near a Hopf point and near a fold, where
-all other quantities vary steeply with the parameter.
+The cycle is solved at the same arc length on two finer meshes, the first finer in space, the second finer in
+time; this system is regular at a fold. The three cycles have slightly different parameter values. The two
+finer cycles are therefore moved along the branch to the parameter value of the rough cycle. The remaining
+differences are the errors of period, extrema and multiplier at equal parameter. The error of the parameter is
+the parameter difference of the cycles at equal deflection. This error stays small near a Hopf point and near
+a fold, where all other quantities vary steeply with the parameter.
 """
 
 from dataclasses import dataclass, replace
@@ -35,20 +35,20 @@ class BranchErrorSettings:
     """Settings for the error estimates of the cycles of a branch."""
 
     max_sensitivity: float = 120.0
-    """Limit of the sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p. Above this limit, as
-    near a Hopf point or a fold, errors at equal p may exceed the accuracy in proportion to the sensitivity,
-    because p has an error too. The limit is a fifth above the documented limit of 100, because a user takes
-    the sensitivity between two cycles."""
+    """Limit of the sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p. At larger
+    sensitivities, as near a Hopf point or a fold, the allowed errors at equal p are larger than the accuracy,
+    by the factor sensitivity/limit, because p has an error too. The limit is a fifth above the documented
+    limit of 100, because a user estimates the sensitivity from two cycles."""
     min_deflection_share: float = 0.1
-    """Smallest derivative of the deflection by arc length, in units of the derivative of the parameter, in
-    the parameter error at equal deflection. This error is undefined where the deflection is stationary along
-    the branch."""
+    """Lower limit of |d(deflection)/ds| in the parameter error at equal deflection, divided by
+    |d(parameter)/ds|, s: arc length. Without this limit the error would be infinite where the deflection is
+    stationary along the branch."""
     interpolation_factor: float = 2.0
     """Safety factor on interpolated errors."""
     min_error: float = 1e-16
-    """Smallest error; smaller differences between meshes are rounding errors."""
+    """Lower limit of an error before its logarithm is interpolated; smaller errors are rounding errors."""
     newton_tolerance_share: float = 0.01
-    """Tolerance of Newton's method on the two finer meshes, in units of the accuracy."""
+    """Tolerance of Newton's method on the two finer meshes, divided by the accuracy."""
     sensitivity_step: float = 1e-4
     """Arc length of the difference quotient for the sensitivity of the largest tip y."""
 
@@ -58,8 +58,7 @@ BRANCH_ERRORS = BranchErrorSettings()
 
 @dataclass(frozen=True, eq=False)
 class BranchDerivatives:
-    """Derivatives of a branch at one of its cycles: tangent, curvature and multiplier rate, in the units of a
-    scale."""
+    """Derivatives of a branch by arc length at a cycle, in the units of `scale`."""
 
     scale: Scale
     tangent: Array
@@ -70,7 +69,7 @@ class BranchDerivatives:
     curvature: float
     """Second derivative of the scaled parameter coordinate by arc length."""
     multiplier_rate: float
-    """Derivative of the largest multiplier by arc length."""
+    """Modulus of the derivative of the largest multiplier by arc length."""
 
     @property
     def rate(self) -> float:
@@ -78,11 +77,9 @@ class BranchDerivatives:
         return float(self.ahead[2])
 
     def slide(self, off: float) -> float:
-        """Arc length over which the scaled parameter coordinate changes by `off`.
-
-        Near a fold, where the parameter may never change by `off`, the result is 2 sqrt(|off/curvature|), an
-        upper bound of any such length.
-        """
+        """Arc length over which the scaled parameter coordinate changes by `off`. Near a fold the parameter
+        may never change by `off`; the result there has the modulus 2 sqrt(|off/curvature|), an upper bound of
+        the arc length."""
         # Away from a fold the quadratic term changes the linear solution by an eighth at most.
         if self.rate**2 >= 4 * abs(self.curvature * off):
             return off / self.rate
@@ -94,12 +91,9 @@ class BranchDerivatives:
 
 @dataclass(frozen=True, eq=False)
 class BranchCalibration:
-    """Measured errors of a mesh at a cycle of a branch.
-
-    at_parameter: errors at equal parameter. parameter_errors: relative errors of the parameter at equal
-    deflection, in space and in time, (2,). sensitivity: |(p/y) dy/dp| of the largest tip y to the parameter
-    p.
-    """
+    """Measured errors of a mesh at a cycle of a branch. at_parameter: errors at equal parameter.
+    parameter_errors: relative errors of the parameter at equal deflection, caused by the mesh in space and by
+    the mesh in time, (2,). sensitivity: |(p/y) dy/dp|, p: parameter, y: largest tip y."""
 
     at_parameter: Calibration
     parameter_errors: Array
@@ -110,11 +104,12 @@ class BranchCalibration:
         return self.at_parameter.mesh
 
     def errors(self, accuracy: float) -> CycleErrors:
-        """Errors of the cycle at equal parameter, not smaller than a share of the accuracy."""
+        """Errors of the cycle at equal parameter, at least a fraction of the relative accuracy."""
         return self.at_parameter.errors(accuracy)
 
     def parameter_error(self, accuracy: float) -> float:
-        """Relative error of the parameter at equal deflection, with a safety factor."""
+        """Relative error of the parameter at equal deflection, with a safety factor, at least a fraction of
+        the relative accuracy."""
         return max(
             CALIBRATION.safety_factor * float(self.parameter_errors.sum()),
             CYCLE_ERRORS.min_error_share * accuracy,
@@ -122,8 +117,8 @@ class BranchCalibration:
         )
 
     def largest(self, accuracy: float) -> float:
-        """The error that is compared with the relative accuracy, reduced where the sensitivity exceeds
-        `max_sensitivity`."""
+        """The error that must not exceed the relative accuracy: the largest error, divided by
+        sensitivity/`max_sensitivity` if this ratio exceeds 1."""
         return self._demanded.errors(accuracy).largest
 
     def planned(self, accuracy: float) -> OrbitMesh:
@@ -136,9 +131,9 @@ class BranchCalibration:
 
     @cached_property
     def _demanded(self) -> Calibration:
-        """Errors that determine the mesh, reduced as in `largest`; they include the parameter error."""
-        # Where y is steep in p, errors at equal p grow with the slope although the mesh is as good as
-        # elsewhere.
+        """Errors from which the mesh is chosen: errors at equal parameter, reduced as in `largest`, and the
+        parameter error."""
+        # Errors at equal p are proportional to the slope dy/dp; a steep slope is no defect of the mesh.
         steep = max(1.0, self.sensitivity / BRANCH_ERRORS.max_sensitivity)
         parts = [self.at_parameter.space / steep, self.at_parameter.time / steep]
         for part, own in zip(parts, self.parameter_errors, strict=True):
@@ -155,13 +150,10 @@ class BranchCalibration:
         return replace(self.at_parameter, space=parts[0], time=parts[1])
 
     def towards(self, other: "BranchCalibration", share: float, sensitivity: float) -> "BranchCalibration":
-        """Interpolated errors of a cycle that lies on the branch between two measured cycles with the same
-        mesh.
-
-        other: errors of the second measured cycle. share: fraction of the arc length to this cycle.
-        sensitivity: |(p/y) dy/dp| at the interpolated cycle. Each error is interpolated geometrically and
-        multiplied by BRANCH_ERRORS.interpolation_factor.
-        """
+        """Interpolated errors of a cycle on the branch between two measured cycles with the same mesh. other:
+        errors of the second measured cycle. share: fraction of the arc length from the first measured cycle
+        to the second at which the interpolated cycle lies. sensitivity: |(p/y) dy/dp| of the interpolated
+        cycle. See `_interpolated` for the formula."""
         mean = [
             _interpolated(one, another, share)
             for one, another in (
@@ -175,8 +167,8 @@ class BranchCalibration:
 
 
 def _interpolated(one: Array, other: Array, share: float) -> Array:
-    """Geometric interpolation at a fraction `share` between two arrays of errors of any common shape, times
-    `interpolation_factor`, and at most the larger of both errors."""
+    """Geometric interpolation at the fraction `share` between two arrays of errors of equal shape, times
+    `interpolation_factor`, but at most the larger of the two errors."""
     # Errors of a mesh change by factors along a branch, so their logarithms are interpolated.
     logarithms = np.log(np.maximum([one, other], BRANCH_ERRORS.min_error))
     means = np.exp(logarithms[0] + share * (logarithms[1] - logarithms[0]))
@@ -188,7 +180,8 @@ def measured_errors(
     found: ConvergedOrbit, derivatives: BranchDerivatives, accuracy: float, before: Calibration | None
 ) -> BranchCalibration:
     """Errors of the mesh of the cycle `found`, measured by comparison with two finer meshes; raises
-    Unsolvable. before: calibration at a previous cycle, from which the convergence rates follow."""
+    Unsolvable. derivatives: of the branch at `found`. before: calibration at a previous cycle, from which
+    convergence rates are estimated; None if there is no such cycle."""
     mesh = mesh_of(found.orbit)
     orbit = found.orbit
     finer, share = finer_meshes(mesh)
@@ -201,7 +194,7 @@ def measured_errors(
             target, found, BRANCH_ERRORS.newton_tolerance_share * accuracy, COMPARISON.matrix_distance
         )
         part[:] = _difference(rough, multipliers, fine, derivatives)
-    # The mesh finer in time removes only this share of the error in time.
+    # The mesh that is finer in time removes only the fraction `share` of the error in time.
     parts[1] /= share
     known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, before)
     return BranchCalibration(known, parts[:, -1], sensitivity_of(rough, derivatives))
@@ -210,19 +203,17 @@ def measured_errors(
 def _difference(
     rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, derivatives: BranchDerivatives
 ) -> Array:
-    """Differences, (6,), of a cycle on a rough mesh from the same cycle on a fine mesh.
-
-    The first five differences, as in `Calibration.space`, hold at the parameter value of the rough cycle. The
-    last is the parameter difference at equal deflection. multipliers: nontrivial multipliers of the rough
-    cycle, (rank - 1,).
-    """
+    """Differences, (6,), between a cycle on a rough mesh and the same cycle on a fine mesh. The first five
+    differences are at the parameter value of the rough cycle, in the order of `Calibration.space`. The last
+    is the parameter difference at equal deflection. rough, multipliers: path and nontrivial multipliers,
+    (rank - 1,), of the rough cycle. derivatives: of the branch at the rough cycle."""
     orbit = rough.orbit
     scale = derivatives.scale
     deflection, _, off = scale.components(orbit) - scale.components(fine.orbit)
     length = derivatives.slide(off)
     target = mesh_of(fine.orbit)
     along = np.append(carried_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1])
-    # The two cycles differ in the parameter; the fine cycle is moved along the branch to the same value.
+    # The fine cycle is moved along the branch to the parameter value of the rough cycle.
     slid = moved_orbit(fine.orbit, scale.name, length * along)
     change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(
         length * derivatives.multiplier_rate

@@ -33,17 +33,17 @@ from .work import fraction_done
 
 @dataclass(frozen=True, slots=True)
 class BranchLimits:
-    """Limits of all branches of a rod: range, number of cycles, and special points where a branch may end."""
+    """Limits of the branches of a rod: range, number of cycles, and special points where a branch may end."""
 
     hopfs: Sequence[HopfBirth]
     """Hopf points of the rod within the range."""
     ends: tuple[float, float]
-    """Smallest and largest coordinate of the continuation parameter; a branch ends at either."""
+    """Smallest and largest coordinate of the continuation parameter, at which branches end."""
     reasons: tuple[EndReason, EndReason]
     """Reasons for the end of a branch at the smallest and at the largest coordinate."""
     accuracy: float
     max_cycles: int
-    """Maximum number of cycles of the branch."""
+    """Maximum number of cycles of one branch."""
     workspace: NewtonWorkspace
     """Memory of Newton's matrices."""
     breakings: Sequence[SymmetryBreaking] = ()
@@ -51,7 +51,7 @@ class BranchLimits:
 
 
 def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
-    """The branch from the Hopf point `limits.hopfs[number]`; a failure becomes its last special point."""
+    """The branch from the Hopf point `limits.hopfs[number]`; its last special point stores a failure."""
     hopf = limits.hopfs[number]
     curve = BranchCurve(start_hopf=number)
     curve.add(hopf_as_special_point(hopf))
@@ -60,7 +60,7 @@ def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
 
 def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> BranchCurve:
     """The branch of asymmetric cycles along the parameter `name` from the symmetry breaking
-    `limits.breakings[which]`; a failure becomes its last special point."""
+    `limits.breakings[which]`; a failure is stored in its last special point."""
     breaking = limits.breakings[which]
     curve = BranchCurve(start_hopf=-1, start_breaking=breaking)
     curve.add(replace(breaking.point, message="", orbit=None))
@@ -72,8 +72,7 @@ def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> Bra
 
 
 def _followed(curve: BranchCurve, limits: BranchLimits, first: Callable[[], ArcPoint]) -> BranchCurve:
-    """The branch `curve` with its first special point, followed to its end. first: returns the first
-    cycle."""
+    """The branch `curve` with its first special point, followed to its end. first: solves the first cycle."""
     if limits.max_cycles < 1:
         curve.end(BranchEnd(_end_beside(curve, EndReason.list_full), complete=False, list_full=True))
         return curve
@@ -101,9 +100,10 @@ def follow_from_cycle(curve: BranchCurve, first: ArcPoint, limits: BranchLimits)
 
 
 def _place_on(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> SolvePosition:
-    """Progress along a branch: the parameter at its last cycle `start`, and the fraction of the work done."""
+    """Progress along a branch: text with the parameter at its last cycle `start`, and fraction of the
+    work."""
     name = start.scale.name
-    # The end of the range towards which the parameter moves at present; it changes at a fold.
+    # The end of the range towards which the parameter moves at present.
     aim = limits.ends[1 if start.ahead[-1] > 0 else 0]
     value = PARAMETERS[name].value(start.at)
     aim_value = PARAMETERS[name].value(aim)
@@ -114,7 +114,7 @@ def _place_on(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> Solv
 
 
 def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
-    """The end of a branch without any cycle, at the first special point of the branch."""
+    """The end of a branch without cycles, at its first special point."""
     born = curve.special[0]
     return replace(
         born,
@@ -127,7 +127,7 @@ def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> Spe
 
 
 def _beyond(point: ArcPoint, limits: BranchLimits) -> int:
-    """Index of the end of the range beyond which a cycle lies: 0 below the range, 1 above, -1 within."""
+    """0 if a cycle lies below the parameter range, 1 if it lies above, -1 if it lies within."""
     low, high = limits.ends
     if point.at < low:
         return 0
@@ -135,7 +135,8 @@ def _beyond(point: ArcPoint, limits: BranchLimits) -> int:
 
 
 def _next(trail: BranchRecord, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """The next cycle after `start`, appended to the branch after the special points between; or the end."""
+    """Returns the next cycle after `start`, or the end of the branch. The special points between the two
+    cycles and the next cycle are appended to the branch."""
     curve = trail.curve
     if len(curve.points) >= limits.max_cycles:
         return BranchEnd(end_point(start, EndReason.list_full), complete=False, list_full=True)
@@ -149,9 +150,9 @@ def _next(trail: BranchRecord, start: ArcPoint, limits: BranchLimits) -> ArcPoin
         if range_end is not None:
             end = cycle_at_range_end(start, end, range_end, limits.accuracy)
         if range_end is not None and _hides_corner(start, end):
-            range_end = None  # a cycle half way comes first
+            range_end = None  # first a cycle at half the step
             end = cycle_at_length(start, arc_length_between(start, end) / 2, limits.accuracy)
-        # h1 = 0: the model ends here, whatever the discrete equations still solve.
+        # h1 = 0: the model is not valid beyond, even if the discrete equations have solutions.
         if least_stretch_of_cycle(end) <= 0:
             return BranchEnd(
                 special_point_between(SpecialKind.left_the_model, start, end, limits.accuracy), complete=True
@@ -186,8 +187,8 @@ def _passed_mirror_image(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -
 
 
 def _hides_corner(start: ArcPoint, end: ArcPoint) -> bool:
-    """Whether the largest tip y may have a corner before the last cycle `end`, too far from `end` for a
-    figure.
+    """Whether the largest tip y has a corner on the last step, and the step is too long for a figure of the
+    corner.
 
     At a corner a different maximum of y(t) becomes the largest. A figure locates a corner from two cycles
     before and two cycles after the corner.
@@ -198,18 +199,18 @@ def _hides_corner(start: ArcPoint, end: ArcPoint) -> bool:
 
 
 def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
-    """Whether the bending moments at t = 0 have opposite signs at two cycles, because a Hopf point lies
-    between. The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
+    """Whether a Hopf point lies between two cycles: the bending moments at t = 0 then have opposite signs.
+    The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
     mesh = mesh_of(end.orbit)
     layout = end.orbit.form.layout
     one = layout.field(mesh.carry(start.orbit).start, "m3")
-    # The phase fixes t = 0 at the largest y; a sign change of the moments there means that the cycle passed
-    # through amplitude 0.
+    # t = 0 is the time of the largest y; the moments at this time change sign where the amplitude passes 0.
     return float(one @ layout.field(end.orbit.start, "m3")) < 0
 
 
 def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """The Hopf point between two cycles where the branch ends; or the first cycle, for a shorter step."""
+    """The end of a branch at a Hopf point between two cycles; or `start` with half the step length if its
+    amplitude is too large for an extrapolation to the Hopf point."""
     shorter = arc_length_between(start, end) / 2
     if start.cycle.measures.tip_y_max > BRANCH_END.max_last_amplitude:
         if shorter < ARC_STEPS.min_length:
@@ -236,7 +237,7 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
 
 def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
     """The end of an asymmetric branch at a symmetry breaking between two cycles; or `start` with half the
-    step length, if the cycles are still too asymmetric."""
+    step length if the cycles are too asymmetric for an extrapolation to the symmetry breaking."""
     which = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
     if which is None:
         return replace(start, length=arc_length_between(start, end) / 2)

@@ -15,7 +15,7 @@ ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
 
 
 def range_end_condition(start: ArcPoint, limit: float) -> BorderCondition:
-    """The condition that the parameter coordinate of a cycle equals `limit`, in the scale of the cycle
+    """The condition that the parameter coordinate of a cycle equals `limit`, in the units of the cycle
     `start`."""
     return BorderCondition(start.scale, ALONG_PARAMETER, limit / start.scale.coordinate_unit)
 
@@ -24,14 +24,12 @@ def cycle_at_range_end(
     start: ArcPoint, end: ArcPoint, range_end: BorderCondition, accuracy: float
 ) -> ArcPoint:
     """The cycle at an end of the parameter range, between the cycles `start` and `end`; raises Unsolvable.
-
-    range_end: condition that the cycle fulfils.
-    """
+    range_end: condition that the cycle lies at this end of the range."""
     scale = start.scale
     segment = BranchSegment(start, end)
 
     def beyond(length: float) -> float:
-        # On the predicted cubic; the only cycle is solved below, with the exact condition.
+        # Evaluated on the predicted cubic; only the final cycle is solved, below.
         return -range_end.residual(segment.predicted(length))
 
     ends = beyond(0.0), beyond(segment.length)

@@ -25,23 +25,23 @@ class BranchMeshSettings:
     max_meshes: int = 8
     """Maximum number of meshes tried for one cycle."""
     max_cheaper_cost: float = 0.5
-    """Largest cost, in units of the cost of the present mesh, of a cheaper mesh that replaces the present
-    mesh."""
+    """A sufficient mesh is replaced by a cheaper mesh only if the ratio of the new cost to the present cost
+    is at most this number."""
     planned_error: float = 0.5
-    """Error for which a mesh is planned, in units of the accuracy. It is below 1 so that the mesh suffices
-    for the next cycles too."""
+    """Error for which a mesh is chosen, divided by the accuracy; below 1, so that the mesh suffices for the
+    next cycles too."""
     min_rate_share: float = 0.7
-    """Smallest derivative of the parameter by arc length at a cycle with interpolated errors, in units of the
-    smaller derivative at the two measured cycles. Near a fold the derivative is smaller, and the measured
-    errors are no bound."""
+    """Errors are interpolated at a cycle only if |d(parameter)/ds|, s: arc length, is at least this number
+    times the smaller value of the two measured cycles. Near a fold this derivative is smaller, and the
+    measured errors are no bound."""
     max_tail_growth: float = 2.0
-    """Growth of the errors since both measured cycles, estimated by the coefficient tails, above which errors
-    are measured instead of interpolated."""
+    """Errors are measured, not interpolated, if the coefficient tails predict that they have grown by more
+    than this factor since each of the two measured cycles."""
     max_unmeasured: int = 3
     """Maximum number of steps between two cycles with measured errors."""
     remeasure_growth: float = 4.0
-    """Growth of the errors since the last measurement, estimated by the coefficient tails, above which the
-    errors are measured again."""
+    """Errors are measured again if the coefficient tails predict that they have grown by more than this
+    factor since the last measurement."""
 
 
 BRANCH_MESH = BranchMeshSettings()
@@ -50,19 +50,20 @@ BRANCH_MESH = BranchMeshSettings()
 def first_measured_cycle(
     found: ConvergedOrbit, scale: Scale, side: Array, born: float, accuracy: float
 ) -> ArcPoint:
-    """The first cycle of a branch, with measured errors within the accuracy, on a finer mesh if necessary;
-    raises Unsolvable.
+    """The solved orbit `found` as the first cycle of a branch, with measured errors within the accuracy, on a
+    finer mesh if necessary; raises Unsolvable.
 
     side: direction of the branch in components (deflection, log period, parameter), (3,). born: arc length
-    from the special point where the branch starts; parameter and multipliers are quadratic in this length.
+    from the special point where the branch starts; parameter and multipliers are quadratic in this arc
+    length.
     """
     derivatives = branch_derivatives(
         found, scale, tangent_at(found.orbit, scale, side, bordered_matrix_of(found))
     )
     multipliers = multipliers_of(found)[0]
     lost = abs(multipliers[0] - 1) if len(multipliers) else 0.0
-    # At the Hopf point the parameter's rate is 0 and a second multiplier is 1. From there the rate is linear
-    # and the multiplier quadratic in the deflection.
+    # At the Hopf point the derivative of the parameter is 0 and a second multiplier is 1. Near the Hopf point
+    # this derivative is linear, and the multiplier is quadratic, in the deflection.
     derivatives = replace(derivatives, curvature=derivatives.rate / born, multiplier_rate=2 * lost / born)
     calibration = measured_errors(found, derivatives, accuracy, None)
     cycle = with_calibrated_errors(calibration.at_parameter, found, accuracy)
@@ -75,7 +76,8 @@ def first_measured_cycle(
 
 
 def measurement_due(point: ArcPoint) -> bool:
-    """Whether the errors of a cycle must be measured, because the last measured cycle is too far away."""
+    """Whether the errors of a cycle must be measured: the last measured cycle is too many steps away, or the
+    errors have grown too much since."""
     growth = float(point.calibration.at_parameter.on_branch(point.orbit).error_growth.max())
     return point.unmeasured >= BRANCH_MESH.max_unmeasured or growth > BRANCH_MESH.remeasure_growth
 
@@ -89,7 +91,7 @@ def with_measured_errors(point: ArcPoint, accuracy: float) -> ArcPoint:
 
 
 def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: float) -> ArcPoint:
-    """The same cycle with the errors of a calibration that holds at this cycle."""
+    """The same cycle with the errors of `calibration`, which was measured or interpolated at this cycle."""
     cycle = with_calibrated_errors(calibration.at_parameter, point.cycle.converged, accuracy)
     return replace(point, cycle=cycle, calibration=calibration, unmeasured=0, arc_since_measured=0.0)
 
@@ -98,11 +100,8 @@ def on_sufficient_mesh(
     point: ArcPoint, accuracy: float, condition: BorderCondition | None = None
 ) -> ArcPoint:
     """The same cycle with measured errors within the accuracy, on a mesh chosen for this accuracy; raises
-    Unsolvable if no allowed mesh suffices.
-
-    A sufficient mesh is replaced only by a much cheaper mesh. condition: equation that identifies the cycle
-    on every mesh; by default its arc length.
-    """
+    Unsolvable if no allowed mesh suffices. condition: equation that defines the same cycle on every mesh; by
+    default the condition that its arc length is unchanged."""
     condition = condition or point.condition(0.0)
     finest = False
     for _ in range(BRANCH_MESH.max_meshes):
@@ -124,8 +123,8 @@ def on_sufficient_mesh(
 
 
 def solved_on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accuracy: float) -> ArcPoint:
-    """The same cycle solved on another mesh, without measured errors; raises Unsolvable. condition: equation
-    that identifies the cycle."""
+    """The same cycle solved on the mesh `mesh`, without measured errors; raises Unsolvable. condition:
+    equation that defines the same cycle on every mesh."""
     found = condition.on(mesh, point.cycle.converged, newton_tolerance(accuracy), matrix_distance(accuracy))
     tangent = tangent_at(found.orbit, point.scale, point.ahead, bordered_matrix_of(found))
     known = point.derivatives
@@ -148,9 +147,9 @@ def with_errors_in_accuracy(
     """The cycles `points`, which follow the measured cycle `last`, all with errors within the accuracy;
     raises Unsolvable.
 
-    Errors are measured at the last of `points` and interpolated at the others. A cycle that is too inaccurate
-    is solved again on the mesh of the last of `points`. condition: equation that identifies the last of
-    `points` on every mesh; by default its arc length.
+    Errors are measured at the last cycle and interpolated at the cycles before. A cycle that is too
+    inaccurate is solved again on the mesh of the last cycle. condition: equation that defines the last cycle
+    on every mesh; by default the condition that its arc length is unchanged.
     """
     *between, end = points
     whole = end.arc_since_measured
@@ -169,10 +168,10 @@ def with_errors_in_accuracy(
 
 
 def _on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
-    """The cycle `point` solved again on the mesh of the later cycle `end`, with errors calibrated there;
-    raises Unsolvable."""
+    """The cycle `point` solved again on the mesh of the later cycle `end`, with the errors of `end`, and on a
+    better mesh if these errors are too large; raises Unsolvable."""
     solved = solved_on_mesh(point, mesh_of(end.orbit), point.condition(0.0), accuracy)
-    # With share 1 the errors are those of `end`, on whose mesh the cycle now is.
+    # With share 1 the errors are the errors of `end`, because the cycle now has the mesh of `end`.
     solved = _with_errors_between(end, solved, end, 1.0, accuracy)
     return on_sufficient_mesh(solved, accuracy)
 
@@ -183,9 +182,9 @@ def _with_errors_between(
     """The cycle `point` with errors interpolated between the measured cycles `last` and `end`, all on the
     same mesh; raises Unsolvable.
 
-    share: fraction of the arc length from `last` to `end`. The errors of `point` are measured instead if its
-    coefficient tails are larger, or if the parameter changes more slowly, as near a fold: the errors at
-    `last` and `end` are then no bound.
+    share: fraction of the arc length from `last` to `end` at which `point` lies. The errors of `point` are
+    measured instead if its coefficient tails are larger than at `last` and `end`, or if the parameter changes
+    more slowly, as near a fold: the errors at `last` and `end` are then no bound.
     """
     ends = (last, end)
     slow = abs(point.parameter_rate) < BRANCH_MESH.min_rate_share * min(

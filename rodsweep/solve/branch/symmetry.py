@@ -1,11 +1,11 @@
-"""Symmetry breaking of cycles, and the branch of asymmetric cycles born there.
+"""Symmetry breaking of cycles, and the branch of asymmetric cycles that starts at a symmetry breaking.
 
 A symmetric cycle equals its own mirror image half a period later. A branch of asymmetric cycles crosses the
 symmetric branch where a multiplier of the half-period map composed with the reflection is -1. The two halves
 of the asymmetric branch are mirror images of each other, shifted by half a period. Only one half is followed,
 with cycles solved over the whole period. Near the crossing the deflection at t = 0 is linear in the
-asymmetry, parameter and period are quadratic. An asymmetric branch that returns to a symmetric cycle
-continues on its own mirror image, as a branch does at a Hopf point.
+asymmetry; parameter and period are quadratic. Where an asymmetric branch returns to a symmetric cycle, it
+continues as its own mirror image. A branch that ends at a Hopf point has the same property.
 """
 
 from collections.abc import Sequence
@@ -34,43 +34,44 @@ from .special.point import SpecialKind, SpecialPoint
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchEndSettings:
-    """Settings for the ends of a branch: at a Hopf point, at a symmetry breaking, at an end of the parameter
-    range."""
+    """Settings for the ends of a branch at a Hopf point, at a symmetry breaking, or at an end of the
+    parameter range."""
 
     max_last_amplitude: float = 0.06
-    """Largest tip y, in L, of a cycle from which the Hopf point at the end of the branch is extrapolated;
-    larger cycles get shorter steps."""
+    """The Hopf point at the end of a branch is extrapolated only from a cycle whose largest tip y, in L, is
+    at most this number; otherwise the step is shortened."""
     max_last_asymmetry: float = 0.2
-    """Largest asymmetry, in units of the largest bending moment, of a cycle from which the symmetric cycle at
-    the end of the branch is extrapolated; more asymmetric cycles get shorter steps."""
+    """The symmetric cycle at the end of a branch is extrapolated only from a cycle whose asymmetry, divided
+    by its largest bending moment, is at most this number; otherwise the step is shortened."""
     min_asymmetry: float = 0.02
-    """Asymmetry, in units of the largest bending moment, below which shorter steps do not improve the
-    extrapolation to the symmetric cycle."""
+    """If the asymmetry, divided by the largest bending moment, is at most this number, the step is not
+    shortened: the extrapolation to the symmetric cycle would not improve."""
     lost_asymmetry_ratio: float = 0.1
-    """Ratio of the asymmetries after and before a step, below which the step has reached or passed a
-    symmetric cycle."""
+    """A step has reached or passed a symmetric cycle if the ratio of the asymmetry at its end to the
+    asymmetry at its start is less than this number."""
     asymmetry_ratios: tuple[float, float] = 0.5, 2.0
-    """Allowed range of the asymmetry of the first asymmetric cycle, in units of the predicted asymmetry."""
+    """Smallest and largest allowed ratio of the solved to the predicted asymmetry of the first asymmetric
+    cycle."""
     extrapolation_tolerance: float = 0.3
-    """Tolerance for the extrapolated parameter and period of a Hopf point or a symmetry breaking, in units of
-    the distance of the last cycle from this point."""
+    """Tolerance of the extrapolated parameter and period of a Hopf point or a symmetry breaking, divided by
+    their difference between the last cycle and this point."""
     parameter_tolerance: float = 1e-6
-    """Relative tolerance for the extrapolated parameter, added to the tolerance by distance; the accuracy
-    applies if larger."""
+    """Relative tolerance of the extrapolated parameter, added to the tolerance by `extrapolation_tolerance`;
+    the larger of this number and the accuracy is used."""
     period_tolerance: float = 1e-3
-    """Relative tolerance for the extrapolated period, added to the tolerance by distance; at a symmetry
-    breaking the accuracy applies if larger."""
+    """Relative tolerance of the extrapolated period, added to the tolerance by `extrapolation_tolerance`; at
+    a symmetry breaking the larger of this number and the accuracy is used."""
     range_end_tolerance: float = 1e-6
-    """Tolerance of the predicted arc length to the end of the parameter range, in units of the step; Newton's
-    method then solves exactly at this end."""
+    """Tolerance of the predicted arc length to the end of the parameter range, divided by the step. Newton's
+    method then solves the cycle exactly at this end."""
     range_end_error: float = 1e-15
     """Relative error of the parameter at an end of the range."""
     max_peak_shift: float = 0.05
-    """Time between the largest tip y of two successive cycles, in periods, beyond which two different maxima
-    of y(t) are the largest."""
+    """If the times of the largest tip y of two successive cycles differ by more than this fraction of the
+    period, the largest tip y is attained at different maxima of y(t)."""
     max_step_with_corner: float = 0.02
-    """Longest last step, in arc length, that may contain a corner of the largest tip y; a longer step is
-    halved."""
+    """Longest last step, in arc length, if the curve of the largest tip y has a corner on this step; a longer
+    step is halved."""
 
 
 BRANCH_END = BranchEndSettings()
@@ -81,7 +82,7 @@ class AsymmetricStartSettings:
     """Settings for the first asymmetric cycle near a symmetry breaking."""
 
     first_relative_changes: tuple[float, ...] = (0.03, 0.01, 0.1)
-    """Relative changes from the symmetric cycle to the prediction of the first asymmetric cycle, tried in
+    """Relative differences between the predicted first asymmetric cycle and the symmetric cycle, tried in
     this order."""
 
 
@@ -90,8 +91,8 @@ ASYMMETRIC_START = AsymmetricStartSettings()
 
 @dataclass(frozen=True, slots=True)
 class SymmetryBreaking:
-    """A symmetry breaking on a branch. branch: number of the branch, from 1. index: index in the list of
-    special points of this branch, from 0."""
+    """A symmetry breaking on a branch. branch: number of the branch, from 1. index: index of the symmetry
+    breaking in the list of special points of this branch, from 0."""
 
     branch: int
     index: int
@@ -99,7 +100,8 @@ class SymmetryBreaking:
 
 
 def symmetry_breakings_in(branches: Sequence[Sequence[SpecialPoint]]) -> list[SymmetryBreaking]:
-    """Symmetry breakings with a known cycle, from the special points of each branch."""
+    """The symmetry breakings whose cycle is known, among the special points of all branches. branches:
+    special points of each branch."""
     return [
         SymmetryBreaking(number, place, point)
         for number, special in enumerate(branches, 1)
@@ -109,8 +111,8 @@ def symmetry_breakings_in(branches: Sequence[Sequence[SpecialPoint]]) -> list[Sy
 
 
 def extended_to_whole_period(orbit: Orbit) -> Orbit:
-    """A symmetric orbit, which stores half a period, extended to the whole period by its symmetry, on twice
-    as many intervals."""
+    """A symmetric orbit, which stores half a period, extended by its symmetry to the whole period and to
+    twice as many time intervals."""
     intervals = 2 * orbit.intervals
     times = 2 * node_times(intervals, orbit.stages)
     later = times > 1
@@ -122,8 +124,8 @@ def extended_to_whole_period(orbit: Orbit) -> Orbit:
 
 
 def asymmetry(orbit: Orbit) -> Array:
-    """Asymmetry of an orbit: sum of the bending moments at t = 0 and half a period later, (nodes,); 0 for a
-    symmetric orbit."""
+    """Asymmetry of an orbit: bending moments at t = 0 plus bending moments half a period later, (nodes,); 0
+    for a symmetric orbit."""
     return _moments(orbit.start, orbit) + _moments(orbit.at(np.array([0.5]))[0], orbit)
 
 
@@ -136,7 +138,7 @@ def first_asymmetric_cycle(
     breaking: SymmetryBreaking, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> ArcPoint:
     """The first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`; raises
-    Unsolvable. Of two mirror images, the cycle with the larger tip y is chosen."""
+    Unsolvable. The cycle has a larger largest tip y than its mirror image."""
     if breaking.point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
     whole = extended_to_whole_period(breaking.point.orbit)
@@ -148,8 +150,8 @@ def first_asymmetric_cycle(
     for share in ASYMMETRIC_START.first_relative_changes:
         try:
             ways = [moved_orbit(whole, name, sign * share * way) for sign in (1, -1)]
-            # Both signs give mirror images. The cycle with the larger y is followed, so that the result does
-            # not depend on the sign of the null vector.
+            # The two signs give mirror images. The cycle with the larger y is followed, so that the result
+            # does not depend on the sign of the null vector.
             start = max(ways, key=lambda orbit: CyclePath(orbit).extrema["tip_y_max"])
             return _first_cycle(start, matrix, deflection_of(start) - deflection_of(whole), accuracy)
         except Unsolvable as error:
@@ -160,7 +162,7 @@ def first_asymmetric_cycle(
 def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: float) -> ArcPoint:
     """The asymmetric cycle near the prediction `start`, as the first cycle of a branch; raises Unsolvable.
 
-    whole: bordered matrix of the symmetric cycle, over the whole period. change: deflection of the prediction
+    whole: bordered matrix of the symmetric cycle over the whole period. change: deflection of the prediction
     minus deflection of the symmetric cycle.
     """
     scale = whole.scale
@@ -181,15 +183,14 @@ def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: f
 def reaches_symmetric_cycle(
     start: ArcPoint, end: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float
 ) -> bool:
-    """Whether an asymmetric branch reaches or passes a symmetric cycle between two cycles: the asymmetry
-    changes sign or almost vanishes.
+    """Whether an asymmetric branch reaches or passes a symmetric cycle between two cycles.
 
-    On a mesh without the symmetry of the cycle, the crossing of the branches is perturbed: the parameter then
-    turns back near a known symmetry breaking before the asymmetry vanishes. known: symmetry breakings.
+    The asymmetry then changes sign or almost vanishes; or the parameter turns back near a symmetry breaking
+    in `known`, because a mesh without the symmetry of the cycle perturbs the crossing of the branches.
     """
     reference = asymmetry(start.orbit)
     other = end.orbit.on(start.orbit.form.mesh, end.orbit.intervals, end.orbit.stages)
-    # The asymmetry changes sign where the branch passes a symmetric cycle, or falls steeply just before.
+    # The asymmetry changes sign where the branch passes a symmetric cycle, and is small near this cycle.
     if float(asymmetry(other) @ reference) < BRANCH_END.lost_asymmetry_ratio * float(reference @ reference):
         return True
     return (
@@ -200,7 +201,7 @@ def reaches_symmetric_cycle(
 
 
 def _relative_asymmetry(start: ArcPoint) -> float:
-    """Largest nodal asymmetry of a cycle, in units of its largest bending moment."""
+    """Largest nodal asymmetry of a cycle, divided by its largest bending moment."""
     orbit = start.orbit
     return float(np.abs(asymmetry(orbit)).max() / np.abs(_moments(orbit.points, orbit)).max())
 
@@ -213,8 +214,8 @@ def symmetry_breaking_between(
     start: ArcPoint, end: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float
 ) -> int | None:
     """Index of the symmetry breaking in `known` between two cycles of an asymmetric branch; -1 if `known`
-    does not contain it, None if shorter steps must decide. Raises Unsolvable if no shorter step is
-    allowed."""
+    does not contain this symmetry breaking; None if `start` is too asymmetric, so that a shorter step is
+    needed. Raises Unsolvable if no shorter step is allowed."""
     which = _nearest(start, known, accuracy) if _nearly_symmetric(start) else -1
     if which >= 0 or _relative_asymmetry(start) <= BRANCH_END.min_asymmetry:
         return which
@@ -224,12 +225,12 @@ def symmetry_breaking_between(
 
 
 def _nearest(start: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float) -> int:
-    """Index of the symmetry breaking in `known` to which the asymmetric branch extrapolates: there the
-    linearly extrapolated asymmetry vanishes. -1 if no breaking in `known` matches."""
+    """Index of the symmetry breaking in `known` with the parameter and period at which the extrapolated
+    asymmetry of the branch vanishes; -1 if no symmetry breaking in `known` agrees within the tolerances."""
     orbit = start.orbit
     present = asymmetry(orbit)
     change = asymmetry(replace(orbit, values=start.tangent[:-1]))
-    # Half the derivative of the squared asymmetry; it must fall for a symmetric cycle to lie ahead.
+    # Minus half the derivative of the squared asymmetry: positive if a symmetric cycle lies ahead.
     falls = -float(present @ change)
     if falls <= 0:
         return -1

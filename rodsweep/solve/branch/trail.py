@@ -1,5 +1,5 @@
 """Record of the cycles of a branch during the continuation; errors are measured at some cycles and
-interpolated at the others."""
+interpolated at the remaining cycles."""
 
 from dataclasses import replace
 from math import nan
@@ -15,8 +15,8 @@ from .special.point import EndReason, SpecialKind, SpecialPoint
 
 
 def end_point(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialPoint:
-    """The special point for the end of a branch at its last cycle `point`, with errors NaN, which the caller
-    replaces."""
+    """The special point for the end of a branch at its last cycle `point`; the errors are NaN, to be set by
+    the caller."""
     measures = point.cycle.measures
     at = getattr(point.orbit.form.rod, point.scale.name)
     return SpecialPoint(
@@ -31,8 +31,8 @@ def end_point(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialP
 
 
 class BranchRecord:
-    """Record of the cycles of a branch during the continuation. The errors of a cycle are unknown until
-    errors are measured at this cycle or at a later cycle."""
+    """Record of the cycles of a branch during the continuation. The errors of a cycle are final after errors
+    have been measured at this cycle or at a later cycle."""
 
     def __init__(self, curve: BranchCurve, accuracy: float, first: ArcPoint) -> None:
         """curve: the branch, to which cycles are appended. accuracy: relative accuracy. first: the first
@@ -52,7 +52,8 @@ class BranchRecord:
         """Measures or interpolates the errors of all cycles appended since the last measurement, and returns
         the last cycle; raises Unsolvable.
 
-        condition: equation that identifies the last cycle on every mesh; by default its arc length.
+        condition: equation that defines the last cycle on every mesh; by default the condition that its arc
+        length is unchanged.
         """
         if self._waiting:
             points = with_errors_in_accuracy(self._measured, self._waiting, self.accuracy, condition)
@@ -62,8 +63,8 @@ class BranchRecord:
         return self._measured
 
     def end(self, end: BranchEnd) -> None:
-        """Ends the branch. If the errors of the last cycles cannot be measured, these cycles are removed and
-        the branch ends at the last measured cycle."""
+        """Appends the end of the branch, with errors. If the errors of the last cycles cannot be measured,
+        these cycles are removed and the branch ends at the last measured cycle."""
         curve = self.curve
         try:
             self.settle()

@@ -1,2 +1,2 @@
-"""Newton's method for a cycle and its parameter together: units of arc length, bordered matrix, closing
-condition."""
+"""Newton's method for a cycle together with the parameter: units of arc length, bordered matrix, and the
+condition that closes the system."""

@@ -1,6 +1,6 @@
-"""Newton's method for a cycle with the parameter as a further unknown; one more equation closes the system.
+"""Newton's method for a cycle with the parameter as a further unknown and one further equation.
 
-Near a fold two cycles have the same parameter, so the parameter cannot be prescribed. The closing equation
+Near a fold two cycles have the same parameter, so the parameter cannot be prescribed. The further equation
 prescribes a linear combination of deflection, logarithm of the period, and parameter (`scale`).
 """
 
@@ -21,8 +21,8 @@ from .scale import Scale
 
 @dataclass(frozen=True, eq=False)
 class BorderCondition:
-    """Equation that closes the bordered system of an orbit: `border` . `scale.components(orbit)` = `value`;
-    border: (3,)."""
+    """Equation that closes the bordered system of an orbit: `border` . `scale.components(orbit)` = `value`.
+    border: row vector, (3,)."""
 
     scale: Scale
     border: Array
@@ -30,8 +30,8 @@ class BorderCondition:
 
     @classmethod
     def at(cls, scale: Scale, border: Array, orbit: Orbit, length: float = 0.0) -> "BorderCondition":
-        """The condition that an orbit lies farther along `border`, (3,), than the given orbit, by an arc
-        length `length`."""
+        """The condition that a new orbit lies farther along `border`, (3,), than the given `orbit`, by the
+        arc length `length`."""
         return cls(scale, border, float(border @ scale.components(orbit)) + length)
 
     def residual(self, orbit: Orbit) -> float:
@@ -41,11 +41,11 @@ class BorderCondition:
     def solved(
         self, orbit: Orbit, tolerance: float, workspace: NewtonWorkspace, distance: float = np.inf
     ) -> ConvergedOrbit:
-        """The cycle near an orbit that fulfils the condition, by Newton's method; raises Unsolvable.
+        """The cycle near `orbit` that fulfils the condition, by Newton's method; raises Unsolvable.
 
         tolerance: relative error of the cycle. workspace: memory of Newton's matrices. distance: largest
-        relative distance between the cycle and the orbit at which its matrix was assembled, which is the
-        error of multipliers and tangent.
+        relative distance between the cycle and the orbit at which the last matrix was assembled. This
+        distance is the error of multipliers and tangent.
         """
         matrix = BorderedMatrix(orbit, self.scale, workspace)
         off = 0.0
@@ -76,20 +76,21 @@ class BorderCondition:
     def on(
         self, mesh: OrbitMesh, found: ConvergedOrbit, tolerance: float, distance: float = np.inf
     ) -> ConvergedOrbit:
-        """The cycle `found` solved again on another mesh under this condition; raises Unsolvable. Other
-        arguments as in `solved`."""
+        """The cycle `found` solved again on the mesh `mesh` under this condition; raises Unsolvable.
+        tolerance, distance: as in `solved`."""
         return self.solved(mesh.carry(found.orbit), tolerance, found.workspace, distance)
 
 
 def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:
-    """An orbit plus a change, (N + 1,), of its values and of the coordinate of the parameter `name`; raises
-    Unsolvable if no such rod or period exists."""
+    """An orbit plus a change, (N + 1,), of the orbit values and of the coordinate of the parameter `name`;
+    raises Unsolvable if the new parameter value is not allowed or the new period is not positive."""
     try:
         form = orbit.form.with_coordinate(name, orbit.form.rod.coordinate(name) + float(change[-1]))
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the branch leaves the allowed range of the parameters: {error}") from error
     result = replace(orbit, form=form, values=orbit.values + change[:-1])
-    # Where gamma3 passes the least eliminated drag, states have other unknowns and cannot be compared.
+    # Where gamma3 passes the least eliminated drag, the unknowns of the states change: states cannot be
+    # compared.
     if form.omega_unknown != orbit.form.omega_unknown:
         raise Unsolvable(
             f"at gamma3 = {form.rod.gamma3:.3g} Omega becomes an unknown or is eliminated, and cycles cannot "

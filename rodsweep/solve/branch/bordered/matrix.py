@@ -1,5 +1,7 @@
-"""Newton's matrix for a cycle with the parameter as a further unknown: one more column, and one more row, the
-border."""
+"""Newton's matrix for a cycle with the parameter as a further unknown: one further column for the parameter,
+and one further row, the border. The solved time interval is a half period for a symmetric orbit, otherwise
+the period. Shapes: K intervals with s stages each, n unknowns of a state, m shooting intervals (legs), N
+orbit values."""
 
 from functools import cached_property
 
@@ -26,11 +28,11 @@ from .scale import Scale, deflection_row
 
 
 class BorderedMatrix:
-    """Newton's matrix at an orbit with the parameter as a further unknown; methods that solve take the last
-    row as `border`.
+    """Newton's matrix at an orbit with the parameter as a further unknown; methods that solve the system have
+    the last row as their argument `border`.
 
-    A step, (N + 1,), changes the orbit values and the parameter coordinate. Solving raises RuntimeError once
-    another matrix was assembled in the same workspace; the multipliers stay valid.
+    A step, (N + 1,), changes the orbit values and the parameter coordinate. Solving raises RuntimeError after
+    another matrix was assembled in the same workspace; multipliers stay valid.
     """
 
     def __init__(self, orbit: Orbit, scale: Scale, workspace: NewtonWorkspace) -> None:
@@ -52,7 +54,8 @@ class BorderedMatrix:
         for j in range(m):
             rows = slice(j * n, (j + 1) * n)
             self._matrix[rows, rows] = self._legs.maps[j]
-            # A leg ends where the next leg starts; the last leg ends at the image of the first start.
+            # A leg ends where the next leg starts; the last leg ends at the symmetric image of the first
+            # start.
             if j < m - 1:
                 self._matrix[rows, (j + 1) * n : (j + 2) * n] = -np.eye(n)
             else:
@@ -63,17 +66,17 @@ class BorderedMatrix:
         row = np.empty(n)
         phase_row(orbit.start, p.rod, p.matrices, row)
         self._matrix[-2, :n] = row
-        # `phase_change` is negated as a right side; here it is a column of the matrix.
+        # `phase_change` is a right-hand side, with a minus sign; in a column of the matrix the sign is plus.
         self._matrix[-2, -1] = -phase_change(orbit.start, along.change, p.rod, p.matrices)
         self._right = self._jump(orbit, self._columns[:, :, 1:2], ends[1:2])
 
     def step(self, border: Array, length: float) -> Array:
-        """Newton's step at the orbit, (N + 1,), with the condition that the component along `border`, (3,),
-        in `Scale` grows by `length`."""
+        """Newton's step at the orbit, (N + 1,), under the condition that `border` . `Scale.components`,
+        border: (3,), grows by `length`."""
         return self.solved(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
 
     def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
-        """Approximate Newton's step, (N + 1,), at a neighbouring orbit with a similar parameter, by the
+        """Approximate Newton's step, (N + 1,), at a neighbouring `orbit` with a similar parameter, from the
         factors of this matrix; border, length: as in `step`."""
         factors = self._memory.factors
         p = self.orbit.semidiscrete
@@ -82,18 +85,17 @@ class BorderedMatrix:
         return self.solved(border, right, columns[:, :, 0], 1.0)
 
     def direction(self, border: Array) -> Array:
-        """Tangent of the branch, (N + 1,), with unit arc length; it makes an acute angle with `border`,
-        (3,)."""
-        # The null vector of all rows but the last, normalised by the border: residuals do not enter.
+        """Tangent of the branch, (N + 1,), of unit arc length, at an acute angle to `border`, (3,)."""
+        # The null vector of all rows except the last, normalised by the border; residuals are not needed.
         right = np.append(np.zeros(len(self._right)), 1.0)
         change = self.solved(border, right, self._columns[:, :, 1], 0.0)
         return change / np.linalg.norm(self.scale.moved(self.orbit, change))
 
     def residual_variations(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
-        """(derivatives of the stage residuals along variations after elimination, (K, s, m, n); derivatives
-        of the orbit's end, (m, n)).
+        """Returns (stages, ends): derivatives of the eliminated stage residuals, (K, s, m, n), and of the end
+        of `orbit`, (m, n), along m variations.
 
-        variations: of orbit values and parameter, (m, N + 1).
+        variations: changes of orbit values and parameter coordinate, (m, N + 1).
         """
         along = change_along(orbit.form, self.scale.name)
         rod = orbit.semidiscrete
@@ -104,8 +106,8 @@ class BorderedMatrix:
         return changed
 
     def back_substitute(self, starts: Array, columns: Array) -> Array:
-        """Changes of m orbits, (m, N + 1), with period and parameter fixed, from changes of the start states,
-        (m, n), and eliminated right-hand sides of the stages, (K, s, m, n)."""
+        """m changes of the orbit, (m, N + 1), at fixed period and parameter. starts: changes of the start
+        state, (m, n). columns: eliminated right-hand sides of the stages, (K, s, m, n)."""
         out = np.empty_like(columns)
         substitute(starts, columns, self.orbit.semidiscrete, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
@@ -114,37 +116,35 @@ class BorderedMatrix:
 
     @property
     def propagator(self) -> Array:
-        """Propagator P, (n, n), of the linearised motion over the solved time interval: a half period for a
-        symmetric orbit, otherwise the period."""
+        """Propagator P, (n, n), of the linearised motion over the solved time interval."""
         return self._memory.propagator
 
     @cached_property
     def partial_multipliers(self) -> Complex:
-        """Multipliers, (rank,): of the half-period map composed with the reflection for a symmetric orbit,
-        otherwise over the period."""
+        """Multipliers over the solved time interval, (rank,): eigenvalues of the propagator, composed with
+        the reflection for a symmetric orbit."""
         if len(self._legs.maps) == 1:
             return partial_multipliers(self.propagator, self.orbit)
         return self._legs.multipliers(self.orbit)
 
     def multipliers(self) -> Complex:
-        """Floquet multipliers above rounding error by descending modulus, (rank,), including the trivial
+        """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
         multiplier."""
         return over_period(self.partial_multipliers, self.orbit)
 
     def approximate_null_vector(self) -> Array:
-        """Right singular vector for the smallest singular value of the matrix at a fixed parameter, (N + 1,),
-        of any length and sign.
+        """Right singular vector of the matrix with the parameter fixed, for the smallest singular value, (N +
+        1,), of any length and sign.
 
         At a crossing of two branches the vector points along the second branch.
         """
         matrix = self._matrix.copy()
-        # The last row fixes the parameter: the singular vector is a direction of cycles at a fixed
-        # parameter.
+        # The last row fixes the parameter.
         matrix[-1, -1] = 1.0
         return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._columns[:, :, 1], 0.0)
 
     def closing(self, jump: Array, columns: Array, ends: Array) -> Array:
-        """Right-hand sides, (m n,), of the conditions that each leg (interval of multiple shooting) ends
+        """Right-hand sides, (m n,), of the closing conditions: each leg (interval of multiple shooting) ends
         where the next leg starts.
 
         jump: right-hand side of the last leg, (n,). columns: eliminated right-hand sides of the stages,
@@ -156,8 +156,8 @@ class BorderedMatrix:
         return sides.ravel()
 
     def _jump(self, orbit: Orbit, columns: Array, ends: Array) -> Array:
-        """Right-hand sides of the closing conditions of an orbit's legs and of the phase condition,
-        (m n + 1,); columns, ends: as in `closing`."""
+        """Right-hand sides of the closing conditions of an orbit and of the phase condition, (m n + 1,);
+        columns, ends: as in `closing`."""
         p = orbit.semidiscrete
         right = self.closing(jump_of(orbit.points, p), columns, ends)
         return np.append(right, -phase(orbit.start, p.rod, p.matrices))
@@ -166,8 +166,8 @@ class BorderedMatrix:
         """Solution of the bordered linear system, (N + 1,). border: last row, in components (deflection, log
         period, parameter), (3,).
 
-        right: right-hand sides of the closing conditions, of the phase condition and of the border,
-        (m n + 2,). sides: right-hand sides of the stages, (K, s, n), which are multiplied by `share`.
+        right: right-hand sides of the closing conditions, of the phase condition and of the border, (m n +
+        2,). sides: right-hand sides of the stages, (K, s, n). share: factor on `sides`.
         """
         n = len(self.orbit.start)
         matrix = self._matrix.copy()
@@ -177,11 +177,8 @@ class BorderedMatrix:
         return self._back_substitute(np.linalg.solve(matrix, right), sides, share)
 
     def _back_substitute(self, found: Array, sides: Array, share: float) -> Array:
-        """Change of orbit values and parameter, (N + 1,), from the changes `found` of the leg starts, period
-        and parameter, (m n + 2,).
-
-        sides: right-hand sides of the stages, (K, s, n), which are multiplied by `share`.
-        """
+        """Change of orbit values and parameter, (N + 1,). found: changes of the leg starts, period and
+        parameter, (m n + 2,). sides: right-hand sides of the stages, (K, s, n). share: factor on `sides`."""
         n = len(self.orbit.start)
         stages = found[-2] * self._columns[:, :, 0] + share * sides + found[-1] * self._columns[:, :, 2]
         columns = np.ascontiguousarray(stages[:, :, None])
@@ -192,8 +189,8 @@ class BorderedMatrix:
 
 
 def bordered_matrix_of(found: ConvergedOrbit) -> BorderedMatrix:
-    """The matrix of an orbit that was solved with the parameter as an unknown; raises TypeError for any other
-    orbit."""
+    """The bordered matrix of an orbit that was solved with the parameter as an unknown; raises TypeError if
+    the parameter was fixed."""
     if not isinstance(found.matrix, BorderedMatrix):
         raise TypeError("the orbit has no bordered matrix: it was solved without the parameter as an unknown")
     return found.matrix

@@ -1,15 +1,16 @@
 """Three dimensionless components that define arc length on a branch: deflection, logarithm of the period,
 parameter.
 
-The components have the same meaning on every mesh: the deflection at t = 0, in units of about its largest
-value over the cycle; the logarithm of the period; the parameter coordinate, in units of its value. At a Hopf
-point the deflection passes through 0 and keeps arc length regular.
+The components have the same meaning on every mesh: the deflection at t = 0, divided by about the largest
+deflection of the cycle; the logarithm of the period; the parameter coordinate, divided by its modulus at the
+cycle of the scale. At a Hopf point the deflection passes linearly through 0, so that arc length stays
+regular.
 
 The deflection is the integral of (1 - s) c m3 over the rod, which is linear in the state; c is the bending
 compliance of the arm's profile. For small cycles of a rod without taper the deflection is the tip's y.
-Without c the integral would depend on the mesh: at a material jump m3, the moment of a linear rod with the
-same strain, is discontinuous, and a mesh has only the mean strain. The moment at a fixed position on the rod
-would be a poor choice: it may vanish on large cycles, and steps along a branch would become short there.
+Without c the integral would depend on the mesh: m3, the moment of a linear rod with the same strain, is
+discontinuous at a material jump, where a mesh has only the mean strain. The moment at a fixed position on the
+rod is not used, because it may vanish on large cycles; steps along a branch would become short there.
 """
 
 from dataclasses import dataclass
@@ -28,8 +29,8 @@ from ...orbit.orbit import Orbit
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """Units of arc length on a branch at one cycle: of the deflection, not below `min_deflection_unit`, and
-    of the coordinate of the continuation parameter `name`."""
+    """Units of arc length on a branch at one cycle. deflection_unit: unit of the deflection, in L, at least
+    `min_deflection_unit`. coordinate_unit: unit of the coordinate of the continuation parameter `name`."""
 
     name: str
     deflection_unit: float
@@ -38,33 +39,34 @@ class Scale:
 
     @classmethod
     def of(cls, orbit: Orbit, name: str, least: float) -> "Scale":
-        """The scale of an orbit: largest deflection over the cycle, and modulus of the parameter coordinate.
-        least: smallest unit of the deflection."""
+        """The scale of an orbit. The units are sqrt(d^2 + least^2), d: largest deflection over the orbit, and
+        the modulus of the parameter coordinate. name: continuation parameter. least: smallest unit of the
+        deflection, in L."""
         largest = float(np.abs(orbit.points @ deflection_row(orbit)).max())
-        # The least unit keeps the scale finite beside a Hopf point, where the deflection vanishes.
+        # `least` keeps the unit positive near a Hopf point, where the deflection vanishes.
         return cls(name, float(np.hypot(largest, least)), abs(orbit.form.rod.coordinate(name)), least)
 
     def components(self, orbit: Orbit) -> Array:
-        """(deflection at t = 0, logarithm of the period, parameter coordinate) of an orbit in units of the
-        scale, (3,)."""
+        """(deflection at t = 0, logarithm of the period, parameter coordinate) of an orbit, (3,), in units of
+        the scale."""
         deflection = deflection_of(orbit) / self.deflection_unit
         at = orbit.form.rod.coordinate(self.name) / self.coordinate_unit
         return np.array([deflection, np.log(orbit.period), at])
 
     def moved(self, orbit: Orbit, change: Array) -> Array:
-        """Derivative of `components` at an orbit along a change, (N + 1,), of orbit values and parameter
-        coordinate; shape (3,)."""
+        """Derivative of `components` at an orbit, (3,), along a change of orbit values and parameter
+        coordinate, (N + 1,)."""
         deflection = float(deflection_row(orbit) @ change[: orbit.form.unknowns]) / self.deflection_unit
         return np.array([deflection, change[-2] / orbit.period, change[-1] / self.coordinate_unit])
 
 
 def deflection_of(orbit: Orbit) -> float:
-    """Deflection of an orbit in L, linear in the state at t = 0, when the tip's y is largest."""
+    """Deflection of an orbit in L at t = 0, when the tip's y is largest; linear in the state."""
     return float(deflection_row(orbit) @ orbit.start)
 
 
 def deflection_row(orbit: Orbit) -> Array:
-    """Row vector, (n,), whose product with a state of the orbit is the deflection in L."""
+    """Row vector, (n,), whose product with a state of the orbit is the deflection of this state in L."""
     form = orbit.form
     return _deflection_row(form.layout, form.mesh, form.rod.build)
 
@@ -72,6 +74,7 @@ def deflection_row(orbit: Orbit) -> Array:
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def _deflection_row(layout: StateLayout, mesh: Mesh, build: Build) -> Array:
     """Cached `deflection_row`, (n,); callers share the array and must not change it."""
-    # Small deflection at the tip: the curvature at u acts with the lever 1 - u. Tip values drop out.
+    # In linear theory the curvature at u moves the tip by the lever 1 - u. Values at the tip have the weight
+    # 0.
     weights = mesh.quadrature * profile_compliance_on(build, mesh)
     return layout.vector({"m3": weights[:-1] * (1 - mesh.positions[:-1])})

@@ -1,8 +1,8 @@
 """Curves through the folds and torus points on all rows of a phase diagram; each curve is followed only once.
 
-`changes.boundaries` does the same for the straight rod. A curve is followed in two halves from a special
-point of a row. Each half is a unit of work that depends only on the special points of the rows; the order in
-which processes solve the units does not change the curves.
+`changes.boundaries` has the same task for the straight rod. A curve is followed in two halves from a special
+point of a row. Each half is a unit of work, whose result depends only on the special points of the rows: the
+order in which processes solve the units does not change the curves.
 """
 
 import math
@@ -24,8 +24,8 @@ FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RowSpecialPoint:
-    """A special point of a row as the result file stores it. number: index of the row. row: value of the
-    rows' parameter. at: value of the parameter along the row."""
+    """A special point as the result file stores it. number: index of the row. row: value of the rows'
+    parameter. at: value of the parameter along the row. period: in tau2. tip_y_max: in L."""
 
     number: int
     row: float
@@ -49,8 +49,8 @@ class SpecialBoundaries:
     special: Sequence[RowSpecialPoint]
 
     def wanted(self, results: Mapping[int, Arrays]) -> list[int]:
-        """Units to solve next, given the results of solved units: first needed units, then units that may be
-        needed later; empty once the curves are complete."""
+        """Units to solve next: first the units needed now, then units that may be needed later; empty if the
+        curves are complete. results: results of the solved units."""
         needed: list[int] = []
         likely: list[int] = []
         for curves, search in self._searches(results):
@@ -59,7 +59,7 @@ class SpecialBoundaries:
         return needed + likely if needed else []
 
     def curves(self, results: Mapping[int, Arrays]) -> Boundaries[CycleCurve]:
-        """All curves from the results of the units; valid once `wanted` is empty."""
+        """All curves, from the results of the units of work; valid if `wanted(results)` is empty."""
         found = [search.boundaries for _, search in self._searches(results)]
         curves = tuple(traced.curve for one in found for traced in one.curves)
         return Boundaries(curves, max(one.agreement for one in found), sum(one.untraced for one in found))
@@ -67,7 +67,7 @@ class SpecialBoundaries:
     def _searches(
         self, results: Mapping[int, Arrays]
     ) -> "Iterator[tuple[_CurvesOfKind, BoundarySearch[_TracedCurve]]]":
-        """The curves of each kind, and the state of their search with the results so far."""
+        """Problem of the curves and state of the search with `results`, for each kind of special points."""
         for kind in FOLLOWED_KINDS:
             curves = _CurvesOfKind(kind, self.line, self.rows, self.special, results)
             seeds = (i for i, one in enumerate(self.special) if one.kind == kind)
@@ -76,9 +76,9 @@ class SpecialBoundaries:
     def solve(
         self, unit: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
     ) -> Arrays:
-        """The result of a unit of work, as `TracedHalfCurve.arrays`. located: function from the index of a
-        row to its special points with cycles. workspace: memory of Newton's matrices."""
-        # A unit is half a curve: twice the index of its special point, plus one for the half behind it.
+        """The result of a unit, as `TracedHalfCurve.arrays`. located: function that returns the special
+        points, with cycles, of the row with a given index. workspace: memory of Newton's matrices."""
+        # A unit is twice the index of its special point, plus one for the half to smaller values.
         place, behind = divmod(unit, 2)
         one = self.special[place]
         limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
@@ -89,7 +89,7 @@ class SpecialBoundaries:
         return self.special[unit // 2].number
 
     def where(self, unit: int) -> str:
-        """Words for a unit in the progress display: kind of the curve, starting row and direction."""
+        """Text for a unit in the progress display: kind of the curve, starting row and direction."""
         place, behind = divmod(unit, 2)
         one = self.special[place]
         way = "down" if behind else "up"
@@ -98,7 +98,7 @@ class SpecialBoundaries:
 
 @dataclass(frozen=True, slots=True)
 class _TracedCurve:
-    """A curve joined from two halves. distances: of nearby special points, in row lengths, by index."""
+    """A curve joined from two halves. distances: of nearby special points, by index, in lengths of a row."""
 
     curve: CycleCurve
     distances: Mapping[int, float]
@@ -106,7 +106,7 @@ class _TracedCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvesOfKind:
-    """Problem of `boundary_search` for one kind of special points, with the results of units so far."""
+    """Problem of `boundary_search` for one kind of special points, with the results of the solved units."""
 
     kind: SpecialKind
     line: PlaneAxis
@@ -119,7 +119,7 @@ class _CurvesOfKind:
         return sorted(left, key=self._place)[len(left) // 2]
 
     def missing_units(self, seed: int) -> list[int]:
-        """Units whose results are missing for the curve through a special point."""
+        """Units whose results are missing for the curve through the special point `seed`."""
         ahead = 2 * seed
         behind = 2 * seed + 1
         if ahead not in self.results:
@@ -130,13 +130,13 @@ class _CurvesOfKind:
         return [behind] if on and behind not in self.results else []
 
     def likely(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
-        """Units that may be needed later, from special points on the row where the search stopped."""
+        """Units that may be needed later: of all special points on the rows of the needed units."""
         rows = {self.special[unit // 2].row for unit in search.missing_units}
         beside = sorted((i for i in search.open_seeds if self.special[i].row in rows), key=self._place)
         return [unit for i in beside for unit in self.missing_units(i)]
 
     def curve(self, seed: int) -> _TracedCurve | None:
-        """The curve through a special point, joined from its two halves; None if a half could not be
+        """The curve through the special point `seed`, joined from two halves; None if a half could not be
         followed."""
         ahead = TracedHalfCurve.of(self.results[2 * seed])
         if ahead.half is None:
@@ -152,14 +152,14 @@ class _CurvesOfKind:
         return _TracedCurve(curve, near)
 
     def distance(self, curve: _TracedCurve, seed: int) -> float:
-        """Distance of a special point from a curve, in units of the length of a row; inf if not near."""
+        """Distance of the special point `seed` from a curve, in lengths of a row; inf if it is not near."""
         near = curve.distances.get(seed, math.inf)
         lies_off = near > CURVE_IDENTITY.max_distance
         # Between its last cycle and the Hopf point a curve is extrapolated: no cycle is solved there.
         return 0.0 if lies_off and self._vanishes(curve.curve, self.special[seed]) else near
 
     def same(self, one: _TracedCurve, other: _TracedCurve) -> bool:
-        """Whether two curves are identical, because both ends are equal."""
+        """Whether two curves are identical: their ends coincide within a tolerance."""
         pairs = zip(self._ends(one.curve), self._ends(other.curve), strict=True)
         distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
         return all(distance <= CURVE_IDENTITY.max_end_distance for distance in distances)
@@ -170,7 +170,8 @@ class _CurvesOfKind:
         return self.special[i].row, self.special[i].at
 
     def _ends(self, curve: CycleCurve) -> list[tuple[float, float]]:
-        """Axis coordinates (rows' axis, row's axis) of both ends of a curve, in ascending order."""
+        """Axis coordinates (along the rows' axis, along a row) of both ends of a curve, in ascending
+        order."""
         return sorted((p.place, self.line.scaled(p.at)) for p in (curve.points[0], curve.points[-1]))
 
     def _vanishes(self, curve: CycleCurve, one: RowSpecialPoint) -> bool:
@@ -182,8 +183,7 @@ class _CurvesOfKind:
                 continue
             x = self.line.scaled(end.at)
             y = self.rows.scaled(end.row)
-            # Straight chord from the Hopf point to the last cycle: where cycles vanish both move in
-            # proportion.
+            # On the straight chord from the Hopf point to the last cycle.
             share = (self.rows.scaled(one.row) - y) / (last.place - y)
             chord = x + share * (self.line.scaled(last.at) - x)
             if (
@@ -201,7 +201,7 @@ def _traced(
     special: Sequence[RowSpecialPoint],
 ) -> TracedHalfCurve:
     """One half of a curve, followed from the special point `one` of a row. located: special points of this
-    row with cycles. special: all special points, whose distances from the half are measured."""
+    row, with cycles. special: special points of all rows, whose distances from this half are computed."""
     width = abs(limits.line.parameter_slope(one.at))
     same = [
         point
@@ -222,7 +222,7 @@ def _traced(
 
 
 def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
-    """Distance of the special point `one` from a curve along its row, in row lengths; inf if not near."""
+    """Distance along the row from the point `one` to a curve, in lengths of a row; inf if not near."""
     if limits.kind != one.kind:
         return math.inf
     place = limits.rows.scaled(one.row)
@@ -241,7 +241,7 @@ def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: R
 
 
 def _near(limits: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
-    """Whether the special point `one` may lie on the curve between its successive points `a` and `b`."""
+    """Whether the special point `one` may lie on a curve between its successive points `a` and `b`."""
     x = limits.line.scaled(one.at)
     ends = sorted(limits.line.scaled(p.at) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))

@@ -24,11 +24,11 @@ class CurveStartSettings:
     """Settings for the first mesh on a curve of special points."""
 
     order_share: float = 0.62
-    """Order of the first mesh on a curve, in units of the order of the mesh that located the special point to
-    1e-9."""
+    """Ratio of the order of the first mesh on a curve to the order of the mesh on which the special point was
+    located to 1e-9."""
     interval_share: float = 0.5
-    """Number of time intervals of the first mesh on a curve, in units of the number on the mesh that located
-    the special point."""
+    """Ratio of the number of time intervals of the first mesh on a curve to the number on the mesh on which
+    the special point was located."""
 
 
 CURVE_START = CurveStartSettings()
@@ -40,8 +40,8 @@ def first_point_of_curve(
     """The first point of a curve of special points, from the point `special` located on a row; raises
     Unsolvable.
 
-    line: parameter along the rows. rows: axis of the rows' parameter. row: its value at this row. workspace:
-    memory of Newton's matrices.
+    line: name of the parameter along a row. rows: axis of the rows' parameter. row: value of the rows'
+    parameter. workspace: memory of Newton's matrices.
     """
     orbit = special.orbit
     if orbit is None:

@@ -41,8 +41,8 @@ CURVE_STEPS = StepControl(
     max_ratio=2.0,
     max_solutions=400,
 )
-"""Step length control along a curve of special points. Steps have four components: the three of `Scale`, and
-the rows' axis coordinate, from 0 to 1."""
+"""Step length control along a curve of special points. Steps have four components: the three components of
+`Scale` and the rows' axis coordinate, from 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,41 +50,39 @@ class CycleCurveSettings:
     """Settings for the ends of a curve of special points."""
 
     min_loop_points: int = 5
-    """Number of points of a curve below which the curve cannot be closed."""
+    """Whether a curve closes is tested only after more than this number of points."""
     max_edge_distance: float = 1e-8
-    """Largest distance of a point on an edge of the plane from this edge; each axis has length 1."""
+    """Points at most this far from an edge of the plane lie on the edge; each axis has length 1."""
     edge_bracket: float = 1e-10
-    """Tolerance of the point at which a curve crosses a limit, in units of the step."""
+    """Tolerance of the position at which a margin becomes 0, divided by the step length."""
     crushing_margin: float = 1e-3
-    """Relative distance of F from the crushing force k1 at which a curve ends."""
+    """A curve ends where the relative distance of F from the crushing force k1 is this number."""
     crushing_accuracy: float = 1e-6
-    """Relative tolerance of the length of a step that is shortened to end in the middle of
-    `crushing_margin`."""
+    """Relative tolerance of the length of a step that is shortened to end at half of `crushing_margin`."""
     min_amplitude: float = 0.01
-    """Largest tip y, in L, below which a curve is not followed, but extrapolated to a Hopf point."""
+    """At a smaller largest tip y, in L, a curve ends and is extrapolated to a Hopf point."""
     min_sine_at_resonance: float = 0.2
-    """Sine of the angle between a multiplier and the real axis, below which a lost curve of torus points ends
-    at a resonance: the complex pair becomes real."""
+    """A lost curve of torus points has ended at a resonance (the complex pair becomes real) if the sine of
+    the angle between multiplier and real axis is below this number at the last point."""
 
 
 CYCLE_CURVES = CycleCurveSettings()
 
-
 ALONG_BRANCH = np.array([1.0, 0.0])
-
-
+"""Direction along the branch, (2,), in components (along the branch, along the rows' axis)."""
 EDGE_COUNT = 4
-"""Number of edges of the parameter plane; the first margins of a curve are the distances from these edges."""
+"""Number of edges of the parameter plane; their distances are the first `SpecialCurveProblem.margins`."""
 ROW_EDGES = (2, 3)
-"""Indices of the margins for the two edges of the plane that are rows."""
+"""Indices, in `SpecialCurveProblem.margins`, of the two edges of the plane that are parallel to the rows."""
 END_BY_MARGIN = (*EDGE_COUNT * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_model, CurveEnd.hopf)
 """Reason for the end of a curve, by the index of the margin that becomes 0."""
 
 
 @dataclass(frozen=True, slots=True)
 class SpecialCurveProblem:
-    """Continuation problem for curves of one kind of special points in a parameter plane. line: axis of the
-    parameter along a row. rows: axis of the rows' parameter. side: 1 or -1, first direction along it."""
+    """Continuation problem for curves of folds or torus points in a parameter plane. line: axis of the
+    parameter that varies along a row. rows: axis of the parameter that differs between rows. side: sign, 1 or
+    -1, of the first step in the rows' parameter."""
 
     kind: SpecialKind
     line: PlaneAxis
@@ -93,14 +91,14 @@ class SpecialCurveProblem:
     side: float = 1.0
 
     def followed(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEnd]:
-        """(points of a curve in order from a special point of a row, reason for the end of the curve); raises
-        Unsolvable. row: value of the rows' parameter."""
+        """(points of the curve in order from the special point `special` of a row, reason for the end of the
+        curve); raises Unsolvable. row: value of the rows' parameter at `special`."""
         first = first_point_of_curve(special, self.line.name, self.rows, row, self.workspace)
         curve = follow_curve(self, first, CURVE_STEPS, self._report)
         return with_larger_errors(curve.solutions), self._why_ended(curve)
 
     def _why_ended(self, curve: Curve[SolvedPoint]) -> CurveEnd:
-        """Reason for the end of a followed curve, as it is stored."""
+        """Reason for the end of the curve `curve`, as stored in the result file."""
         if curve.end is CurveStop.margin:
             return END_BY_MARGIN[curve.margin]
         if curve.end is CurveStop.closed:
@@ -114,7 +112,8 @@ class SpecialCurveProblem:
         )
 
     def step(self, behind: Sequence[SolvedPoint], length: float) -> StepResult[SolvedPoint]:
-        """The point of the curve one step ahead of `behind[-1]`; raises Unsolvable."""
+        """The point one step beyond the last point, with the prediction error and the cosine of the angle
+        between the last two steps; raises Unsolvable. behind: points so far, the last point last."""
         last = behind[-1]
         if len(behind) == 1:
             start = last.orbit
@@ -133,7 +132,7 @@ class SpecialCurveProblem:
         point = self._family(last).point(start, place, across, slope, rates, last)
         mesh = mesh_of(point.orbit)
         predicted = start if mesh == mesh_of(start) else mesh.carry(start)
-        # Prediction and point must live on one mesh to be compared.
+        # Prediction and point can be compared only on the same mesh.
         off = relative_change(predicted, point.orbit.values - predicted.values)
         if len(behind) == 1:  # the prediction was the cycle of another row
             return StepResult(point, min(off, CURVE_STEPS.max_error), 1.0)
@@ -145,12 +144,12 @@ class SpecialCurveProblem:
         return CycleFamily.about(self.kind, self.rows, point, self.workspace)
 
     def _predicted(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
-        """(orbit, rows' axis coordinate) predicted one step beyond the last point; raises Unsolvable."""
+        """(orbit, rows' axis coordinate) predicted a step beyond the last point; raises Unsolvable."""
         known = points[-CURVE_IDENTITY.max_interpolated_points :]
         return self._mixed(known, lagrange_weights(arc_lengths(known), step), mesh_of(known[-1].orbit))
 
     def _step_before_crushing(self, points: Sequence[SolvedPoint], step: float) -> float:
-        """The step length, shortened to keep the predicted rod half of the crushing margin away."""
+        """The step length `step`, shortened so that the predicted rod keeps half of the crushing margin."""
         from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
         known = points[-CURVE_IDENTITY.max_interpolated_points :]
@@ -170,15 +169,15 @@ class SpecialCurveProblem:
     def _mixed(
         self, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
     ) -> tuple[Orbit, float]:
-        """(orbit, rows' axis coordinate): sums with weights, (points,), on a mesh; raises Unsolvable."""
+        """(orbit, rows' axis coordinate): sums over `points` with weights, (points,); raises Unsolvable."""
         values = np.dot(weights, [mesh.carry(point.orbit).values for point in points])
         at, place = (float(np.dot(weights, [getattr(p, n) for p in points])) for n in ("at", "place"))
         changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
         return orbit_with_parameters(replace(mesh.carry(points[-1].orbit), values=values), changed), place
 
     def margins(self, point: SolvedPoint) -> Array:
-        """Margins, (7,): distances from the four edges and from crushing, smallest h1, and largest tip y
-        minus `min_amplitude`."""
+        """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges and from
+        `crushing_margin`, smallest h1, and largest tip y minus `min_amplitude`."""
         x = self.line.scaled(point.at)
         y = point.place
         rod = point.orbit.form.rod
@@ -189,7 +188,8 @@ class SpecialCurveProblem:
     def located_zero(
         self, behind: Sequence[SolvedPoint], outer: SolvedPoint, margin: int
     ) -> SolvedPoint | None:
-        """The point between `behind[-1]` and `outer` at which a margin is 0; None if not found."""
+        """The point between `behind[-1]` and `outer` at which the margin number `margin` is 0; None if it is
+        not found. For the margin of the amplitude: `outer`."""
         inner = behind[-1]
         if END_BY_MARGIN[margin] is CurveEnd.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated
@@ -208,7 +208,7 @@ class SpecialCurveProblem:
     def _where_zero(
         self, inner: SolvedPoint, outer: SolvedPoint, margin: int, ends: tuple[float, float]
     ) -> SolvedPoint:
-        """The point at which a margin is 0; raises Unsolvable. ends: its values at `inner` and `outer`."""
+        """The point at which a margin is 0; raises Unsolvable. ends: the margin at `inner` and `outer`."""
         found: dict[float, SolvedPoint] = {1.0: outer}
 
         def left(share: float) -> float:
@@ -218,18 +218,18 @@ class SpecialCurveProblem:
         return found[zero_along_step(left, ends, 1.0, CYCLE_CURVES.edge_bracket, CYCLE_CURVES.edge_bracket)]
 
     def closes(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
-        """Whether the first point of the curve lies on the step from `behind[-1]` to the next `point`."""
+        """Whether the step from `behind[-1]` to `point` passes the first point of the curve."""
         first = behind[0]
         last = behind[-1]
         step = point.step_from(last)
         back = point.step_from(first)
-        # The start lies within the last step, both along it and in distance.
+        # The first point lies within this step, measured along the step and by distance.
         passed = float(back @ step) / float(step @ step)
         near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
         return len(behind) > CYCLE_CURVES.min_loop_points and 0 <= passed <= 1 and near
 
     def between(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
-        """The point of the curve near a fraction of the chord between two points; raises Unsolvable."""
+        """The point near the fraction `share` of the chord from `one` to `other`; raises Unsolvable."""
         start, place = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.across(other.step_from(one))
         return self._family(other).nearest(start, place, across, other.rates)
@@ -242,7 +242,7 @@ class SpecialCurveProblem:
         return self._family(other).nearest(start, place, ALONG_BRANCH, other.rates)
 
     def _why_lost(self, last: SolvedPoint) -> CurveEnd:
-        """Reason why a curve was lost beyond its last point: a resonance, or none known (`not_followed`)."""
+        """Reason why a curve was lost beyond its last point: `resonance`, or `not_followed` if unknown."""
         if self.kind == SpecialKind.torus:
             pair = pair_nearest_unit_circle(BorderedMatrix(last.orbit, last.scale, self.workspace))
             if pair is None or abs(pair.imag) < CYCLE_CURVES.min_sine_at_resonance * abs(pair):

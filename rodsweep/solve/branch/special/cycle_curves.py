@@ -1,5 +1,5 @@
-"""Stored form of a curve of folds or torus points: points, reasons for both ends, Hopf points where cycles
-vanish."""
+"""Stored form of a curve of folds or torus points: points, reasons for the two ends, and Hopf points where
+the cycles vanish."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -21,30 +21,30 @@ class CurveIdentitySettings:
     identical."""
 
     max_distance: float = 1e-6
-    """Largest distance from a curve at which a special point of a row lies on the curve, in units of the
+    """A special point of a row lies on a curve if its distance from the curve is at most this fraction of the
     length of a row."""
     max_chord_distance: float = 0.1
-    """Distance of a special point from a chord between two points of a curve, beyond which the special point
-    cannot lie on the arc of this chord; in units of the length of a row."""
+    """A special point can lie on the arc between two points of a curve only if its distance from the interval
+    between them along the row is at most this fraction of the length of a row."""
     max_period_change: float = 0.1
-    """Relative difference from the periods at two points of a curve, beyond which a special point cannot lie
-    on the arc between."""
+    """A special point can lie on the arc between two points of a curve only if its period differs from the
+    interval of their periods by at most this fraction."""
     max_period_difference: float = 1e-4
     """Largest relative difference between the periods of two solutions for the same cycle."""
     max_end_distance: float = 1e-4
     """Largest distance between the ends of two identical curves; each axis has length 1."""
     max_last_chord_distance: float = 1e-3
-    """Largest distance of a special point of a curve from the chord between the curve's last cycle and the
-    Hopf point where the cycles vanish; in units of the length of a row."""
+    """Between the last cycle of a curve and the Hopf point where the cycles vanish, a special point lies on
+    the curve if its distance from the chord along the row is at most this fraction of the length of a row."""
     max_interpolated_points: int = 4
-    """Maximum number of points of the polynomial that predicts the next point or the vanishing point of a
-    curve."""
+    """Maximum number of points through which the polynomial passes that predicts the next point, or the Hopf
+    point where the cycles vanish."""
     extrapolation_factor: float = 10.0
-    """Safety factor on the error of an extrapolated Hopf point: the mesh displaces the Hopf point along the
-    curve, and the errors of the points do not include this displacement."""
+    """Safety factor on the error of an extrapolated Hopf point. The errors of the points do not include the
+    displacement of the Hopf point along the curve that is caused by the mesh."""
     max_hopf_distance: float = 0.01
-    """Largest distance of an extrapolated Hopf point from the identical generalised Hopf point of a Hopf
-    curve; each axis has length 1."""
+    """An extrapolated Hopf point is identical to a generalised Hopf point of a Hopf curve if their distance
+    is at most this number; each axis has length 1."""
 
 
 CURVE_IDENTITY = CurveIdentitySettings()
@@ -55,8 +55,8 @@ Arrays = dict[str, Array]
 
 
 class CurveEnd(IntEnum):
-    """Reason for the end of a curve of special points; the result file stores the value, `none` (0) for inner
-    points."""
+    """Reason for the end of a curve of special points, stored by value in the result file. none: the point is
+    not an end."""
 
     none = 0
     edge = 1
@@ -87,7 +87,7 @@ class CurvePoint:
     """Stored quantities of a point of a curve of special points.
 
     at: value of the parameter along a row, with the absolute error `error`. row: value of the rows'
-    parameter; place: its axis coordinate, from 0 to 1. period: in tau2. tip_y_max: in L.
+    parameter. place: axis coordinate of `row`, from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L.
     """
 
     at: float
@@ -118,16 +118,16 @@ class TracedHalfCurve:
     """Result of following one half of a curve of special points. half: None if the half could not be
     followed.
 
-    distances: distance of nearby special points from this half, in units of the length of a row, by index in
-    the list of all special points.
+    distances: distances of nearby special points from this half, in units of the length of a row, by the
+    index of the special point in the list of all special points.
     """
 
     half: HalfCurve | None
     distances: dict[int, float] = field(default_factory=dict)
 
     def arrays(self) -> Arrays:
-        """The result as named arrays: points (points, 6), end (1,), distances (near, 2) with index and
-        distance."""
+        """The result as named arrays: points (points, 6), the fields of `CurvePoint`; end (1,); distances
+        (near, 2), index and distance of each nearby special point."""
         points = [] if self.half is None else [_numbers(point) for point in self.half.points]
         return {
             "points": np.array(points, dtype=float).reshape(-1, len(CurvePoint.__slots__)),
@@ -137,7 +137,7 @@ class TracedHalfCurve:
 
     @classmethod
     def of(cls, arrays: Arrays) -> "TracedHalfCurve":
-        """The result from its named arrays, as `arrays` makes them."""
+        """The result from the named arrays that `arrays` returns."""
         points = tuple(CurvePoint(*map(float, row)) for row in arrays["points"])
         half = HalfCurve(points, CurveEnd(int(arrays["end"][0]))) if points else None
         return cls(half, {int(place): float(distance) for place, distance in arrays["distances"]})
@@ -149,10 +149,8 @@ def _numbers(point: CurvePoint) -> list[float]:
 
 @dataclass(frozen=True, slots=True)
 class CycleCurve:
-    """A whole curve of folds or torus points: points in order, and the reasons for both ends.
-
-    vanishing: the Hopf point at each end where the cycles vanish; None for an end of another kind.
-    """
+    """A complete curve of folds or torus points: points in order, and the reasons for the two ends.
+    vanishing: for each end the Hopf point at which the cycles vanish; None for an end with another reason."""
 
     kind: SpecialKind
     points: tuple[CurvePoint, ...]
@@ -161,8 +159,8 @@ class CycleCurve:
 
     @classmethod
     def joined(cls, kind: SpecialKind, ahead: HalfCurve, behind: HalfCurve | None) -> "CycleCurve":
-        """The curve joined from its two halves, which start at the same point; a closed curve has only the
-        half `ahead`."""
+        """The curve joined from the halves `ahead` and `behind`, which start at the same point; behind: None
+        for a closed curve."""
         before = behind or HalfCurve(ahead.points[:1], ahead.end)
         points = (*before.points[:0:-1], *ahead.points)
         vanishing = [
@@ -173,8 +171,9 @@ class CycleCurve:
 
 
 def with_located_ends(curve: CycleCurve, plane: Plane, known: Sequence[GeneralisedHopfPoint]) -> CycleCurve:
-    """The curve with extrapolated ends replaced by the generalised Hopf points `known`, which are more
-    accurate; a curve of torus points is unchanged."""
+    """The curve of folds with each extrapolated end replaced by the identical generalised Hopf point in
+    `known`, which is more accurate. A curve of torus points, and an end without such a point, are unchanged.
+    """
 
     def located(end: VanishingPoint | None) -> VanishingPoint | None:
         if end is None or curve.kind != SpecialKind.fold:
@@ -193,22 +192,22 @@ def with_located_ends(curve: CycleCurve, plane: Plane, known: Sequence[Generalis
 
 
 def lagrange_weights(places: Array, at: float) -> Array:
-    """Lagrange weights, (n,): the polynomial through n > 1 values at the abscissas `places`, (n,), has at the
-    abscissa `at` the weighted sum of these values."""
+    """Lagrange weights, (n,): the weighted sum of n > 1 values is the value at the abscissa `at` of the
+    polynomial through the values at the abscissas `places`, (n,)."""
     apart = places[:-1] - places[-1]
     weights = polynomial_weights(apart, np.zeros(len(apart)), at - places[-1])
     return np.append(weights, 1 - weights.sum())
 
 
 def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
-    """The Hopf point where cycles vanish beyond the last of `points`, extrapolated by polynomials in the
-    squared amplitude; None for too few points."""
+    """The Hopf point where the cycles vanish beyond the last of `points`, extrapolated by polynomials in the
+    squared amplitude; None if there are too few points."""
     known = points[-CURVE_IDENTITY.max_interpolated_points :]
     if len(known) < CURVE_IDENTITY.max_interpolated_points:
         return None
     squares = np.array([point.tip_y_max**2 for point in known])
     table = np.array([[point.at, point.row, point.period] for point in known])
-    # The difference of the polynomials with and without the first point is the error estimate.
+    # The error estimate is the difference between the polynomials with and without the first point.
     best, other = (np.dot(lagrange_weights(squares[i:], 0.0), table[i:]) for i in (0, 1))
     difference = abs(best[0] - other[0]) + max(point.error for point in known)
     error = CURVE_IDENTITY.extrapolation_factor * difference

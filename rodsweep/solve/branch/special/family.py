@@ -3,9 +3,9 @@
 Cycles near a special point form a two-parameter family: arc length along the branch (`bordered`), and the
 rows' axis coordinate. In the plane of these two variables the special points are the zeros of a test function
 on a smooth curve, also at a cusp, where both parameters turn back. The secant method across the curve finds
-the zero. The matrix factors of one cycle correct all other cycles and their test functions (`augmented`). The
-first derivatives across the curve come from the previous point. The error is the difference between two
-meshes, measured at about every third point.
+the zero. All cycles and their test functions are corrected with the matrix factors of one cycle
+(`augmented`). The first derivatives across the curve come from the previous point. The error is the
+difference between two meshes, measured at about every third point.
 """
 
 from dataclasses import dataclass, replace
@@ -32,10 +32,8 @@ from .point import SpecialKind
 
 
 class _CycleAcross(NamedTuple):
-    """A cycle solved by the secant method, at the distance `at` from the predicted point across the curve.
-
-    vectors: tangent or eigenvector of the test function. test: value of the test function.
-    """
+    """A cycle solved by the secant method. at: distance from the predicted point in the direction across the
+    curve. vectors: tangent or eigenvector of the test function. test: value of the test function."""
 
     orbit: Orbit
     vectors: Array
@@ -47,9 +45,9 @@ class _CycleAcross(NamedTuple):
 class CycleFamily:
     """Two-parameter family of the cycles near a point of a curve of special points.
 
-    rows: axis of the rows' parameter. border: direction of the branch in components (deflection, log period,
-    parameter), (3,). small: whether the fold test function is divided by the deflection, because a Hopf point
-    is near. workspace: memory of Newton's matrices.
+    kind: fold or torus. rows: axis of the rows' parameter. border: direction of the branch in components
+    (deflection, log period, parameter), (3,). small: whether the fold test function is divided by the
+    deflection, because a Hopf point is near. workspace: memory of Newton's matrices.
     """
 
     kind: SpecialKind
@@ -63,18 +61,18 @@ class CycleFamily:
     def about(
         cls, kind: SpecialKind, rows: PlaneAxis, point: SolvedPoint, workspace: NewtonWorkspace
     ) -> "CycleFamily":
-        """The family of the cycles near a point of a curve."""
+        """The family of the cycles near the point `point` of a curve of special points."""
         small = kind == SpecialKind.fold and point.tip_y_max < ACROSS_CURVE.small_fold_cycle
         return cls(kind, rows, point.scale, point.ahead, small, workspace)
 
     def placed(self, orbit: Orbit, place: float) -> Orbit:
-        """The orbit with unchanged values for the rod at the rows' axis coordinate `place`; raises
-        Unsolvable."""
+        """The orbit with unchanged values, for the rod whose rows' parameter has the axis coordinate `place`;
+        raises Unsolvable."""
         return orbit_with_parameters(orbit, {self.rows.name: self.rows.value(place)})
 
     def function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:
-        """The test function that is zero at special points of this kind, at the orbit of a bordered
-        matrix."""
+        """The test function that is zero at special points of this kind, for cycles near the orbit of
+        `matrix`."""
         if self.kind == SpecialKind.fold:
             return FoldFunction(matrix, self.border, self.small)
         return TorusFunction(matrix)
@@ -90,9 +88,9 @@ class CycleFamily:
         """The point of the curve near the orbit `start`, found by the secant method across the curve; raises
         Unsolvable.
 
-        place: rows' axis coordinate of `start`. across: direction of the search, (2,): along the branch,
-        along the rows' axis. rates: approximate derivatives across the curve. same: whether `rates` are of
-        the same point on another mesh.
+        place: rows' axis coordinate of `start`. across: direction of the search, (2,), in components (along
+        the branch, along the rows' axis). rates: approximate derivatives across the curve. same: whether
+        `rates` were computed at the same point on another mesh.
         """
         # Derivatives along another direction across the curve would mislead the secant method.
         known = rates if rates and rates.direction @ across >= ACROSS_CURVE.min_cosine else None
@@ -112,11 +110,12 @@ class CycleFamily:
         rates: NormalDerivatives | None = None,
         before: SolvedPoint | None = None,
     ) -> SolvedPoint:
-        """The point of the curve near `start` as in `nearest`, with an error estimate, on a finer mesh if
-        necessary; raises Unsolvable.
+        """The point of the curve near `start` with an error estimate, on a finer mesh if necessary; raises
+        Unsolvable.
 
-        slope: `chord_slope` of the curve: a difference along the curve is no error. before: previous point,
-        whose measured error is reused if still valid.
+        start, place, across, rates: as in `nearest`. slope: `chord_slope` of the curve, by which a
+        displacement along the curve is not counted as an error. before: previous point of the curve, whose
+        measured error is used if it still applies.
         """
         last = self.nearest(start, place, across, rates)
         if before and before.errors and before.errors.hold_at(last):
@@ -141,7 +140,8 @@ class CycleFamily:
 
 
 class _SecantAcross:
-    """State of the secant method across a curve; the matrix factors of the first cycle correct all cycles."""
+    """State of the secant method across a curve. All cycles are corrected with the matrix factors of the
+    first cycle."""
 
     def __init__(
         self,
@@ -161,7 +161,7 @@ class _SecantAcross:
         self.before: _CycleAcross | None = None
         self.length = float(family.border @ family.scale.components(start))
         self.trusted = ACROSS_CURVE.max_linear_step if same else ACROSS_CURVE.max_carried_step
-        """Longest last secant step with derivatives that were not computed from two cycles of this search."""
+        """Longest last secant step while the derivatives do not come from two cycles of this search."""
         contraction = rates.contraction if rates and not family.small else inf
         self.near = NearbyCycleSolver(family, self.orbit, contraction)
 
@@ -175,7 +175,7 @@ class _SecantAcross:
             self.trusted = ACROSS_CURVE.max_linear_step
             enough = ACROSS_CURVE.max_linear_product / own.span
         rates = self.rates
-        # Without derivatives any small step serves: two cycles then give them.
+        # Without derivatives any small step suffices: the two cycles then give derivatives.
         step = -present.test / rates.test if rates else ACROSS_CURVE.first_secant
         if not abs(step) <= ACROSS_CURVE.longest_secant:
             raise Unsolvable("the secant method leaves the curve")
@@ -204,16 +204,15 @@ class _SecantAcross:
         return _CycleAcross(self.orbit, self.near.function.vectors, test, self.at)
 
     def _rates_since(self, present: _CycleAcross) -> NormalDerivatives | None:
-        """Derivatives across the curve from the last cycle and the cycle `present`; None for a single cycle
-        or too small a distance."""
+        """Derivatives across the curve from the last cycle and the cycle `present`; None if `present` is the
+        first cycle or if the distance between the two cycles is too small."""
         before = self.before
         if before is None or present.test == before.test:
             return None
         if abs(present.at - before.at) < ACROSS_CURVE.min_cycle_distance:
             return None
         name = self.family.scale.name
-        # Difference quotients of whole cycles are as good as derivatives here: the test function is nearly
-        # linear.
+        # The test function is nearly linear here, so that difference quotients are as good as derivatives.
         span = present.at - before.at
         one = before.orbit
         other = present.orbit

@@ -22,21 +22,21 @@ class LeastStretchSettings:
     times_per_harmonic: int = 8
     """Number of sampled times per harmonic, for the smallest stretch at one position on the rod."""
     position_tolerance: float = 1e-9
-    """Tolerance of the position of the smallest stretch, in L; the stretch, which is stationary there, has an
-    error of second order."""
+    """Tolerance of the position of the smallest stretch, in L. The error of the stretch is of second order in
+    this tolerance."""
     safe_nodal_stretch: float = 0.2
-    """Limit of h1 at all nodes above which no search between the nodes is needed: h1 is positive there
-    too."""
+    """If h1 exceeds this number at all nodes, it is positive between the nodes too, and no search is made
+    there."""
     safe_sampled_stretch: float = 0.02
-    """Limit of h1 at all sampled positions above which no search between the positions is needed: a resolved
-    polynomial varies less."""
+    """If h1 exceeds this number at all sampled positions, it is positive between them too, because a resolved
+    polynomial varies less, and no search is made there."""
 
 
 LEAST_STRETCH = LeastStretchSettings()
 
 
 def least_stretch_of_cycle(point: ArcPoint) -> float:
-    """Smallest h1 of a cycle of a branch over rod and period; only the smallest nodal value if this exceeds
+    """Smallest h1 of a cycle of a branch over rod and period; the smallest nodal value if this value exceeds
     `safe_nodal_stretch`."""
     rough = point.cycle.measures.least_stretch
     if rough > LEAST_STRETCH.safe_nodal_stretch:
@@ -45,7 +45,7 @@ def least_stretch_of_cycle(point: ArcPoint) -> float:
 
 
 def least_stretch_of_orbit(orbit: Orbit) -> float:
-    """Smallest h1 of an orbit over rod and period; only the smallest nodal value if this exceeds
+    """Smallest h1 of an orbit over rod and period; the smallest nodal value if this value exceeds
     `safe_nodal_stretch`."""
     rough = orbit.form.least_stretch(orbit.points)
     if rough > LEAST_STRETCH.safe_nodal_stretch:
@@ -54,11 +54,8 @@ def least_stretch_of_orbit(orbit: Orbit) -> float:
 
 
 def least_stretch(path: CyclePath, enough: float = inf) -> float:
-    """Smallest h1 of a cycle over the whole rod and the whole period.
-
-    enough: limit of the smallest sampled value above which this value is returned, without a search between
-    the sampled positions.
-    """
+    """Smallest h1 of a cycle over the whole rod and the whole period. enough: a smallest sampled value above
+    `enough` is returned without a search between the sampled positions."""
     from scipy.optimize import minimize_scalar  # slow import: 0.1 s, for few runs
 
     form = path.orbit.form

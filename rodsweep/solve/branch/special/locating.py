@@ -1,9 +1,9 @@
-"""Location of special points on a branch: zeros of test functions of arc length, with a cycle solved at every
-argument.
+"""Location of special points on a branch: zeros of test functions of arc length. Each value of a test
+function takes the solution of a cycle.
 
 The zero is bracketed on the mesh of the branch, then found by the secant method on two finer meshes. The
-difference between the two zeros gives the error. Each cycle takes only one matrix factorisation, because its
-test function is corrected with the factors of a nearby matrix (`augmented`).
+difference between the two zeros gives the error. A cycle takes only one matrix factorisation, because its
+test function is corrected with the factors of the last matrix (`augmented`).
 """
 
 from dataclasses import replace
@@ -29,14 +29,14 @@ from .segment import BranchSegment
 
 
 def kind_at_minus_one(orbit: Orbit) -> SpecialKind:
-    """Kind of the special point at which a multiplier of this orbit, over the solved time interval, passes
+    """Kind of the special point at which a multiplier of `orbit`, over the solved time interval, passes
     -1."""
     return SpecialKind.symmetry_breaking if orbit.symmetric else SpecialKind.period_doubling
 
 
 def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrbit) -> float:
-    """The test function that is zero at special points of a kind, at the cycle `found`, which `segment`
-    solved last; raises Unsolvable."""
+    """Value of the test function that is zero at special points of a kind, at the cycle `found`, the last
+    cycle that `segment` solved; raises Unsolvable."""
     if kind == SpecialKind.fold:
         return segment.parameter_rate()
     if kind == SpecialKind.left_the_model:
@@ -50,13 +50,13 @@ def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrb
 
 
 def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
-    """The test function of torus points, symmetry breakings or period doublings, from the nontrivial
+    """Value of the test function of torus points, symmetry breakings or period doublings, from the
     multipliers h over the solved time interval, (rank,); raises Unsolvable."""
     real = np.abs(h.imag) <= SPECIAL_POINT.real_multiplier * np.abs(h)
     if kind != SpecialKind.torus:
-        # The sign of det(h + 1) changes only when a multiplier crosses -1, whichever multiplier is nearest.
+        # The product of h + 1 changes sign only where a real multiplier crosses -1.
         return float((-1) ** (h[real].real < -1).sum() * np.abs(h + 1).min())
-    # A complex pair that has become real has no test function.
+    # Without a complex pair the test function is not defined.
     if real.all():
         raise Unsolvable("all multipliers are real, so no complex pair crosses the unit circle")
     beyond = np.abs(h[~real]) - 1
@@ -64,12 +64,10 @@ def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
 
 
 def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> float:
-    """The test function of a kind at `point`, a cycle at an end of a segment; raises Unsolvable.
-
-    scale, ahead: scale and tangent, (3,), of the segment's start.
-    """
+    """Value of the test function of a kind at `point`, a cycle at an end of a segment; raises Unsolvable.
+    scale, ahead: scale and tangent, (3,), at the start of the segment."""
     if kind == SpecialKind.fold:
-        # In lengths along the segment's own direction, in which the zero is sought.
+        # By the arc length along the direction `ahead`, which is the variable of the search.
         rate = float(scale.moved(point.orbit, point.tangent) @ ahead)
         return float(point.tangent[-1]) / scale.coordinate_unit / rate
     if kind == SpecialKind.left_the_model:
@@ -78,15 +76,15 @@ def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> f
 
 
 def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
-    """The special point of a kind between two cycles, to a relative accuracy. If the point is not located,
-    its message says why, and its error is the parameter difference of the two cycles."""
+    """The special point of a kind between two cycles, to a relative accuracy. If the point cannot be located,
+    its message gives the reason, and its error is the parameter difference of the two cycles."""
     aim = min(accuracy, SPECIAL_POINT.accuracy)
     try:
         segment = BranchSegment(start, end)
         segment.start_on(mesh_of(end.orbit))
         length, slope = _enclosed(kind, segment)
         mesh = end.calibration.planned_for_parameter(SPECIAL_POINT.first_mesh_share * aim)
-        # At least as many stages as make this accuracy cheapest.
+        # At least the number of stages with the smallest cost at this accuracy.
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
         point: SpecialPoint | None = None
         for number in range(SPECIAL_POINT.max_mesh_pairs + 1):
@@ -98,7 +96,8 @@ def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, acc
                 point = _with_errors(point, last, start, end)
                 if point.error <= aim * abs(point.at):
                     break
-            # The measured error chooses every other mesh; the mesh after it is close, for comparison.
+            # Every second mesh is chosen from the measured error; the next mesh is only slightly finer, for
+            # comparison.
             mesh = _finer(mesh, point.error / (aim * abs(point.at)) if number % 2 else 1.0)
             if not mesh.allowed:
                 break
@@ -110,9 +109,9 @@ def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, acc
 
 
 def _finer(mesh: OrbitMesh, excess: float) -> OrbitMesh:
-    """The next finer mesh. excess: error on this mesh in units of the accuracy; 1 for the smallest
+    """The next finer mesh. excess: ratio of the error on `mesh` to the accuracy; 1 gives the smallest
     refinement."""
-    # Errors fall with a power of the number of intervals that is proportional to the stages.
+    # The error is assumed proportional to intervals^-p, p: `time_order_by_stages` times the number of stages.
     growth = excess ** (1 / (SPECIAL_POINT.time_order_by_stages * mesh.stages))
     growth = min(max(growth, SPECIAL_POINT.min_interval_ratio), SPECIAL_POINT.max_interval_ratio)
     more = min(
@@ -123,12 +122,9 @@ def _finer(mesh: OrbitMesh, excess: float) -> OrbitMesh:
 
 
 def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: ArcPoint) -> SpecialPoint:
-    """The special point with errors from its differences to `last`, the same point on a coarser mesh, with a
-    safety factor.
-
-    start, end: the cycles on both sides of the point, by which the errors of period and largest tip y include
-    the arc length error of the last secant step.
-    """
+    """The special point with errors: its differences from `last`, the same point on a coarser mesh, times a
+    safety factor. The errors of period and largest tip y include the arc length error of the last secant
+    step, for which the cycles `start` and `end` before and behind the point are needed."""
     place = (
         SPECIAL_POINT.secant_error_at_fold if point.kind is SpecialKind.fold else SPECIAL_POINT.secant_error
     )
@@ -150,7 +146,7 @@ def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: 
 
 
 def _point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
-    """The special point of a kind at a solved cycle `orbit`, with errors NaN. name: continuation
+    """The special point of a kind at the solved cycle `orbit`; all errors are NaN. name: continuation
     parameter."""
     path = CyclePath(orbit)
     return SpecialPoint(
@@ -164,8 +160,8 @@ def _point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
 
 
 def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) -> SpecialPoint:
-    """The special point for a zero that was not located between the cycles `start` and `end`, placed at
-    `end`; errors: differences of the two cycles."""
+    """A special point that could not be located between the cycles `start` and `end`: values at `end`, with
+    the differences between the two cycles as errors."""
     name = start.scale.name
     measures = end.cycle.measures
     before = start.cycle.measures
@@ -175,7 +171,7 @@ def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) ->
         at=at,
         period=measures.period,
         tip_y_max=measures.tip_y_max,
-        # The cycles may coincide in the parameter, as on both sides of a fold.
+        # The two cycles may have the same parameter value, as on the two sides of a fold.
         error=max(abs(at - other), SPECIAL_POINT.accuracy * abs(at)),
         period_error=abs(before.period / measures.period - 1),
         size_error=abs(before.tip_y_max / measures.tip_y_max - 1),
@@ -184,7 +180,7 @@ def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) ->
 
 
 def _enclosed(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
-    """(arc length of the approximate zero of the test function, slope of the test function there), by
+    """(arc length of an approximate zero of the test function, slope of the test function at this zero), by
     bracketing on a segment; raises Unsolvable."""
     start = segment.start
     known = ((0.0, start), (segment.length, segment.end))
@@ -197,7 +193,7 @@ def _enclosed(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
     ends = values[0.0], values[segment.length]
     least = SPECIAL_POINT.bracket_tolerance * min(map(abs, ends))
     at = zero_along_step(kept, ends, segment.length, least, SPECIAL_POINT.bracket_tolerance)
-    # The nearest other arc length with a known value and this zero give the slope.
+    # Slope from the values at this zero and at the nearest other arc length.
     other = min((x for x in values if x != at), key=lambda x: abs(x - at))
     slope = (values[at] - values[other]) / (at - other)
     return at - values[at] / slope, slope
@@ -206,11 +202,8 @@ def _enclosed(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
 def _zero(
     kind: SpecialKind, segment: BranchSegment, guess: float, slope: float
 ) -> tuple[float, Orbit, float]:
-    """(arc length of the zero of the test function near `guess`, the cycle there, slope of the test
-    function), by the secant method; raises Unsolvable.
-
-    slope: approximate slope, for the first step.
-    """
+    """(arc length of the zero of the test function near `guess`, cycle at this zero, slope of the test
+    function), by the secant method; raises Unsolvable. slope: approximate slope, for the first step."""
     linear = (
         SPECIAL_POINT.max_linear_step_at_fold if kind == SpecialKind.fold else SPECIAL_POINT.max_linear_step
     )
@@ -226,12 +219,12 @@ def _zero(
         step = -f / slope
         if not abs(step) < segment.length:
             raise Unsolvable("the secant method leaves the interval between the two cycles")
-        # A short step that does not halve any more is rounding error.
+        # A short step that is longer than half of the last step is rounding error.
         if abs(step) <= enough or last / 2 < abs(step) <= SPECIAL_POINT.max_stalled_step * segment.length:
             _, orbit, tangent = segment.known
             change = step * tangent
             if kind == SpecialKind.fold:
-                change[-1] /= 2  # the parameter's derivative falls to 0 along the step
+                change[-1] /= 2  # the derivative of the parameter decreases linearly to 0 along the step
             return at + step, moved_orbit(orbit, segment.start.scale.name, change), slope
         before = at, f
         at += step

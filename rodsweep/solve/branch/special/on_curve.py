@@ -1,5 +1,5 @@
-"""A solved point of a curve of special points: cycle, error, and derivatives of cycles with respect to the
-distance from the curve."""
+"""A solved point of a curve of special points: cycle, error, and derivatives by the distance from the
+curve."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -20,39 +20,39 @@ class AcrossCurveSettings:
     """Settings for the secant method across a curve of special points, and for the errors of its points."""
 
     accuracy: float = 1e-7
-    """Relative accuracy of the parameter along a row, at the points of a curve. Special points on rows are
+    """Relative accuracy of the parameter along a row at the points of a curve. Special points on rows are
     solved to 1e-9."""
     max_unmeasured: int = 3
     """Maximum number of successive points of a curve that share one measured error."""
     small_fold_cycle: float = 0.05
-    """Largest tip y, in L, of a cycle whose fold test function is divided by the deflection, because the test
-    function vanishes at a Hopf point too."""
+    """If the largest tip y, in L, is smaller than this number, the fold test function is divided by the
+    deflection; without this division the function vanishes at a Hopf point too."""
     first_secant: float = 1e-3
-    """First step of the secant method across a curve if no derivatives are known, in arc length."""
+    """First step of the secant method across a curve, in arc length, if no derivatives are known."""
     longest_secant: float = 0.1
     """Longest step of the secant method across a curve, in arc length; a longer step is a failure."""
     max_secants: int = 12
     """Maximum number of secant steps for one point."""
     max_linear_product: float = 1e-9
-    """Limit of the product of a secant step and the distance between the last two cycles, below which no
-    cycle is solved after the step, but the last cycle is moved linearly; the test function has an error of
-    about 1e-8."""
+    """If the product of a secant step and the distance between the last two cycles is at most this number,
+    the step is the last: no further cycle is solved, and the last cycle is moved linearly. The test function
+    then has an error of about 1e-8."""
     max_linear_step: float = 1e-6
-    """Longest last secant step with derivatives from cycles at the same point on another mesh, which have
-    relative errors of 1e-3."""
+    """Longest last secant step if the derivatives were computed at the same point on another mesh; their
+    relative error is then 1e-3."""
     max_carried_step: float = 1e-7
-    """Longest last secant step with derivatives from the previous point of the curve, which have relative
-    errors of 0.1."""
+    """Longest last secant step if the derivatives were computed at the previous point of the curve; their
+    relative error is then 0.1."""
     min_cosine: float = 0.9
-    """Smallest cosine of the angle between two directions across the curve at which derivatives along the
-    first direction serve for the second."""
+    """Derivatives along one direction across the curve are used for another direction only if the cosine of
+    the angle between the two directions is at least this number."""
     min_cycle_distance: float = 1e-6
-    """Smallest distance, in arc length, of two cycles whose difference gives derivatives: the test function
-    has an error of 1e-8."""
+    """Derivatives are computed from two cycles only if their distance, in arc length, is at least this
+    number, because the test function has an error of 1e-8."""
     error_factor: float = 3.0
-    """Safety factor on the difference between two meshes, which gives the error estimate."""
+    """The error estimate is the difference between the points on two meshes, times this factor."""
     secant_error: float = 3e-9
-    """Relative error of the parameter along a row that the secant method leaves."""
+    """Relative error of the parameter along a row caused by the tolerance of the secant method."""
     more_orders: int = 2
     """Increase of the order of the elements on the next finer mesh."""
     more_intervals: float = 1.2
@@ -66,8 +66,7 @@ ACROSS_CURVE = AcrossCurveSettings()
 
 @dataclass(frozen=True, eq=False)
 class NormalDerivatives:
-    """Derivatives of cycles with respect to the distance from a curve of special points, in a direction
-    across the curve."""
+    """Derivatives of cycles near a curve of special points by the distance from the curve."""
 
     direction: Array
     """Unit direction across the curve, (2,): components along the branch and along the rows' axis."""
@@ -76,14 +75,14 @@ class NormalDerivatives:
     orbit: Array
     """Derivative of the orbit values and of the coordinate of the parameter along a row, (N + 1,)."""
     mesh: OrbitMesh
-    """Mesh to which the derivative of the orbit values belongs."""
+    """Mesh of the derivative `orbit`."""
     span: float
     """Distance between the two cycles of the difference quotient."""
     contraction: float = inf
-    """Contraction rate of corrections, as in `NearbyCycles`; inf if unknown."""
+    """Contraction rate of corrections, as in `NearbyCycleSolver`; inf if unknown."""
 
     def on(self, orbit: Orbit) -> Array:
-        """The derivative `orbit`, (N + 1,), carried to the mesh of a given orbit."""
+        """The derivative in the field `orbit`, (N + 1,), interpolated to the mesh of the argument `orbit`."""
         mesh = mesh_of(orbit)
         if mesh == self.mesh:
             return self.orbit
@@ -93,12 +92,12 @@ class NormalDerivatives:
 
 @dataclass(frozen=True, eq=False)
 class CurveErrors:
-    """Measured error of a point of a curve, reused at the next points, scaled with the squared coefficient
-    tails.
+    """Measured error of a point of a curve. At the next points the error is used again, scaled with the
+    squared coefficient tails.
 
-    measured: relative error of the parameter along a row, at the measured point. tails, mesh: coefficient
-    tails in space and time, (2,), and mesh of the measured orbit. age: number of points since the
-    measurement.
+    measured: relative error of the parameter along a row at the measured point. tails, mesh: coefficient
+    tails in space and time, (2,), and mesh of the orbit at the measured point. age: number of points since
+    the measurement.
     """
 
     measured: float
@@ -107,14 +106,14 @@ class CurveErrors:
     age: int = 0
 
     def at(self, point: "SolvedPoint") -> float:
-        """Absolute error of the parameter along a row, at a neighbouring point on the same mesh."""
+        """Absolute error of the parameter along a row at a neighbouring point with the same mesh."""
         # Errors are of second order in the tails.
         growth = float((lasting_tails(point.orbit) / self.tails).max()) ** 2
         return max(growth, 1.0) * self.measured * abs(point.at)
 
     def hold_at(self, point: "SolvedPoint") -> bool:
-        """Whether the measured error still applies at a next point of the curve, and is within the accuracy
-        there."""
+        """Whether the measured error may be used at a later point of the curve: the measurement is recent,
+        the mesh is the same, and the scaled error is within the accuracy."""
         recent = self.age < ACROSS_CURVE.max_unmeasured - 1 and mesh_of(point.orbit) == self.mesh
         return recent and self.at(point) <= ACROSS_CURVE.accuracy * abs(point.at)
 
@@ -126,7 +125,7 @@ class CurveErrors:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SolvedPoint:
-    """A solved point of a curve of special points: a cycle with both parameters of the plane."""
+    """A solved point of a curve of special points: cycle, and values of the two parameters of the plane."""
 
     orbit: Orbit
     scale: Scale
@@ -142,36 +141,35 @@ class SolvedPoint:
     error: float = nan
     """Absolute error of `at`."""
     errors: CurveErrors | None = None
-    """Measured error that applies to this point, measured here or at an earlier point of the curve; None if
-    unknown."""
+    """Error measured at this point or at an earlier point of the curve; None if unknown."""
     rates: NormalDerivatives | None = None
     """Derivatives across the curve; None if unknown."""
 
     @property
     def tip_y_max(self) -> float:
-        """Modulus of the tip's y at t = 0, when it is largest, in L."""
+        """Largest tip y of the cycle, in L: the modulus of the tip's y at t = 0."""
         return abs(float(self.orbit.form.tip(self.orbit.start)[1]))
 
     def step_from(self, other: "SolvedPoint") -> Array:
-        """Step from the point `other` to this point, (4,): deflection, log period, parameter along a row, and
-        rows' axis coordinate."""
+        """Step from the point `other` to this point, (4,), in components (deflection, log period, parameter
+        along a row, rows' axis coordinate)."""
         moved = self.scale.components(self.orbit) - self.scale.components(other.orbit)
         return np.append(moved, self.place - other.place)
 
     def across(self, step: Array) -> Array:
-        """Unit direction across the curve, (2,), perpendicular to a step, (4,), in the plane with the axes
-        (branch, rows' axis)."""
+        """Unit normal of the curve, (2,), in components (along the branch, along the rows' axis); it is
+        perpendicular to the step along the curve `step`, (4,)."""
         way = np.array([float(self.ahead @ step[:3]), step[3]])
-        # Turned by a right angle: the correction must not slide along the curve.
+        # Rotated by a right angle, so that the correction does not move along the curve.
         return np.array([-way[1], way[0]]) / np.linalg.norm(way)
 
 
 def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
-    """The points of a curve in order, each with its error: the larger of the errors that the measurements
-    before and after the point predict."""
+    """The points of a curve, in order, with the field `error` set: the larger of the two errors that follow
+    from the last measurement before the point and the next measurement after the point."""
     found: list[SolvedPoint] = []
     behind: CurveErrors | None = None
-    # Backwards, so that every point knows the measurement behind it as well as the one before it.
+    # In reverse order, so that the next measurement after each point is known.
     for point in reversed(points):
         if point.errors is None:
             raise ValueError("the point has no error estimate")
@@ -185,11 +183,8 @@ def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
 
 
 def orbit_with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
-    """The orbit with unchanged values for a rod with changed parameters; raises Unsolvable if no such rod
-    exists.
-
-    changed: new values by parameter name.
-    """
+    """The orbit with unchanged values, for a rod with changed parameters; raises Unsolvable if the new
+    parameters are not allowed. changed: new parameter values by name."""
     try:
         form = replace(orbit.form, rod=orbit.form.rod.changed(**changed))
     except (ValueError, ZeroDivisionError) as error:
@@ -203,15 +198,16 @@ def orbit_with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
 
 
 def arc_lengths(points: Sequence[SolvedPoint]) -> Array:
-    """Arc lengths, (points,), along a curve from its last point to each point, counted negative."""
+    """Arc lengths, (points,), of the points of a curve: 0 at the last point, negative at the points
+    before."""
     steps = [float(np.linalg.norm(b.step_from(a))) for a, b in zip(points[:-1], points[1:], strict=True)]
-    # Counted from the last point, so that a prediction is at a positive length.
+    # Zero at the last point, so that predictions have positive lengths.
     lengths: Array = np.cumsum([0.0, *steps]) - sum(steps)
     return lengths
 
 
 def chord_slope(one: SolvedPoint, other: SolvedPoint) -> float:
-    """Slope of the chord between two points of a curve: change of the parameter along a row per change of the
-    rows' axis coordinate; 0 if the latter is equal."""
+    """Slope of the chord between two points of a curve: change of the parameter along a row, divided by the
+    change of the rows' axis coordinate; 0 if the axis coordinates are equal."""
     apart = other.place - one.place
     return (other.at - one.at) / apart if apart else 0.0

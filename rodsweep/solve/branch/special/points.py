@@ -1,10 +1,10 @@
 """Detection of special points of a branch: folds, torus points, symmetry breakings, period doublings.
 
-A special point lies between two cycles at which its test function has opposite signs. Fold: derivative of the
-parameter by arc length. Torus point: modulus of a complex pair of multipliers minus 1. Symmetry breaking:
-multiplier of the half-period map composed with the reflection, plus 1. Period doubling of an asymmetric
-cycle: multiplier over the period, plus 1. The change of the number of multipliers outside the unit circle
-must agree.
+A special point lies between two cycles at which its test function has opposite signs. The test functions are,
+for a fold: derivative of the parameter by arc length; for a torus point: modulus of a complex pair of
+multipliers minus 1; for a symmetry breaking: multiplier of the half-period map composed with the reflection,
+plus 1; for a period doubling of an asymmetric cycle: multiplier over the period, plus 1. The special points
+found must explain the change of the number of multipliers outside the unit circle.
 """
 
 from collections.abc import Callable
@@ -17,11 +17,12 @@ from .locating import kind_at_minus_one, special_point_between
 from .point import SPECIAL_POINT, SpecialKind, SpecialPoint
 
 Step = Callable[[ArcPoint, float], ArcPoint]
-"""Function that returns the cycle at an arc length ahead of a cycle; raises Unsolvable."""
+"""Function of a cycle and an arc length that returns the cycle at this arc length ahead; raises
+Unsolvable."""
 
 
 def unstable_multiplier_count(point: ArcPoint) -> int:
-    """Number of multipliers outside the unit circle, from the multipliers over the solved time interval."""
+    """Number of multipliers of a cycle outside the unit circle, taken over the solved time interval."""
     return int((np.abs(point.partial_multipliers) > 1).sum())
 
 
@@ -35,7 +36,7 @@ def special_kinds_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialK
     if (_beyond_minus_one(start) - _beyond_minus_one(end)) % 2:
         found.append(kind_at_minus_one(start.orbit))
     change = abs(unstable_multiplier_count(end) - unstable_multiplier_count(start))
-    # Beside a fold a multiplier is 1 within its error, and may be counted on either side.
+    # Near a fold a multiplier is 1 within its error; the counts at `start` and `end` may be wrong by one.
     slack = 1 if _near_one(start) or _near_one(end) else 0
     if not found and change - slack > 1:
         return [SpecialKind.torus], change == 2 and all(map(_has_pair, (start, end)))
@@ -64,18 +65,19 @@ def special_points(
     accuracy: float,
     depth: int = 0,
 ) -> tuple[list[SpecialPoint], bool]:
-    """(special points between two cycles in order, whether these points explain the change of the number of
-    multipliers outside the unit circle).
+    """Returns (points, explained): special points between two cycles, in order, and whether these points
+    explain the change of the number of multipliers outside the unit circle.
 
-    step: function that returns a cycle between. accuracy: relative accuracy of the branch. depth: number of
-    halvings so far. The step is halved if the multipliers show several special points, or if a special point
-    is not located, as near crushing, where a prediction over the whole step may leave the model.
+    step: function that solves a cycle between the two cycles. accuracy: relative accuracy of the branch.
+    depth: number of halvings so far. The step is halved if the multipliers show several special points, or if
+    a special point cannot be located. Near crushing, for example, a prediction over the whole step may leave
+    the model.
     """
     kinds, explained = special_kinds_between(start, end)
     points = [special_point_between(kind, start, end, accuracy) for kind in kinds] if explained else []
     if depth < SPECIAL_POINT.max_halvings and (not explained or any(point.message for point in points)):
         try:
-            # Half the step separates special points whose changes of the count cancel or add up.
+            # Halving separates special points whose changes of the number of multipliers cancel or add up.
             middle = step(start, arc_length_between(start, end) / 2)
         except Unsolvable:
             pass

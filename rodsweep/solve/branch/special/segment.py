@@ -23,19 +23,20 @@ class BranchSegment:
         self._known: tuple[float, Orbit, Array] | None = None
 
     def predicted(self, length: float) -> Orbit:
-        """Predicted orbit at an arc length `length` from `start`, on the cubic through both cycles and on the
-        mesh of `end`."""
-        # Backwards from the end, whose cubic passes through both cycles; lengths are measured along its
-        # tangent.
+        """Predicted orbit at the arc length `length` from `start`, on the mesh of `end`, by the cubic through
+        the cycles `start` and `end`."""
+        # The cubic of `end` passes through both cycles; its variable is the arc length along the tangent at
+        # `end`.
         return self.end.predicted(-self._back * (1 - length / self.length))
 
     def start_on(self, mesh: OrbitMesh) -> None:
-        """Sets the mesh on which `at` solves cycles; the first cycle on this mesh starts from the cubic."""
+        """Sets the mesh on which `at` solves cycles. The first cycle on this mesh is predicted by the
+        cubic."""
         self.mesh = mesh
         self._known = None
 
     def at(self, length: float) -> ConvergedOrbit:
-        """The cycle at an arc length `length` from `start`, with the matrix of a nearby orbit; raises
+        """The cycle at the arc length `length` from `start`, with the matrix of a nearby orbit; raises
         Unsolvable."""
         if self._known is None:
             start = self.mesh.carry(self.predicted(length))
@@ -55,8 +56,8 @@ class BranchSegment:
 
     @property
     def known(self) -> tuple[float, Orbit, Array]:
-        """(arc length from `start`, orbit, derivative by arc length, (N + 1,)) of the last cycle that `at`
-        solved. Raises ValueError before the first cycle."""
+        """(arc length from `start`, orbit, derivative of orbit values and parameter coordinate by arc length,
+        (N + 1,)), for the last cycle that `at` solved. Raises ValueError before the first cycle."""
         if self._known is None:
             raise ValueError("no cycle was solved on this segment and mesh yet")
         return self._known

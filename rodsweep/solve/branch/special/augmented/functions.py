@@ -1,8 +1,8 @@
-"""Test functions of folds and torus points, evaluated at cycles near a cycle with a factorised Newton matrix.
+"""Test functions of folds and torus points, for cycles near a cycle whose Newton matrix is factorised.
 
 Minimally augmented systems (Govaerts 2000, ch. 4 and 10): the test function of a cycle is the solution of a
 bordered linear system of the linearised equations. This module solves the bordered system iteratively. Each
-correction uses the residual at the cycle itself and the matrix factors of the neighbouring cycle, so that no
+correction uses the residual at the cycle itself and the matrix factors of the nearby cycle, so that no
 further matrix is factorised.
 """
 
@@ -29,38 +29,36 @@ class AugmentedSettings:
     """Relative tolerance of a cycle and its test function; the test function then has an error of about
     1e-8."""
     tolerance_share: float = 0.01
-    """Tolerance of a cycle, in units of its distance from the curve by the test function; the larger of both
-    tolerances applies."""
+    """A cycle is corrected to the larger of `tolerance` and this fraction of its estimated distance from the
+    curve of special points; the estimate is the test function divided by its slope."""
     min_contraction: float = 10.0
-    """Smallest assumed contraction rate: ratio of successive corrections, divided by the relative
-    distance from the cycle of the matrix. The measured rate is 2 or 3 for large cycles; a larger assumed
-    rate is safe."""
+    """Lower limit of the assumed contraction rate: the ratio of successive corrections, divided by the
+    relative distance from the cycle of the matrix. The measured rate is 2 or 3 for large cycles; a larger
+    assumed rate is safe."""
     contraction_safety: float = 3.0
-    """Safety factor on a measured contraction rate that is assumed for the next cycle."""
+    """The contraction rate assumed for the next cycle is the measured rate times this factor."""
     max_correction_ratio: float = 0.3
-    """Ratio of the sizes of successive corrections, above which a new matrix is assembled."""
+    """A new matrix is assembled if the ratio of the sizes of successive corrections exceeds this number."""
     rounding_correction: float = 1e-8
-    """Relative size of a correction below which corrections that hardly decrease are rounding errors: the
-    iteration stops."""
+    """The iteration stops if a correction has at most this relative size and is hardly smaller than the
+    correction before: it is then rounding error."""
     max_corrections: int = 30
     """Maximum number of corrections of one cycle."""
     inverse_shift: float = 1e-9
-    """Relative distance between the shift of inverse iteration and the eigenvalue, which keeps the shifted
-    matrix regular."""
+    """Relative distance of the shift of inverse iteration from the eigenvalue; with this distance the shifted
+    matrix is regular."""
     inverse_iterations: int = 2
-    """Number of inverse iterations; each iteration damps other eigenvectors by the ratio of this distance to
-    the gap between eigenvalues."""
+    """Number of inverse iterations. Each iteration multiplies the components of other eigenvectors by the
+    ratio of `inverse_shift` to the relative gap between the eigenvalues."""
 
 
 AUGMENTED = AugmentedSettings()
 
 
 class FoldFunction:
-    """Test function of folds: derivative of the scaled parameter coordinate by the length along `border`.
-
-    small: whether the derivative is divided by the deflection, because the derivative vanishes at a Hopf
-    point too.
-    """
+    """Test function of folds: derivative of the scaled parameter coordinate by the arc length in the
+    direction `border`, (3,). small: whether the derivative is divided by the deflection; without this
+    division the derivative vanishes at a Hopf point too."""
 
     def __init__(self, matrix: BorderedMatrix, border: Array, small: bool) -> None:
         self.matrix = matrix
@@ -72,16 +70,15 @@ class FoldFunction:
     def value(self, orbit: Orbit) -> float:
         """The test function at an orbit, from the last corrected tangent."""
         rises = float(self.vectors[-1] / self.matrix.scale.coordinate_unit)
-        # Beside a Hopf point the rate vanishes with the amplitude; divided by it the function stays regular.
+        # Near a Hopf point the derivative is proportional to the deflection; their ratio stays regular.
         return rises * self.matrix.scale.deflection_unit / deflection_of(orbit) if self.small else rises
 
     def start_from(self, tangent: Array) -> None:
-        """Sets the tangent, (N + 1,), from which the next correction starts."""
+        """Sets the approximate tangent, (N + 1,), that the next call of `correct` improves."""
         self.vectors = tangent
 
     def correct(self, orbit: Orbit) -> None:
-        """Corrects the tangent at an orbit by one step of iterative refinement; the equation for the tangent
-        is linear."""
+        """Corrects the tangent at an orbit by one step of iterative refinement of its linear equation."""
         matrix = self.matrix
         tangent = self.vectors
         p = orbit.semidiscrete
@@ -98,8 +95,8 @@ class FoldFunction:
 
 
 class TorusFunction:
-    """Test function of torus points: |mu| - 1 for the complex pair of multipliers mu nearest to the unit
-    circle, corrected together with its eigenvector. Raises Unsolvable if all multipliers are real."""
+    """Test function of torus points: |mu| - 1, mu: complex multiplier nearest to the unit circle, which is
+    corrected together with its eigenvector. Raises Unsolvable if all multipliers are real."""
 
     def __init__(self, matrix: BorderedMatrix) -> None:
         self.matrix = matrix
@@ -127,7 +124,8 @@ class TorusFunction:
         return abs(self.multiplier) - 1
 
     def start_from(self, parts: Array) -> None:
-        """Sets the eigenvector, given by real and imaginary part, (2, N + 1), that is corrected next."""
+        """Sets the approximate eigenvector, as real and imaginary part, (2, N + 1), that the next call of
+        `correct` improves."""
         self.vectors = parts
 
     def correct(self, orbit: Orbit) -> None:
@@ -168,7 +166,7 @@ def _parts(vector: Array) -> Array:
 
 
 def pair_nearest_unit_circle(matrix: BorderedMatrix) -> complex | None:
-    """Complex multiplier nearest to the unit circle, over the solved time interval of the matrix's orbit;
+    """Complex multiplier nearest to the unit circle, over the solved time interval of the orbit of `matrix`;
     None if all multipliers are real."""
     h = matrix.partial_multipliers
     pairs = h[np.abs(h.imag) > SPECIAL_POINT.real_multiplier * np.abs(h)]

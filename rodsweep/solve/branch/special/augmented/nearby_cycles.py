@@ -1,9 +1,5 @@
-"""Cycles near a cycle with a factorised Newton matrix, corrected together with a test function of
-`functions`.
-
-Cycle and test function converge together; a new matrix is assembled only where the corrections converge
-slowly.
-"""
+"""Cycles near a cycle whose Newton matrix is factorised, corrected together with a test function of
+`functions`. A new matrix is assembled only if the corrections converge slowly."""
 
 from typing import Protocol
 
@@ -20,7 +16,7 @@ from .functions import AUGMENTED, FoldFunction, TorusFunction
 
 
 class CycleFamilyInterface(Protocol):
-    """Interface of `NearbyCycleSolver` to a two-parameter family of cycles near a curve of special points.
+    """Two-parameter family of cycles near a curve of special points, as `NearbyCycleSolver` uses it.
 
     border: direction of the branch in components (deflection, log period, parameter), (3,). small: whether
     the cycles are so small that the fold function is divided by the deflection. workspace: memory of Newton's
@@ -37,44 +33,44 @@ class CycleFamilyInterface(Protocol):
     def workspace(self) -> NewtonWorkspace: ...
 
     def function(self, matrix: BorderedMatrix) -> "FoldFunction | TorusFunction":
-        """The test function that is zero on the curve of special points, at the orbit of a bordered
-        matrix."""
+        """The test function that is zero on the curve of special points, for cycles near the orbit of
+        `matrix`."""
 
 
 class NearbyCycleSolver:
-    """Solver for cycles of a family, with their test function, near a cycle with a factorised Newton
-    matrix."""
+    """Solver for cycles of a family, with their test function, near a cycle whose Newton matrix is
+    factorised."""
 
     def __init__(self, family: CycleFamilyInterface, start: Orbit, contraction: float) -> None:
-        """start: orbit at which the first matrix is assembled. contraction: contraction rate of earlier
-        corrections in the family, inf if unknown; it is updated here unless the cycles are small."""
+        """start: orbit at which the first matrix is assembled. contraction: initial value of the attribute
+        `contraction`, measured at earlier cycles of the family; inf if unknown."""
         self.scale = family.scale
         self.border = family.border
         self._family = family
         self.contraction = contraction
-        """Contraction rate: ratio of successive corrections, divided by the relative distance from the cycle
-        of the matrix."""
+        """Assumed contraction rate: ratio of successive corrections, divided by the relative distance from
+        the cycle of the matrix. Each solution of a cycle updates the rate unless the family is `small`."""
         self._eliminate(start)
 
     def _eliminate(self, orbit: Orbit) -> None:
-        """Assembles and factorises a new matrix at an orbit, and sets `distance`, the distance from this
-        orbit, to 0."""
+        """Assembles and factorises a new matrix at an orbit, and sets `distance`, the relative distance of
+        the present cycle from this orbit, to 0."""
         self.matrix = BorderedMatrix(orbit, self.scale, self._family.workspace)
         self.distance = 0.0
         self.function = self._family.function(self.matrix)
 
     def predict(self, vectors: Array) -> None:
-        """Sets the tangent, (N + 1,), or the eigenvector, (2, N + 1), from which the next correction of the
-        test function starts."""
+        """Sets the approximate tangent, (N + 1,), or eigenvector, (2, N + 1), that the next correction of the
+        test function improves."""
         self.function.start_from(vectors)
 
     def solved(
         self, orbit: Orbit, condition: BorderCondition, slope: float, enough: float
     ) -> tuple[Orbit, float]:
-        """(the cycle near an orbit that fulfils `condition`, value of its test function); raises Unsolvable.
+        """(cycle near `orbit` that fulfils `condition`, value of its test function); raises Unsolvable.
 
         slope: approximate modulus of the derivative of the test function across the curve. enough: relative
-        tolerance.
+        tolerance of cycle and test function.
         """
         last = 0.0
         for _ in range(AUGMENTED.max_corrections):
@@ -84,10 +80,9 @@ class NearbyCycleSolver:
             before = self.function.value(orbit)
             self.function.correct(orbit)
             value = self.function.value(orbit)
-            # The test function converges with its vectors; its change counts as a distance across the curve.
+            # The change of the test function, divided by `slope`, is a distance across the curve.
             off = max(change, abs(value - before) / slope)
-            # The first correction has no predecessor: the ratio is estimated from the distance from the
-            # matrix's cycle.
+            # At the first correction the ratio is estimated from the distance to the cycle of the matrix.
             rate = off / last if last else min(1.0, self.contraction * distance)
             if last and not self._family.small:
                 measured = AUGMENTED.contraction_safety * rate / distance
