@@ -1,2 +1,2 @@
-"""Numerical continuation: step length and ends of a curve of solutions, and the search for all curves of a
-plane."""
+"""Numerical continuation: step length and ends of a curve of solutions, and the search for all curves in a
+parameter plane."""

@@ -1,8 +1,9 @@
 """Search for all curves through the seed points on the rows of a parameter plane; each curve is traced only
 once.
 
-The search knows neither the kind of the curves nor the process that traces them. If the result of a unit of
-work is missing, the search stops and names the unit. The caller then repeats the search with more results.
+The search does not depend on the kind of the curves or on the process that traces them. If the result of a
+unit of work (a part of a curve) is missing, the search stops and names this unit. The caller then repeats the
+search with more results.
 """
 
 import math
@@ -14,19 +15,20 @@ Curve = TypeVar("Curve")
 
 
 class BoundaryProblem(Protocol[Curve]):
-    """Interface of `boundary_search` to the curves through numbered seed points."""
+    """Interface of `boundary_search` to the curves through seed points, which are identified by their
+    index."""
 
     def next_seed(self, left: Sequence[int]) -> int:
-        """Index of the seed point, chosen from the indices `left`, from which the next curve is traced."""
+        """Index of the seed point from which the next curve is traced, one of the indices `left`."""
 
     def missing_units(self, seed: int) -> list[int]:
-        """Units of work whose results are missing for the curve through a seed point."""
+        """Units of work whose results are missing for the curve through the seed point `seed`."""
 
     def curve(self, seed: int) -> Curve | None:
-        """The curve through a seed point; None if the curve cannot be traced."""
+        """The curve through the seed point `seed`; None if this curve cannot be traced."""
 
     def distance(self, curve: Curve, seed: int) -> float:
-        """Distance of a seed point from a curve, in units of the length of a row."""
+        """Distance of the seed point `seed` from a curve, in units of the length of a row."""
 
     def same(self, one: Curve, other: Curve) -> bool:
         """Whether two curves are identical."""
@@ -35,10 +37,8 @@ class BoundaryProblem(Protocol[Curve]):
 @dataclass(frozen=True, slots=True)
 class Boundaries(Generic[Curve]):
     """All curves through the seed points of a plane. agreement: largest distance of a seed point from its
-    curve, in units of the length of a row.
-
-    untraced: number of seed points through which no curve could be traced.
-    """
+    curve, in units of the length of a row. untraced: number of seed points through which no curve could be
+    traced."""
 
     curves: tuple[Curve, ...]
     agreement: float
@@ -47,11 +47,12 @@ class Boundaries(Generic[Curve]):
 
 @dataclass(slots=True)
 class BoundarySearch(Generic[Curve]):
-    """State of the search for curves through numbered seed points.
+    """State of the search for curves through seed points.
 
-    tolerance: largest distance from a curve of a seed point on it. distances: distance of each seed point
-    from the nearest curve so far. missing_units: units of work whose missing results stopped the search.
-    open_seeds: other seed points that lie on no curve so far.
+    tolerance: a seed point lies on a curve if its distance is at most this number. distances: distance of
+    each seed point from the nearest curve so far, by index. missing_units: units of work whose missing
+    results stopped the search. open_seeds: seed points that lie on no curve so far, except the point where
+    the search stopped.
     """
 
     tolerance: float
@@ -62,7 +63,7 @@ class BoundarySearch(Generic[Curve]):
 
     @property
     def boundaries(self) -> Boundaries[Curve]:
-        """All curves; valid once `missing_units` is empty."""
+        """All curves; valid if `missing_units` is empty."""
         found = [distance for distance in self.distances.values() if distance <= self.tolerance]
         return Boundaries(tuple(self.curves), max(found, default=0.0), len(self.distances) - len(found))
 
@@ -70,15 +71,16 @@ class BoundarySearch(Generic[Curve]):
 def boundary_search(
     problem: BoundaryProblem[Curve], seeds: Iterable[int], agree: float
 ) -> BoundarySearch[Curve]:
-    """Traces curves until every seed point lies on a curve or was tried, or until a result of a unit is
-    missing."""
+    """Traces curves until every seed point lies on a curve or was tried, or until the result of a unit of
+    work is missing. seeds: indices of the seed points. agree: `BoundarySearch.tolerance`."""
     search: BoundarySearch[Curve] = BoundarySearch(agree, dict.fromkeys(seeds, math.inf))
     tried: set[int] = set()
     while left := [i for i, off in search.distances.items() if off > agree and i not in tried]:
         seed = problem.next_seed(left)
         search.missing_units = problem.missing_units(seed)
         if search.missing_units:
-            # Idle processes may trace from these seeds meanwhile; some may prove to lie on the missing curve.
+            # Idle processes may trace curves from these seeds meanwhile. Some seeds may lie on the missing
+            # curve.
             search.open_seeds = [i for i in left if i != seed]
             break
         tried.add(seed)

@@ -1,10 +1,12 @@
-"""Numerical continuation of one curve of solutions: the loop shared by all kinds of curves.
+"""Numerical continuation of one curve of solutions, for all kinds of curves.
 
 A `CurveProblem` predicts and corrects the solution one step ahead. `follow_curve` chooses the step length
 from the prediction error and from the angle between successive steps, and halves the length of a failed step.
-The curve ends where a margin becomes zero, where the curve closes, or where no step succeeds.
+The curve ends where a margin becomes zero, where the curve closes, where no step succeeds, or at the maximum
+number of solutions.
 
-This module knows no rods, meshes, eigenvalues or cycles. Reference: Keller 1977; Govaerts 2000, ch. 2.
+This module does not depend on rods, meshes, eigenvalues or cycles. References: Keller 1977; Govaerts 2000,
+ch. 2.
 """
 
 from collections.abc import Callable, Sequence
@@ -23,11 +25,8 @@ Solution = TypeVar("Solution")
 
 
 class StepResult(NamedTuple, Generic[Solution]):
-    """The solution one step ahead on a curve.
-
-    prediction_error: relative distance of the solution from its prediction. cosine: cosine of the angle by
-    which the curve turns in the step.
-    """
+    """The solution one step ahead on a curve. prediction_error: relative distance of the solution from its
+    prediction. cosine: cosine of the angle by which the direction of the curve changes in the step."""
 
     solution: Solution
     prediction_error: float
@@ -35,19 +34,20 @@ class StepResult(NamedTuple, Generic[Solution]):
 
 
 class CurveProblem(Protocol[Solution]):
-    """Interface of `follow_curve` to a curve of solutions; `behind`: solutions so far, in order along the
+    """Interface of `follow_curve` to a curve of solutions. behind: solutions so far, in order along the
     curve."""
 
     def step(self, behind: Sequence[Solution], length: float) -> StepResult[Solution]:
-        """The solution one step of the given length ahead of `behind[-1]`; raises Unsolvable if Newton's
+        """The solution one step of the length `length` beyond `behind[-1]`; raises Unsolvable if Newton's
         method fails."""
 
     def margins(self, solution: Solution) -> Array:
-        """Signed distances, (margins,), of a solution from the limits of the curve; a limit is passed where
-        one is negative."""
+        """Signed distances, (margins,), of a solution from the limits of the curve; a negative distance means
+        that the solution is beyond this limit."""
 
     def located_zero(self, behind: Sequence[Solution], outer: Solution, margin: int) -> Solution | None:
-        """The solution between `behind[-1]` and `outer` at which a margin is 0; None if not found."""
+        """The solution between `behind[-1]` and `outer` at which the margin with the index `margin` is 0;
+        None if this solution is not found."""
 
     def closes(self, behind: Sequence[Solution], there: Solution) -> bool:
         """Whether the first solution of the curve lies on the step from `behind[-1]` to the next solution
@@ -65,14 +65,15 @@ class StepControl:
     min_length: float
     """Shortest step length: the curve ends if a step fails and half its length would be below this limit."""
     target_error: float = inf
-    """Prediction error at which the length of the next step aims."""
+    """The length of the next step is chosen for this prediction error."""
     max_error: float = inf
-    """Largest prediction error of an accepted step; beyond it the solution may belong to another curve."""
+    """Largest prediction error of an accepted step; with a larger error the solution may belong to another
+    curve."""
     prediction_order: int = 1
-    """Order of the prediction: the prediction error grows as length**order. With fewer solutions so far, the
-    number of solutions is the order."""
+    """Order of the prediction: the prediction error is proportional to length**order. If there are fewer
+    solutions so far, the number of solutions is used as the order."""
     target_angle: float = inf
-    """Angle in radians between successive steps at which the length of the next step aims."""
+    """The length of the next step is chosen for this angle, in radians, between successive steps."""
     max_angle: float
     """Largest angle in radians between successive steps; a step with a larger angle fails."""
     max_ratio: float
@@ -82,7 +83,7 @@ class StepControl:
     max_solutions: int = 5000
     """Maximum number of solutions on a curve; the curve ends there."""
     min_measured: float = 1e-9
-    """Smallest prediction error, and smallest angle in radians, used in the choice of a step length: it
+    """Lower limit of the prediction error, and of the angle in radians, in the choice of a step length; it
     avoids a division by 0."""
 
     def __post_init__(self) -> None:
@@ -90,7 +91,8 @@ class StepControl:
             raise ValueError(f"max_ratio = {self.max_ratio} must be above 1, so that steps can grow")
 
     def accepted(self, there: StepResult[Solution]) -> StepResult[Solution]:
-        """The next solution; raises Unsolvable if the solution may lie on another curve."""
+        """The next solution `there`; raises Unsolvable if its prediction error or angle is so large that the
+        solution may lie on another curve."""
         if not there.prediction_error <= self.max_error:
             raise Unsolvable("the corrected solution is too far from its predictor")
         if not _angle(there.cosine) <= self.max_angle:
@@ -98,9 +100,9 @@ class StepControl:
         return there
 
     def next_length(self, length: float, there: StepResult[Solution], solutions: int) -> float:
-        """Length of the next step, after an accepted step of a given length; `solutions`: number of solutions
-        so far."""
-        # The error of a prediction through m solutions grows with the m-th power of the step.
+        """Length of the next step. length: length of the accepted last step. there: result of the last step.
+        solutions: number of solutions so far."""
+        # The error of a prediction from m solutions is proportional to the m-th power of the step.
         by_distance = (self.target_error / max(there.prediction_error, self.min_measured)) ** (
             1 / min(self.prediction_order, solutions)
         )
@@ -110,7 +112,7 @@ class StepControl:
 
 
 def _angle(cosine: float) -> float:
-    """Angle in radians of a cosine; a cosine beyond 1 by rounding counts as 1."""
+    """Angle in radians of a cosine, which is first limited to [-1, 1] because of rounding errors."""
     return acos(min(1.0, max(-1.0, cosine)))
 
 
@@ -127,8 +129,8 @@ class CurveStop(Enum):
 class Curve(Generic[Solution]):
     """Solutions in order from the start of the curve, and the reason for the end of the curve.
 
-    margin: index of the margin that becomes negative at the end, or -1. If the zero of the margin was
-    located, the last solution is at the zero.
+    margin: index of the margin that becomes negative at the end, or -1. If the zero of this margin was
+    located, the last solution is the solution at the zero.
     """
 
     solutions: list[Solution]
@@ -139,12 +141,9 @@ class Curve(Generic[Solution]):
 def advance(
     step: Callable[[float], StepResult[Solution]], length: float, control: StepControl
 ) -> tuple[StepResult[Solution], float]:
-    """(the next solution of a curve, the length of the successful step); `length` is halved after every
-    failure.
-
-    step: returns the solution one step of a given length ahead, or raises an error of FAILURES. `advance`
-    raises the last error if no step succeeds.
-    """
+    """(next solution of a curve, length of the successful step). length: first step length, halved after
+    every failed step. step: function that returns the solution one step of a given length ahead, or raises an
+    error of FAILURES. `advance` raises the last error if no step succeeds."""
     length = min(length, control.max_length)
     while True:
         try:
@@ -161,8 +160,8 @@ def follow_curve(
     control: StepControl,
     report: Callable[[Sequence[Solution]], None],
 ) -> Curve[Solution]:
-    """The curve from the solution `start` in the direction that the problem chooses. report: function that is
-    called with all solutions before every step."""
+    """The curve from the solution `start`, in the direction that `problem` chooses. report: function that is
+    called before every step with all solutions so far."""
     solutions = [start]
     length = control.first_length
     margins = problem.margins(start)
@@ -178,7 +177,7 @@ def follow_curve(
             last = problem.located_zero(solutions, there.solution, outside)
             return Curve(solutions if last is None else [*solutions, last], CurveStop.margin, outside)
         if problem.closes(solutions, there.solution):
-            # The start itself, not a solution next to it, closes the curve exactly.
+            # `start` is appended again, so that the curve is closed exactly.
             return Curve([*solutions, start], CurveStop.closed)
         solutions.append(there.solution)
         margins = ahead
@@ -187,11 +186,10 @@ def follow_curve(
 
 
 def first_crossed_margin(before: Array, after: Array) -> int:
-    """Index of the margin that is first to become negative along a step; -1 if no margin becomes negative.
-
-    before, after: margins at both ends of the step, (margins,), interpolated linearly.
-    """
-    # A negative margin that rises is no end: the curve comes in from beyond this limit.
+    """Index of the first margin that becomes negative along a step; -1 if no margin becomes negative. before,
+    after: margins at the two ends of the step, (margins,), between which each margin is interpolated
+    linearly."""
+    # A negative margin that grows does not end the curve, which enters from beyond this limit.
     falls = (after < 0) & (after < before)
     # Linear interpolation gives the fraction of the step at which each falling margin is 0.
     share = np.where(falls, before / np.where(falls, before - after, 1.0), inf)
@@ -202,11 +200,11 @@ def first_crossed_margin(before: Array, after: Array) -> int:
 def zero_along_step(
     value: Callable[[float], float], ends: tuple[float, float], length: float, enough: float, relative: float
 ) -> float:
-    """Length at which a function along a step is 0, by Brent's method; raises Unsolvable without a change of
-    sign.
+    """Length along a step at which a function is 0, by Brent's method; raises Unsolvable if the function has
+    the same sign at both ends of the step.
 
-    value: the function of the length. ends: known values at length 0 and at the full `length`. enough:
-    modulus up to which a value counts as 0. relative: tolerance of the result, in units of `length`.
+    value: function of the length. ends: values of the function at the lengths 0 and `length`. enough: values
+    with at most this modulus are treated as 0. relative: tolerance of the result, divided by `length`.
     """
     from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
@@ -216,7 +214,7 @@ def zero_along_step(
 
     def settled(at: float) -> float:
         here = known[at] if at in known else value(at)
-        # An exact 0 ends Brent's method, which would otherwise bisect rounding errors.
+        # The value 0 ends Brent's method, which would otherwise bisect within rounding errors.
         return 0.0 if abs(here) <= enough else here
 
     return float(brentq(settled, 0.0, length, xtol=relative * length))

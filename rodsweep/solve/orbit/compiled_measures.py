@@ -1,4 +1,5 @@
-"""Compiled functions of the states along an orbit: strains, motion of the tip, mean powers."""
+"""Compiled functions of the states along an orbit: strains, motion of the tip, mean powers. K: number of
+solved states or intervals, s: stages of an interval, n: unknowns of a state."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -18,8 +19,8 @@ from ...model.material.jump import Unknowns, unknowns_before_jump, unknowns_behi
 from .semidiscrete import Semidiscrete
 
 REFLECTION_SIGNS = np.array([1.0, -1.0, -1.0])
-"""Signs of (x, y, theta), and of (h1, h2, Pi), under the reflection: the values half a period later on a
-symmetric orbit."""
+"""Signs of (x, y, theta), and of (h1, h2, Pi), under the reflection: half a period later, a symmetric orbit
+has the values multiplied by these signs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,7 +28,7 @@ class ExtremumSettings(CompiledSettings):
     """Settings for the extrema of the tip's coordinates over a period."""
 
     oversampling: int = 4
-    """Number of samples per time node among which the extrema are sought."""
+    """Number of samples per time node from which the extrema are computed."""
 
 
 EXTREMA = ExtremumSettings()
@@ -37,10 +38,10 @@ class TipPath(NamedTuple):
     """Path of the tip over a period, and strains, as trigonometric polynomials through the states at the time
     nodes.
 
-    strains: (h1, h2, Pi) at the nodes of every element, and their derivatives by the time in periods, for the
-    solved states, (2, 3, K, elements (order + 1)). For (x, y, theta) of the tip over the period:
-    coefficients, (count, 3); samples at equidistant times, (`EXTREMA.oversampling` (count - 1), 3); smallest
-    and largest values, (3,) each.
+    strains: (h1, h2, Pi) at the nodes of every element, and the derivatives of these strains by t/T, for the
+    solved states, (2, 3, K, elements (order + 1)). coefficients: Fourier coefficients of (x, y, theta) of the
+    tip, (count, 3). samples: (x, y, theta) at equidistant times of the period, (`EXTREMA.oversampling` (count
+    - 1), 3). least, largest: smallest and largest (x, y, theta), (3,).
     """
 
     strains: Array
@@ -51,7 +52,7 @@ class TipPath(NamedTuple):
 
 
 class OrbitMeans(NamedTuple):
-    """Means of the powers over a period, and the smallest h1, with names and units as in `Measures`."""
+    """Means of the powers over a period, and the smallest h1; names and units as in `Measures`."""
 
     injection_mean: float
     injection_rms: float
@@ -62,8 +63,8 @@ class OrbitMeans(NamedTuple):
 
 @compiled_for_vectors
 def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> TipPath:
-    """Path of the tip from `states` at equidistant times, (K, n), over half the period for a symmetric
-    orbit."""
+    """Path of the tip. states: states at equidistant times of the solved part of the period, (K, n): half the
+    period for a symmetric orbit, otherwise the period. period: in tau2."""
     size = len(p.matrices.weights)
     order = len(m.ends) - 1
     strains = np.empty((2, 3, len(states), len(m.lengths) * (order + 1)))
@@ -77,7 +78,7 @@ def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> T
     write_element_strains(S, p.rod, order, strains[0])
     write_element_strain_changes(S, rates, p.rod, order, strains[1])
     tip_motion(strains[0], strains[1], m, tip, velocity)
-    # Signs 0 for an orbit without symmetry: its values cover the whole period.
+    # For an orbit without symmetry the signs are 0, because its values cover the whole period.
     c = hermite_columns(tip, velocity, REFLECTION_SIGNS * (p.parts - 1))
     samples = series_samples_of_columns(c, EXTREMA.oversampling * (len(c) - 1))
     return TipPath(strains, c, samples, minima(c, samples), maxima(c, samples))
@@ -91,16 +92,17 @@ def node_stresses(states: Array, out: Array) -> None:
         for k in range(len(states)):
             for i in range(n):
                 out[a, k, i] = states[k, stress_index(a, i, n)]
-            # The tip's stress is prescribed, so its deviation from the straight rod vanishes.
+            # The stress at the tip is prescribed: its deviation from the straight rod is 0.
             out[a, k, n] = 0.0
 
 
 @compiled_for_vectors
 def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
-    """Size of each harmonic from the first, (count - 1,): the root sum of squares over all columns of
-    `values`.
+    """Size of each harmonic from the first, (count - 1,): square root of the sum of squared moduli over all
+    columns of `values`.
 
-    values, slopes: as in `hermite_columns`. sign: of every column half a period later, 0 without symmetry.
+    values, slopes: as in `hermite_columns`. sign: factor by which every column changes in half a period of a
+    symmetric orbit; 0 for an orbit without symmetry.
     """
     c = hermite_columns(values, slopes, np.full(values.shape[1], sign))
     sizes = np.zeros(len(c) - 1)
@@ -112,7 +114,8 @@ def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
 
 @compiled_for_vectors
 def means(stages: Array, weights: Array, p: Semidiscrete) -> OrbitMeans:
-    """Means over a period from the states at the `stages`, (K, s, n), with the quadrature weights, (s,)."""
+    """Means over a period. stages: states at the stages, (K, s, n). weights: quadrature weights of the
+    stages, (s,)."""
     K, s, n = stages.shape
     flat = stages.reshape(K * s, n)
     nodes = len(p.matrices.weights) - 1
@@ -124,14 +127,14 @@ def means(stages: Array, weights: Array, p: Semidiscrete) -> OrbitMeans:
         for i in range(K * s):
             mean[a] += weights[i % s] * p.lengths[i // s] * power[a, i]
         for i in range(K * s):
-            # In a second pass: the difference of mean squares would cancel for a nearly constant power.
+            # In a second pass, because mean(P^2) - mean(P)^2 would cancel for a nearly constant power P.
             square[a] += weights[i % s] * p.lengths[i // s] * (power[a, i] - mean[a]) ** 2
     stretch = p.rod.rest[0, nodes]  # at the tip
     for i in range(K * s):
         for j in range(nodes):
             pull = flat[i, stress_index(0, j, nodes)]
             stretch = min(stretch, p.rod.rest[0, j] + p.rod.compliance[0, j] * pull)
-        # At a jump the node has a mean strain; the smaller stretch of both sides counts.
+        # At a jump the node has a mean strain; the smaller of the stretches on the two sides is used.
         for j in range(len(p.rod.jumps)):
             stretch = min(stretch, _stretch_at_jump(flat[i], p.rod.jumps[j], p.rod.sides[j], p.rod))
     return OrbitMeans(mean[0], np.sqrt(square[0]), mean[1], np.sqrt(square[1]), stretch)
@@ -139,8 +142,8 @@ def means(stages: Array, weights: Array, p: Semidiscrete) -> OrbitMeans:
 
 @compiled_for_vectors
 def _stretch_at_jump(state: Array, node: int, sides: Array, rod: NodalRod) -> float:
-    """The smaller of the two h1 at a jump of the material at `node`. state: (n,). sides: material constants,
-    (2, 7)."""
+    """The smaller h1 of the two sides of a jump of the material at `node`. state: (n,). sides: material
+    constants on the two sides, (2, 7)."""
     n = rod.rest.shape[1] - 1
     q = Unknowns(state[stress_index(0, node, n)], state[stress_index(2, node, n)])
     a = unknowns_before_jump(rod.law, sides, q)
@@ -150,8 +153,8 @@ def _stretch_at_jump(state: Array, node: int, sides: Array, rod: NodalRod) -> fl
 
 @compiled_for_vectors
 def strain_rates(states: Array, out: Array, p: Semidiscrete) -> None:
-    """Writes the strain rates dE/dt at all nodes, 0 at the tip, of `states`, (m, n), into `out`, (3, m, nodes
-    + 1)."""
+    """Writes the strain rates dE/dt at all nodes of `states`, (m, n), into `out`, (3, m, nodes + 1); at the
+    tip 0 is written."""
     size = len(p.matrices.weights)
     V = np.empty((3, size))
     G = np.empty((3, size))
@@ -165,8 +168,8 @@ def strain_rates(states: Array, out: Array, p: Semidiscrete) -> None:
 
 @compiled_for_vectors
 def powers(states: Array, out: Array, p: Semidiscrete) -> None:
-    """Writes the powers of the follower force (by the reaction) and of the drag for `states`, (m, n), into
-    `out`, (2, m)."""
+    """Writes two powers for `states`, (m, n), into `out`, (2, m): the power of the follower force, computed
+    from the reaction at the tip, and the power lost by drag."""
     size = len(p.matrices.weights)
     V = np.empty((3, size))
     G = np.empty((3, size))

@@ -1,8 +1,8 @@
 """Measures of a cycle: extrema, harmonics, energy budget, path of the tip and shapes of the rod.
 
-At the starts of the intervals, equidistant in time, strains and their rates have the full order of accuracy
-of the collocation. The trigonometric polynomial through strains and rates converges spectrally, so that
-extrema need no event location. Means are integrals by the collocation's quadrature.
+At the starts of the intervals, which are equidistant in time, strains and strain rates have the full order of
+the collocation. The trigonometric polynomial through strains and strain rates converges spectrally; extrema
+are computed from this polynomial. Means are integrals by the quadrature of the collocation.
 """
 
 from dataclasses import dataclass, field
@@ -28,11 +28,12 @@ from .orbit import Orbit
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Measures:
-    """Scalar measures and harmonics of a cycle, named as in the result file; NaN if not known.
+    """Scalar measures and harmonics of a cycle, with the names in the result file; NaN if unknown.
 
-    period in tau2; frequency = 2 pi/period; tip in L and rad. harmonic_amplitude: harmonics of the tip's y
-    from the first, in L. injection, dissipation: mean, and rms of the fluctuation, in k3/(L tau2).
-    energy_imbalance: mean injection/mean dissipation - 1. least_stretch: smallest h1.
+    period: in tau2. frequency: 2 pi/period. tip_...: extrema of the tip's x, y, in L, and theta, in rad.
+    harmonic_amplitude: harmonics of the tip's y from the first, in L. injection_..., dissipation_...: mean of
+    the power, and rms of its fluctuation, in k3/(L tau2). energy_imbalance: mean injection/mean dissipation -
+    1. least_stretch: smallest h1.
     """
 
     period: float = nan
@@ -52,7 +53,7 @@ class Measures:
 
 
 class CyclePath:
-    """Motion of an orbit over its whole period, by trigonometric polynomials."""
+    """Motion of an orbit over its whole period, as trigonometric polynomials."""
 
     def __init__(self, orbit: Orbit) -> None:
         self.orbit = orbit
@@ -75,22 +76,20 @@ class CyclePath:
 
     @cached_property
     def bending_harmonics(self) -> Array:
-        """Size of each harmonic of the curvature Pi, from the first, (count - 1,).
-
-        The size is the root sum of squares over the nodes of all elements.
-        """
+        """Size of each harmonic of the curvature Pi from the first, (count - 1,): square root of the sum of
+        squared moduli over the nodes of all elements."""
         values, slopes = self._path.strains[:, 2]
         sizes: Array = harmonic_sizes(values, slopes, REFLECTION_SIGNS[2] * self.orbit.symmetric)
         return sizes
 
     def resampled_tip(self, count: int) -> Array:
-        """(x, y, theta) of the tip at `count` equidistant times of a period, as in `tip_samples`, shape
+        """(x, y, theta) of the tip at `count` equidistant times of a period from the start of the orbit,
         (count, 3)."""
         return series_samples(self.tip_coefficients, count)
 
     @cached_property
     def extrema(self) -> dict[str, float]:
-        """Extrema of the tip, named as in `Measures`."""
+        """Extrema of the tip, by the names in `Measures`."""
         least = self._path.least.tolist()
         largest = self._path.largest.tolist()
         return {
@@ -107,20 +106,23 @@ class CyclePath:
 
     @property
     def time_of_largest_y(self) -> float:
-        """Time of the largest sample of the tip's y, in periods from the orbit's start."""
+        """Time of the largest sample of the tip's y, counted from the start of the orbit, in periods."""
         return int(self.tip_samples[:, 1].argmax()) / len(self.tip_samples)
 
     @cached_property
     def beginning(self) -> float:
-        """Time, in periods from the orbit's start, at which the tip's y rises through its mean."""
+        """Time at which the tip's y rises through its mean, counted from the start of the orbit, in
+        periods."""
         return time_of_rise_through_mean(self.tip_samples[:, 1])
 
     def tip(self, samples: int) -> Array:
-        """(x, y, theta) of the tip at equidistant times from `beginning`, (3, samples)."""
+        """(x, y, theta) of the tip at `samples` equidistant times of a period from `beginning`, (3,
+        samples)."""
         return self._sampled(self.tip_coefficients, samples).T
 
     def energy(self, samples: int) -> Array:
-        """(elastic energy U, injection, dissipation) at equidistant times from `beginning`, (3, samples)."""
+        """(elastic energy U, injected power, dissipated power) at `samples` equidistant times of a period
+        from `beginning`, (3, samples)."""
         period = self.orbit.period
         # Factors of the time derivative of Fourier coefficients.
         times = 2j * np.pi / period * np.arange(len(self.tip_coefficients))
@@ -138,31 +140,32 @@ class CyclePath:
             rates = np.tile(rates, 2)
         c = hermite_coefficients(U, rates)
         U, change = self._sampled(np.stack([c, times[: len(c)] * c], axis=1), samples).T
-        # The energy law closes to round-off, so dissipation is injection minus dU/dt.
+        # The energy balance holds to rounding error: dissipation is injection minus dU/dt.
         return np.stack([U, injection, injection - change])
 
     def shapes(self, count: int, nodes: int) -> Array:
-        """(x, y, theta) of the rod at `count` equidistant times from `beginning`, on `nodes` Lobatto nodes,
-        shape (3, count, nodes)."""
+        """(x, y, theta) of the rod at `count` equidistant times of a period from `beginning` and at `nodes`
+        Lobatto nodes, (3, count, nodes)."""
         strains = self._sampled(self.strain_coefficients, count).swapaxes(0, 1)
         grid = self.orbit.form.mesh
         return shape_from_strains(grid, np.ascontiguousarray(strains), np.zeros(3)) @ _at_lobatto(grid, nodes)
 
     def _sampled(self, c: Complex, count: int) -> Array:
-        """Re sum_k c_k exp(2 pi i k t) at equidistant times from `beginning`, shape (count, ...)."""
+        """Re sum_k c_k exp(2 pi i k t) at `count` equidistant times t of a period from `beginning`, (count,
+        ...)."""
         turns = np.exp(2j * np.pi * self.beginning * np.arange(len(c)))
         return series_samples(c * turns.reshape(-1, *(1,) * (c.ndim - 1)), count)
 
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def _at_lobatto(grid: Mesh, nodes: int) -> Array:
-    """Matrix that interpolates, from the right, values at all nodes of the mesh `grid` to `nodes` Lobatto
-    nodes of the rod."""
+    """Matrix, (nodes of `grid`, nodes): values at all nodes of the mesh `grid` times this matrix are the
+    values at `nodes` Lobatto nodes of the rod."""
     return grid.evaluation(lobatto_points(nodes)).T
 
 
 def measures_of(path: CyclePath) -> Measures:
-    """All scalar measures and harmonics of the orbit of `path`."""
+    """Scalar measures and harmonics of the orbit of `path`."""
     orbit = path.orbit
     y = path.tip_coefficients[:, 1]
     mean = means(np.ascontiguousarray(orbit.states), orbit.method.weights, orbit.semidiscrete)

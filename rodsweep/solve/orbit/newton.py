@@ -15,41 +15,41 @@ from .orbit import Orbit
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OrbitNewtonSettings:
-    """Settings of Newton's method for a periodic orbit, with a parameter among the unknowns or without."""
+    """Settings of Newton's method for a periodic orbit, with or without a parameter among the unknowns."""
 
     new_matrix_ratio: float = 0.1
-    """Ratio of successive Newton steps above which a new Newton matrix is assembled and eliminated."""
+    """A new Newton matrix is assembled and eliminated if the ratio of successive Newton steps exceeds this
+    number."""
     longest_step: float = 0.5
-    """Largest relative change of state, period or parameter in one iteration. A longer first step is
-    shortened if no parameter is unknown; any other longer step means that no orbit is near the start."""
+    """Largest relative change of state, period or parameter in one iteration. If no parameter is unknown, a
+    longer step is shortened, and the iteration fails if a later step is longer and does not decrease;
+    otherwise a longer step is a failure."""
     max_iterations: int = 12
-    """Maximum number of iterations: a slower convergence means that no orbit is near the start."""
+    """Maximum number of iterations; slower convergence means that there is no orbit near the start."""
     quadratic_error: float = 1e5
-    """Bound of the error after a Newton step with the matrix at the iterate, in units of the squared relative
-    step; nearly neutral orbits come close to it."""
+    """Bound of the relative error after a Newton step with the matrix at the iterate, divided by the squared
+    relative step. Nearly neutral orbits come close to this bound."""
 
 
 ORBIT_NEWTON = OrbitNewtonSettings()
 
 
 class HasMultipliers(Protocol):
-    """Newton's matrix of an orbit, which also gives the orbit's Floquet multipliers.
-
-    tangent: derivative of the orbit by a parameter, (N,), or None. workspace: memory of the matrix.
-    """
+    """Newton's matrix of an orbit with a method for the Floquet multipliers. tangent: derivative of the orbit
+    values by a parameter, (N,), or None. workspace: memory of the matrix."""
 
     tangent: Array | None
     workspace: NewtonWorkspace
 
     def multipliers(self) -> Complex:
-        """Floquet multipliers above rounding error, the trivial multiplier included, (rank,), by descending
-        modulus."""
+        """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
+        multiplier."""
 
 
 @dataclass(frozen=True, eq=False)
 class ConvergedOrbit:
     """Result of Newton's method. matrix: the last Newton matrix. distance: relative distance of `orbit` from
-    the iterate at which the matrix was made."""
+    the iterate at which `matrix` was assembled."""
 
     orbit: Orbit
     matrix: HasMultipliers
@@ -57,19 +57,19 @@ class ConvergedOrbit:
 
     @property
     def workspace(self) -> NewtonWorkspace:
-        """Workspace that holds the matrix."""
+        """Memory of the matrix."""
         return self.matrix.workspace
 
 
 def newton(
     orbit: Orbit, tolerance: float, workspace: NewtonWorkspace, parameter: str | None = None
 ) -> ConvergedOrbit:
-    """The periodic orbit near the start `orbit`, by Newton's method; raises Unsolvable if it does not
+    """The periodic orbit near the start `orbit`, by Newton's method; raises Unsolvable if the method does not
     converge.
 
-    tolerance: relative, of states and period. workspace: memory of the matrices. parameter: name of the
-    parameter by which the matrix gives the orbit's derivative, or
-    None. A matrix is reused while the Newton steps decrease fast.
+    tolerance: relative tolerance of states and period. workspace: memory of the matrices. parameter: name of
+    the parameter for the `tangent` of the matrix, or None. A matrix is used again as long as the Newton steps
+    decrease fast.
     """
     matrix = Linearisation(orbit, workspace, parameter)
     distance = 0.0
@@ -80,7 +80,7 @@ def newton(
         change = relative_change(orbit, step)
         if not np.isfinite(change):
             raise Unsolvable("Newton's method for the orbit broke down: its step is not finite")
-        # A long first step may come from a poor start; a long later step that did not shrink is divergence.
+        # A long first step may come from a poor start; a long later step that is not shorter is divergence.
         if iteration > 1 and change > max(last, ORBIT_NEWTON.longest_step):
             raise Unsolvable("Newton's method for the orbit diverges from its start")
         # A full step from a poor start may leave the neighbourhood of the orbit, so long steps are shortened.
@@ -90,13 +90,12 @@ def newton(
         if not orbit.period > 0:
             raise Unsolvable("Newton's method for the orbit broke down: the period is not positive")
         fresh = distance == share * change
-        # Expected error after this step: quadratic for a matrix at the iterate, else linear at the rate of
-        # the last two steps.
+        # Expected error after this step: quadratic in the step if the matrix is new, otherwise by the ratio
+        # of the last two steps.
         left = ORBIT_NEWTON.quadratic_error * change**2 if fresh else change * min(1.0, change / last)
         if left <= tolerance:
             return ConvergedOrbit(orbit, matrix, distance)
-        # A correction by the old factors is far cheaper than a new elimination, so a matrix is kept while it
-        # contracts.
+        # A correction with the old factors is far cheaper than a new elimination.
         if change > ORBIT_NEWTON.new_matrix_ratio * min(last, 1.0):
             matrix = Linearisation(orbit, workspace, parameter)
             distance = 0.0
@@ -111,47 +110,48 @@ def newton(
 
 
 def at_orbit(found: ConvergedOrbit, distance: float, parameter: str | None = None) -> ConvergedOrbit:
-    """`found`, or after one more Newton step if its matrix was made farther than the relative `distance` from
-    the orbit."""
+    """The orbit `found`, after one more Newton step if its matrix was assembled at a relative distance of
+    more than `distance` from the orbit. parameter: as in `newton`."""
     if found.distance <= distance:
         return found
     return linearised(found, parameter)
 
 
 def linearised(found: ConvergedOrbit, parameter: str | None = None) -> ConvergedOrbit:
-    """`found` after one more Newton step, with the matrix at the orbit before this step."""
+    """The orbit `found` after one more Newton step, with the matrix at the orbit before this step. parameter:
+    as in `newton`."""
     orbit = found.orbit
     matrix = Linearisation(orbit, found.workspace, parameter)
     return ConvergedOrbit(orbit.moved(matrix.step), matrix, relative_change(orbit, matrix.step))
 
 
 def multipliers_of(found: ConvergedOrbit) -> tuple[Complex, float]:
-    """(nontrivial Floquet multipliers, (rank - 1,), by descending modulus; distance of the trivial multiplier
-    from 1)."""
+    """Returns (multipliers, distance): nontrivial Floquet multipliers by descending modulus, (rank - 1,), and
+    the distance of the computed trivial multiplier from 1."""
     values = found.matrix.multipliers()
-    # The derivative of the orbit by time is an eigenvector with multiplier 1; its computed distance from 1
-    # shows the error of all.
+    # The derivative of the orbit by time is an eigenvector with the exact multiplier 1.
     trivial = int(np.argmin(np.abs(values - 1)))
     others = np.concatenate([values[:trivial], values[trivial + 1 :]])
     return others, float(abs(values[trivial] - 1))
 
 
 def multiplier_change(multipliers: Complex, others: Complex) -> float:
-    """Error of the largest multiplier, from the `multipliers`, (m,), and `others`, (l,), of two meshes, both
-    by descending modulus: the distance of `multipliers[0]` from the nearest of `others`, or the difference of
-    the largest moduli if larger.
+    """Error of the largest multiplier, from the multipliers on two meshes: the distance of `multipliers[0]`
+    from the nearest of `others`, or the difference of the two largest moduli, whichever is larger.
 
-    The multiplier of the same index is not compared, nor are the moduli alone: on another mesh two
-    multipliers may exchange their places, or two moduli may agree by coincidence.
+    multipliers, others: by descending modulus, (m,) and (l,). Multipliers with the same index are not
+    compared, because two multipliers may be in a different order on another mesh. The moduli alone may agree
+    by coincidence.
     """
     if not (len(multipliers) and len(others)):
         return 0.0
     nearest = np.abs(others - multipliers[0]).min()
-    # Of strongly unstable cycles the largest multiplier changes by factors, and the nearest one is another.
+    # The largest multiplier of a strongly unstable cycle may differ by a factor between meshes; the nearest
+    # multiplier is then not the same.
     return float(max(nearest, abs(abs(others[0]) - abs(multipliers[0]))))
 
 
 def relative_change(orbit: Orbit, step: Array) -> float:
-    """Largest change of n2, m3 and the period by the Newton step `step`, (N,), each relative to its largest
-    value."""
+    """Largest relative change of n2, m3 and the period by the Newton step `step`, (N,): the largest change of
+    each quantity, divided by the largest modulus of this quantity."""
     return float(largest_change(orbit.values, step, orbit.form.unknowns, orbit.form.mesh.nodes))

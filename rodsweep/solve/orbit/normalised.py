@@ -1,8 +1,9 @@
-"""Values of an orbit in units of its size, which are smooth in a parameter up to and through a Hopf point.
+"""Values of an orbit divided by its size, which are smooth functions of a parameter up to and through a Hopf
+point.
 
-The values that change their sign under reflection grow as the square root of the distance from a Hopf point.
-In units of the orbit's size they are smooth, and the squared size grows linearly. The size is that of the
-bending moment at t = 0; its definition contains no parameter.
+The values that change sign under the reflection grow as the square root of the distance from a Hopf point.
+Divided by the size of the orbit these values are smooth; the squared size grows linearly. The size is the
+norm of the bending moment at t = 0, and its definition contains no parameter. N: number of orbit values.
 """
 
 from functools import lru_cache
@@ -20,19 +21,16 @@ from .symmetry import REFLECTION
 
 
 class Reflected(NamedTuple):
-    """Components of a state that the reflection reverses, and the weights of the norm that defines an orbit's
-    size.
-
-    reversed: 1 for components that the reflection reverses, 0 for all others, (n,). weights: quadrature
-    weights of m3^2, (n,).
-    """
+    """Arrays for the normalisation of orbits. reversed: 1 for components of a state that change sign under
+    the reflection, 0 for all other components, (n,). weights: quadrature weights of m3^2 in the squared size,
+    (n,)."""
 
     reversed: Array
     weights: Array
 
 
 def reflected(orbit: Orbit) -> Reflected:
-    """Reflection and weights for the states of `orbit`."""
+    """Arrays for the normalisation of `orbit`."""
     return _reflected(orbit.form.layout, orbit.form.mesh)
 
 
@@ -42,23 +40,22 @@ def _reflected(layout: StateLayout, mesh: Mesh) -> Reflected:
 
 
 def normalised(orbit: Orbit) -> Array:
-    """Normalised values of an orbit, (N + 1,): its values, with components that the reflection reverses
-    divided by the orbit's size, and the squared size at the end.
-    """
+    """Normalised values of an orbit, (N + 1,): its values, of which the components that change sign under the
+    reflection are divided by the orbit's size, and then the squared size."""
     values: Array = normalised_values(orbit.values, reflected(orbit))
     return values
 
 
 def normalised_tangent(orbit: Orbit, tangent: Array) -> Array:
-    """Derivative of an orbit's normalised values by a parameter, (N + 1,), from the derivative `tangent` of
-    its values, (N,)."""
+    """Derivative of the normalised values of an orbit by a parameter, (N + 1,). tangent: derivative of the
+    orbit values, (N,)."""
     slopes: Array = normalised_slopes(orbit.values, tangent, reflected(orbit))
     return slopes
 
 
 @compiled_for_vectors
 def normalised_values(values: Array, r: Reflected) -> Array:
-    """Normalised values, (N + 1,), of an orbit with the values `values`, (N,); compiled."""
+    """Compiled `normalised`: normalised values, (N + 1,), of the orbit with the given `values`, (N,)."""
     squared = squared_size(values, values, r)
     out = np.empty(len(values) + 1)
     out[:-1] = values
@@ -77,12 +74,14 @@ def values_of(normalised: Array, r: Reflected) -> Array:
 
 @compiled_for_vectors
 def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
-    """Weights, (m,), with which m data give p(step) - p(0) for their interpolation polynomial p.
+    """Weights, (m,): p(step) - p(0) is the sum of weights times data, p: interpolation polynomial through m
+    data.
 
-    places: argument of each datum, (m,). orders: 1 for a slope p', 0 for a difference p - p(0), (m,).
+    places: argument of each datum, (m,). orders: 1 if the datum is a slope p', 0 if it is a difference p -
+    p(0), (m,).
     """
     m = len(places)
-    # Places in units of the largest keep the Vandermonde matrix well conditioned.
+    # Arguments are divided by the largest modulus, so that the Vandermonde matrix is well conditioned.
     unit = np.abs(places).max()
     unit = unit if unit > 0 else 1.0
     columns = np.empty((m, m))
@@ -91,8 +90,8 @@ def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
         right[power - 1] = (step / unit) ** power
         for i in range(m):
             at = places[i] / unit
-            # Rows demand that the monomials without constant term are reproduced: the result is a change from
-            # 0.
+            # The weights reproduce each monomial; there is no constant term, because the result is a
+            # difference.
             slope = power * at ** (power - 1) / unit
             columns[power - 1, i] = slope if orders[i] == 1 else at**power
     return np.linalg.solve(columns, right)
@@ -100,16 +99,16 @@ def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
 
 @compiled_for_vectors
 def with_weighted_data(values: Array, data: Array, orders: Array, weights: Array) -> Array:
-    """Predictor: the normalised values of an orbit, (N + 1,), plus a weighted sum of slopes and of
-    differences of other orbits' values from its values.
+    """Predicted normalised values, (N + 1,): normalised values of the present orbit plus a weighted sum of
+    data. A datum is a slope, or the difference of another orbit's normalised values from the present values.
 
-    data: slopes, or values of other orbits, (m, N + 1). orders: 1 for a slope, 0 for values, (m,). weights:
-    (m,).
+    values: of the present orbit, (N + 1,). data: slopes, or normalised values of other orbits, (m, N + 1).
+    orders: 1 for a slope, 0 for values, (m,). weights: as in `polynomial_weights`, (m,).
     """
     out = np.zeros(len(values))
     rest = 1.0
     for k in range(len(weights)):
-        # Weights of values plus the weight of the present values add up to 1; slopes do not count.
+        # The weights of all values, with the weight of the present values, add up to 1.
         rest -= weights[k] if orders[k] == 0 else 0.0
         for i in range(len(values)):
             out[i] += weights[k] * data[k, i]
@@ -120,9 +119,8 @@ def with_weighted_data(values: Array, data: Array, orders: Array, weights: Array
 
 @compiled_for_vectors
 def normalised_slopes(values: Array, tangent: Array, r: Reflected) -> Array:
-    """Derivative of the normalised values, (N + 1,), from an orbit's values and their derivative, (N,) each;
-    compiled.
-    """
+    """Compiled `normalised_tangent`: derivative of the normalised values, (N + 1,). values, tangent: orbit
+    values and derivative of the orbit values, (N,)."""
     squared = squared_size(values, values, r)
     change = 2 * squared_size(values, tangent, r)
     # d(v/size) = dv/size - v d(size^2)/(2 size^3), for the reversed components only.
@@ -140,8 +138,8 @@ def normalised_slopes(values: Array, tangent: Array, r: Reflected) -> Array:
 
 @compiled_for_vectors
 def squared_size(values: Array, others: Array, r: Reflected) -> float:
-    """Integral along the rod, at t = 0, of the product of m3 of the orbits with `values` and `others`, (N,)
-    each."""
+    """Integral over the rod of m3 m3' at t = 0, m3 and m3' from the orbit values `values` and `others`, (N,).
+    With equal arguments this is the squared size."""
     total = 0.0
     for i in range(len(r.weights)):
         total += r.weights[i] * values[i] * others[i]
@@ -150,8 +148,8 @@ def squared_size(values: Array, others: Array, r: Reflected) -> float:
 
 @compiled_for_vectors
 def _scale_reversed(values: Array, factor: float, r: Reflected) -> None:
-    """Multiplies the components that the reflection reverses, in all states in `values`, by `factor`, in
-    place."""
+    """Multiplies, in place, the components that change sign under the reflection by `factor`, in all states
+    of `values`, (N,) or (N + 1,)."""
     n = len(r.reversed)
     for first in range(0, len(values) - n + 1, n):
         for i in range(n):

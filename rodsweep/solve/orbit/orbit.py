@@ -1,9 +1,9 @@
 """Periodic orbit on one mesh in space and time.
 
 Unknowns are the state at t = 0, the stages of a Radau collocation, and the period T. A symmetric orbit,
-x(T/p) = S x(0), is solved over the part T/p of its period, any other orbit over the whole period. At t = 0
-the velocity of the tip's y, by the reaction at the tip, vanishes: the largest y is at a time node, as
-accurate as T.
+x(T/p) = S x(0), is solved over the part T/p of its period; an orbit without symmetry (p = 1) is solved over
+the whole period. At t = 0 the velocity of the tip's y, computed from the reaction at the tip, is zero.
+Therefore the largest y is at a time node, where y is as accurate as T.
 """
 
 from dataclasses import dataclass, replace
@@ -26,8 +26,8 @@ class Orbit:
     """A periodic orbit of the rod and space mesh of `form`, on K time intervals with s collocation stages
     each.
 
-    values: states at the start and at the stages of all intervals, one after the other, and the period in
-    tau2, (N,) with N = (1 + K s) n + 1.
+    values: states at t = 0 and at the stages of all intervals, in order, then the period in tau2, (N,), N =
+    (1 + K s) n + 1, n: unknowns of a state.
     """
 
     form: StressForm
@@ -38,7 +38,7 @@ class Orbit:
 
     @classmethod
     def of(cls, form: StressForm, symmetry: Symmetry, period: float, states: Array, stages: int) -> "Orbit":
-        """The orbit with the given period, in tau2, and `states` at t = 0 and at all stages, (1 + K s, n)."""
+        """The orbit with the period `period`, in tau2. states: at t = 0 and at all stages, (1 + K s, n)."""
         values = np.append(states.ravel(), period)
         return cls(form, symmetry, (len(states) - 1) // stages, stages, values)
 
@@ -68,7 +68,8 @@ class Orbit:
 
     @property
     def regular_states(self) -> Array:
-        """States at the starts of all intervals but the last, equidistant in time, (K - 1, n)."""
+        """States at the starts of all intervals except the last, which are equidistant in time, (K - 1,
+        n)."""
         return self.states_at_starts[:-1]
 
     @property
@@ -82,7 +83,7 @@ class Orbit:
 
     @property
     def symmetric(self) -> bool:
-        """Whether the solved part is shorter than the period."""
+        """Whether the solved part is shorter than the period (p > 1)."""
         return self.symmetry.parts > 1
 
     @property
@@ -91,21 +92,22 @@ class Orbit:
 
     @property
     def size(self) -> float:
-        """Size of the motion: the largest norm of its states, in units of sqrt(energy)."""
-        # The reflected part of the period has the same amplitude.
+        """Size of the motion: largest energy norm of the states over the period, in units of sqrt(energy)."""
+        # The norm is the same in the part of the period that follows by symmetry.
         return float(self.form.amplitude(self.regular_states).max())
 
     def moved(self, change: Array, share: float = 1.0) -> "Orbit":
-        """The orbit with the values changed by `share` times `change`, (N,)."""
+        """The orbit with the values `values` + `share` * `change`; change: (N,)."""
         return replace(self, values=self.values + share * change)
 
     def at(self, times: Array) -> Array:
-        """States at `times` in [0, 1], in units of the solved duration, shape (len(times), n)."""
+        """Interpolated states, (m, n), at `times`, (m,), in [0, 1], as fractions of the solved duration."""
         at: Array = piecewise((self.intervals, self.stages), times) @ self.points
         return at
 
     def on(self, grid: Mesh, intervals: int, stages: int) -> "Orbit":
-        """The orbit interpolated to the space mesh `grid` and to other time intervals."""
+        """The orbit interpolated to the space mesh `grid` and to `intervals` time intervals with `stages`
+        stages each."""
         points = self.points
         source = self.intervals, self.stages
         target = intervals, stages
@@ -124,7 +126,7 @@ class Orbit:
 
 @lru_cache(maxsize=ELEMENTS.max_pencils)
 def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: int) -> Semidiscrete:
-    """Data of the equations for all orbits with the same form, symmetry and time intervals."""
+    """Data of the equations of orbits with the given form, symmetry and time intervals; cached."""
     d = radau_method(stages).differentiation
     lengths = interval_lengths(intervals)
     S = symmetry.matrix(form.layout)
@@ -134,22 +136,22 @@ def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: 
 
 @lru_cache(maxsize=ELEMENTS.max_mesh_pairs)
 def interval_lengths(intervals: int) -> Array:
-    """Lengths of the time intervals in units of the solved duration, (intervals,): equal, but half for the
-    last two.
+    """Lengths of the time intervals as fractions of the solved duration, (intervals,): the last two intervals
+    are half as long as the other intervals, which have equal lengths.
 
-    Where modes decay within an interval, the error at its end depends on the interval's own length, hardly on
-    the others. The largest y is taken at the end of the last interval, which is therefore short.
+    Because modes decay within an interval, the error at the end of an interval depends mainly on the length
+    of this interval. The largest y is taken at the end of the last interval, which is therefore short.
     """
     return np.append(np.ones(intervals - 2), (0.5, 0.5)) / (intervals - 1)
 
 
 def interval_starts(intervals: int) -> Array:
-    """Start times of the time intervals in units of the solved duration, (intervals,)."""
+    """Start times of the time intervals as fractions of the solved duration, (intervals,)."""
     return np.append(0.0, np.cumsum(interval_lengths(intervals)[:-1]))
 
 
 def node_times(intervals: int, stages: int) -> Array:
-    """Times of the start and of all stages in units of the solved duration, (1 + K s,)."""
+    """Times of the start and of all stages as fractions of the solved duration, (1 + K s,)."""
     starts = interval_starts(intervals)[:, None]
     lengths = interval_lengths(intervals)[:, None]
     return np.append(0.0, starts + lengths * radau_method(stages).nodes)
@@ -157,18 +159,18 @@ def node_times(intervals: int, stages: int) -> Array:
 
 @lru_cache(maxsize=ELEMENTS.max_mesh_pairs)
 def between_intervals(source: tuple[int, int], target: tuple[int, int]) -> csr_array:
-    """Matrix that interpolates the states at the nodes of `source` = (intervals, stages) to the nodes of
-    `target`, (1 + K s of target, 1 + K s of source)."""
+    """Matrix that interpolates states from the time nodes of `source` to the time nodes of `target`. source,
+    target: (intervals K, stages s). Shape: (1 + K s of target, 1 + K s of source)."""
     intervals, stages = target
     return piecewise(source, node_times(intervals, stages))
 
 
 def piecewise(source: tuple[int, int], times: Array) -> csr_array:
-    """Matrix, (m, 1 + K s), that interpolates the states at the nodes of `source` = (K, s) to `times` in [0,
-    1], (m,).
+    """Matrix, (m, 1 + K s), that interpolates states from the time nodes of `source` = (K, s) to `times` in
+    [0, 1], (m,).
 
-    The matrix is sparse because each value depends on one interval only; a dense matrix of a long orbit would
-    fill the memory.
+    A value depends on the nodes of one interval only. Therefore the matrix is sparse; a dense matrix of an
+    orbit with many intervals would fill the memory.
     """
     K, s = source
     starts = interval_starts(K)
@@ -179,7 +181,7 @@ def piecewise(source: tuple[int, int], times: Array) -> csr_array:
         inside = k == interval
         within = (times[inside] - starts[interval]) / lengths[interval]
         weights[inside] = radau_method(s).evaluation(within)
-    first = k * s  # the end of the interval before is the start of this interval
+    first = k * s  # the end of the previous interval is the start of this interval
     columns = first[:, None] + np.arange(s + 1)
     rows = np.arange(0, weights.size + 1, s + 1)
     return csr_array((weights.ravel(), columns.ravel(), rows), shape=(len(times), 1 + K * s))

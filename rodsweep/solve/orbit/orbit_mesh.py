@@ -1,7 +1,5 @@
-"""Meshes of an orbit in space and time, and the choice of the mesh for a requested accuracy.
-
-The choice follows from the coefficient tails of a nearby orbit (`tails`).
-"""
+"""Meshes of an orbit in space and time, and the choice of the mesh for a requested accuracy from the
+coefficient tails of a nearby orbit (`tails`)."""
 
 from dataclasses import dataclass, replace
 from math import ceil, log
@@ -22,21 +20,20 @@ class OrbitMeshSettings:
     """Settings for the choice of the mesh of an orbit in space and time."""
 
     space_factor: float = 5.0
-    """Predicted error of period and extrema due to the mesh in space, in units of the squared tail in space.
-    With `space_factor` and `time_factor` the first mesh is fine enough for five rods in six, and costs a
-    fifth more than necessary."""
+    """Predicted error of period and extrema due to the mesh in space, divided by the squared tail in space.
+    With `space_factor` and `time_factor` the first mesh suffices for five rods in six, and costs a fifth more
+    than necessary."""
     time_factor: float = 1.5
-    """Predicted error of period and extrema due to the intervals in time, in units of the squared tail in
-    time."""
+    """Predicted error of period and extrema due to the mesh in time, divided by the squared tail in time."""
     smallest_tail: float = 1e-15
-    """Smallest tail from which a mesh is chosen; smaller ones are rounding errors."""
+    """Lower limit of the tails from which a mesh is chosen; smaller tails are rounding errors."""
     expected_share: float = 1 / 3
-    """Fraction of the requested accuracy for which the mesh in space, and likewise the mesh in time, is
-    chosen."""
+    """The mesh in space and the mesh in time are each chosen for this fraction of the requested accuracy."""
     coarser_order: int = 2
-    """Decrease of the element order from a mesh to its `coarser`, whose errors are about ten times larger."""
+    """Decrease of the element order from a mesh to its `coarser` mesh, whose errors are about ten times
+    larger."""
     coarser_share: float = 0.6
-    """Ratio of the numbers of time intervals of `coarser` and of the mesh itself."""
+    """Ratio of the number of time intervals of the `coarser` mesh to the number of the mesh."""
     min_order: int = 8
     """Smallest element order of a chosen mesh."""
     min_intervals: int = 4
@@ -44,26 +41,27 @@ class OrbitMeshSettings:
     max_intervals: int = 256
     """Largest number of time intervals of a chosen mesh."""
     stage_accuracies: tuple[float, ...] = (2e-5, 3e-9, 3e-11)
-    """Accuracies below which four, five and six collocation stages cost less than three, four and five."""
+    """At accuracies up to these numbers, four stages cost less than three, five less than four, six less than
+    five."""
     fewest_stages: int = 3
-    """Number of collocation stages for accuracies above all of `stage_accuracies`."""
+    """Number of collocation stages at accuracies above the largest of `stage_accuracies`."""
     max_more_orders: int = 12
-    """Largest increase of the element order at once, because the tail at much higher orders is an
-    extrapolation."""
+    """Largest increase of the element order in one choice of a mesh; tails at higher orders are extrapolated
+    too far."""
     max_interval_ratio: int = 4
-    """Largest ratio of the new to the present number of time intervals, because the tail of a much finer mesh
-    is an extrapolation."""
+    """Largest ratio of the new number of time intervals to the present number; tails at larger ratios are
+    extrapolated too far."""
     more_intervals: float = 1.2
-    """Factor on the number of time intervals if the mesh chosen from the tails is no finer than the present
+    """Factor on the number of time intervals if the mesh chosen from the tails is not finer than the present
     mesh."""
     halved_order: float = 0.6
-    """Ratio of the element orders after and before all elements are halved, at equal errors."""
+    """Ratio of the element order after all elements are halved to the order before, for equal errors."""
     vector: int = 8
-    """Number of doubles in a vector register: for fewer unknowns than a multiple of it, a BLAS takes as
-    long."""
+    """Number of doubles in a vector register. The computing time of matrix products depends on the number of
+    unknowns rounded up to a multiple of this number."""
     max_unknowns: int = 400
-    """Largest number of unknowns of a state; a Newton step for a larger state would take more than a
-    second."""
+    """Largest number of unknowns of a state on an allowed mesh; with more unknowns a Newton step takes more
+    than a second."""
 
 
 ORBIT_MESH = OrbitMeshSettings()
@@ -71,8 +69,8 @@ ORBIT_MESH = OrbitMeshSettings()
 
 @dataclass(frozen=True, slots=True)
 class OrbitMesh:
-    """Mesh of an orbit: elements of one order in space, with given edges; intervals with Radau stages in
-    time."""
+    """Mesh of an orbit. edges: edges of the elements in space, from 0 to 1. order: order of all elements.
+    intervals: number of time intervals. stages: number of Radau stages of each interval."""
 
     edges: tuple[float, ...]
     order: int
@@ -86,8 +84,8 @@ class OrbitMesh:
 
     @property
     def full_intervals(self) -> int:
-        """Solved duration in units of a full interval: the last two intervals have half the length of the
-        others."""
+        """Solved duration divided by the length of a full interval; the last two intervals have half this
+        length."""
         return self.intervals - 1
 
     @property
@@ -101,31 +99,32 @@ class OrbitMesh:
 
     @property
     def numbers(self) -> Array:
-        """The mesh as an array for storage, (elements + 4,): order, intervals, stages, edges."""
+        """The mesh as one array for storage, (elements + 4,): order, intervals, stages, edges."""
         return np.array([self.order, self.intervals, self.stages, *self.edges])
 
     @classmethod
     def from_numbers(cls, numbers: Array) -> "OrbitMesh":
-        """The mesh whose property `numbers` is the given array, (elements + 4,)."""
+        """The mesh from the array that the property `numbers` returns, (elements + 4,)."""
         order, intervals, stages = map(int, numbers[:3])
         return cls(tuple(numbers[3:].tolist()), order, intervals, stages)
 
     @property
     def coarser(self) -> "OrbitMesh":
-        """Coarser mesh for the steps along a branch to a cycle that is solved on this mesh."""
+        """Coarser mesh, for the steps along a branch towards a cycle that is to be solved on this mesh."""
         order = max(ORBIT_MESH.min_order - ORBIT_MESH.coarser_order, self.order - ORBIT_MESH.coarser_order)
         intervals = max(ORBIT_MESH.min_intervals - 1, round(ORBIT_MESH.coarser_share * self.intervals))
         return replace(self, order=order, intervals=intervals)
 
     @property
     def finer(self) -> "OrbitMesh":
-        """Finer mesh in space and time, for a new attempt if no error estimate is available."""
+        """Mesh finer in space and time, used if no error estimate is available."""
         more = int(ORBIT_MESH.more_intervals * self.intervals) + 1
         return replace(self.finer_in_space, intervals=more)
 
     @property
     def finer_in_space(self) -> "OrbitMesh":
-        """Mesh of a higher order, or of twice as many elements where the order is the largest."""
+        """Mesh with a higher order, or with twice as many elements of lower order if the order would exceed
+        its maximum."""
         if self.order + 2 <= RESOLUTION.max_order:
             return replace(self, order=self.order + 2)
         return replace(
@@ -138,13 +137,13 @@ class OrbitMesh:
 
     @property
     def cost(self) -> float:
-        """Relative cost of the elimination of Newton's matrix, with the unknowns rounded up to whole vector
-        registers."""
+        """Relative cost of the elimination of Newton's matrix; the number of unknowns is rounded up to a
+        multiple of `ORBIT_MESH.vector`."""
         unknowns = ORBIT_MESH.vector * ceil(self.unknowns / ORBIT_MESH.vector)
         return float(unknowns**3 * self.intervals * self.stages**2)
 
     def carry(self, orbit: Orbit) -> Orbit:
-        """`orbit` interpolated to this mesh."""
+        """The orbit `orbit` interpolated to this mesh."""
         return orbit.on(self.grid, self.intervals, self.stages)
 
 
@@ -155,13 +154,13 @@ def mesh_of(orbit: Orbit) -> OrbitMesh:
 
 
 def stages_for(accuracy: float) -> int:
-    """Number of collocation stages with which the relative accuracy `accuracy` costs least."""
+    """Number of collocation stages with the smallest cost for the relative accuracy `accuracy`."""
     return ORBIT_MESH.fewest_stages + sum(accuracy <= limit for limit in ORBIT_MESH.stage_accuracies)
 
 
 def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
-    """The coarsest mesh with `stages` stages that is expected to reach `accuracy`, from the tails of the
-    nearby `orbit`."""
+    """The coarsest mesh with `stages` stages that is expected to reach the relative accuracy `accuracy`, from
+    the tails of the nearby orbit `orbit`."""
     present = mesh_of(orbit)
     tails = tails_of(orbit)
     aim_space = (ORBIT_MESH.expected_share * accuracy / ORBIT_MESH.space_factor) ** 0.5
@@ -174,7 +173,8 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     while order > RESOLUTION.max_order:
         order = ceil(ORBIT_MESH.halved_order * order)
         edges = halve_elements(edges)
-    # A tail falls as intervals**-stages. With other stages it starts from about a power of the known tail.
+    # A tail is proportional to intervals**-stages. For a different number of stages the tail on the present
+    # number of intervals is about a power of the known tail.
     tail = max(tails.time, ORBIT_MESH.smallest_tail) ** (stages / present.stages)
     intervals = ceil(present.intervals * (tail / aim_time) ** (1 / stages))
     order = min(max(order, ORBIT_MESH.min_order), present.order + ORBIT_MESH.max_more_orders)
@@ -185,7 +185,7 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
 
 
 def finer_mesh(mesh: OrbitMesh, wanted: OrbitMesh) -> OrbitMesh:
-    """A mesh at least as fine as `wanted`, and finer than the present mesh `mesh`."""
+    """A mesh that is at least as fine as `wanted` and finer than the present mesh `mesh`."""
     order = max(wanted.order, mesh.order) if wanted.edges == mesh.edges else wanted.order
     intervals = max(wanted.intervals, mesh.intervals)
     stages = max(wanted.stages, mesh.stages)

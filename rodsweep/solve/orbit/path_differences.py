@@ -1,4 +1,4 @@
-"""Differences between the paths of the tip in two solutions of a cycle, on two meshes."""
+"""Differences between the paths of the tip in two solutions of a cycle on two meshes."""
 
 import numpy as np
 
@@ -13,12 +13,12 @@ PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH = range(4)
 
 
 def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
-    """Differences of two paths, (4,): period, largest y, extremum with the largest difference, whole path of
-    the tip.
+    """Differences of two paths, (4,): of the period, of the largest y, of the extremum with the largest
+    difference, and largest difference of the tip over the period.
 
-    The period's difference is relative; the other three are in units of the largest y. On a branch the two
-    rods may differ, too; the relative difference of their parameters then counts as a difference of the
-    period.
+    The first difference is relative, the other three are divided by the largest y of `fine`. The first is the
+    larger of the relative differences of the periods and of the parameters of the rods, which may be
+    different on a branch.
     """
     apart = np.abs(fine.tip_samples - rough.resampled_tip(len(fine.tip_samples))).max()
     extrema = fine.extrema
@@ -31,12 +31,13 @@ def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
 def rod_difference(one: Orbit, other: Orbit) -> float:
     """Largest relative difference between the parameters of the rods of two orbits."""
     a, b = (_numbers(orbit.form.rod) for orbit in (one, other))
-    # A coefficient of 0 is a limit, such as c1 = 0, in which both rods agree exactly.
+    # A coefficient is 0 only in a limit, such as c1 = 0, where it is exactly 0 for both rods.
     return float(np.abs((a - b) / np.where(b == 0, 1, b)).max())
 
 
 def _numbers(rod: Rod) -> Array:
-    """Coefficients in the equations of a uniform rod, or coordinates of all parameters of an arm, (n,)."""
+    """Coefficients of the equations of a uniform linear rod, or coordinates of all parameters of any other
+    rod, (n,)."""
     if rod.standard:
         return np.array([*rod.coefficients, rod.axial_drag])
     return np.array([rod.coordinate(name) for name in PARAMETERS])

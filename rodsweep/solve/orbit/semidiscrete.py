@@ -8,11 +8,11 @@ from ...discretization.nodal_rod import NodalRod
 
 
 class Semidiscrete(NamedTuple):
-    """Data of an orbit's equations: rod and mesh in space, collocation in time, closing condition x(T/p) = S
-    x(0).
+    """Data of the equations of an orbit: rod and mesh in space, collocation in time, closing condition x(T/p)
+    = S x(0).
 
-    mass: diagonal of the mass matrix, (n,). differentiation: matrix of the collocation, (s, s + 1). lengths:
-    lengths of the intervals, with sum 1, (K,). symmetry: S, (n, n). parts: p, 1 or 2.
+    mass: diagonal of the mass matrix, (n,). differentiation: differentiation matrix of the collocation, (s, s
+    + 1). lengths: lengths of the time intervals, with sum 1, (K,). symmetry: S, (n, n). parts: p, 1 or 2.
     """
 
     rod: NodalRod

@@ -1,7 +1,8 @@
-"""Tails of an orbit: the last Legendre coefficients in space and time, which measure the truncation error.
+"""Tails of an orbit: sizes of its last Legendre coefficients in space and in time, which measure the
+truncation error.
 
-Errors of period and largest deflection are of the order of the squared tails: both converge twice as fast as
-the states.
+The errors of period and largest deflection are of the order of the squared tails, because these two
+quantities converge twice as fast as the states.
 """
 
 from dataclasses import dataclass
@@ -27,14 +28,15 @@ class TailSettings(CompiledSettings):
     """Settings for the tails of an orbit and for the decay of its coefficients."""
 
     min_decay: float = 0.2
-    """Smallest decay of the coefficients in space per order, natural logarithm."""
+    """Lower limit of the measured decay of the coefficients in space, as the natural logarithm per order."""
     max_decay: float = 1.2
-    """Largest decay of the coefficients in space per order, natural logarithm."""
+    """Upper limit of the measured decay of the coefficients in space, as the natural logarithm per order."""
     rounding: float = 1e-16
-    """Size of coefficients, in units of the largest, below which their decay is not measured."""
+    """Coefficients smaller than this number times the largest coefficient are replaced by this limit in the
+    measurement of the decay."""
     last_coefficients: int = 4
-    """Number of last coefficients in space for `lasting_tails`: the norm of this many changes smoothly along
-    a branch."""
+    """Number of last coefficients in space whose norm is the tail of `lasting_tails`; the norm of this many
+    coefficients changes smoothly along a branch."""
 
 
 TAILS = TailSettings()
@@ -42,10 +44,9 @@ TAILS = TailSettings()
 
 @dataclass(frozen=True, slots=True)
 class Tails:
-    """Last Legendre coefficients of an orbit in space and in time, in units of the largest.
-
-    decay: decay of the coefficients in space per order, natural logarithm.
-    """
+    """Tails of an orbit. space: size of the last Legendre coefficients in space, divided by the largest
+    coefficient. time: size of the last coefficient in time, divided by the largest value. decay: decrease of
+    the natural logarithm of the coefficients in space per order."""
 
     space: float
     time: float
@@ -53,34 +54,36 @@ class Tails:
 
 
 def tails_of(orbit: Orbit) -> Tails:
-    """Tails of `orbit` in space and in time, and the decay of its coefficients in space."""
+    """Tails of `orbit` in space and in time, and decay of its coefficients in space."""
     c = _space_coefficients(orbit)
-    # Two coefficients, because by parity a single one may vanish.
+    # Two coefficients, because the last coefficient may vanish by parity.
     last = np.hypot(c[:, -1], c[:, -2]) / np.maximum(c.max(axis=1), EXPONENTS.least_divisor)
     return Tails(float(last.max()), _tail_in_time(orbit), _decay(c))
 
 
 @compiled_for_vectors
 def _decay(c: Array) -> float:
-    """Decay per order, natural logarithm: minus the mean slope of the envelope of the coefficients c,
-    (fields, p + 1), in the upper half of the orders, within `TAILS.min_decay` and `TAILS.max_decay`."""
+    """Decay of coefficients: minus the slope, per order, of the natural logarithm of their envelope, fitted
+    over the upper half of the orders and limited to `TAILS.min_decay` ... `TAILS.max_decay`. c: moduli of the
+    coefficients, (fields, p + 1)."""
     fields, size = c.shape
     middle = (size - 1) / 2 + (size // 2) / 2
     highest = TAILS.rounding
     along = 0.0
     squares = 0.0
-    # From the last coefficient down, so that `highest` is an envelope in which zeros do not count.
+    # From the last coefficient down: `highest` is an envelope, on which single zeros have no effect.
     for k in range(size - 1, size // 2 - 1, -1):
         for a in range(fields):
             highest = max(highest, c[a, k] / max(c[a].max(), EXPONENTS.least_divisor))
         along += (k - middle) * np.log(highest)
         squares += (k - middle) ** 2
-    # Slope of the least-squares line through the logarithms, about the mean of the orders.
+    # Slope of the least-squares line through the logarithms.
     return min(max(-along / squares, TAILS.min_decay), TAILS.max_decay)
 
 
 def _space_coefficients(orbit: Orbit) -> Array:
-    """Largest Legendre coefficients of n1, n2 and m3 at the ends of the intervals, (3, p + 1)."""
+    """Largest moduli of the Legendre coefficients in space of n1, n2 and m3, over all elements and the ends
+    of all time intervals, (3, p + 1)."""
     grid = orbit.form.mesh
     ends = np.ascontiguousarray(orbit.states[:, -1])
     if not orbit.form.smooth_stresses:
@@ -92,14 +95,15 @@ def _space_coefficients(orbit: Orbit) -> Array:
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def _analysis_on_element(order: int) -> Array:
-    """Matrix, (p + 1, p + 1), that maps, from the right, values at the nodes of an element to Legendre
-    coefficients."""
+    """Matrix, (p + 1, p + 1): a row of values at the nodes of an element times this matrix is the row of
+    Legendre coefficients."""
     return np.ascontiguousarray(legendre_analysis(2 * mesh(1, order).positions - 1).T)
 
 
 @compiled_for_vectors
 def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array:
-    """Largest moduli of the coefficients of n1, n2, m3, (3, p + 1), over all elements of states (m, n)."""
+    """Largest moduli of the Legendre coefficients in space of n1, n2 and m3, (3, p + 1), over all elements
+    and all `states`, (m, n). analysis: as returned by `_analysis_on_element`."""
     size = len(analysis)
     nodes = elements * (size - 1)
     largest = np.zeros((PLANE_COMPONENTS, size))
@@ -120,11 +124,9 @@ def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array
 
 
 def lasting_tails(orbit: Orbit) -> Array:
-    """Tails in space and in time, (2,), that change smoothly along a branch, in units of the largest values.
-
-    A single last coefficient may vanish, so the tail in space uses `TAILS.last_coefficients` at all time
-    nodes.
-    """
+    """Tails in space and in time, (2,), divided by the largest values. These tails change smoothly along a
+    branch, because the tail in space is the norm of `TAILS.last_coefficients` coefficients: a single
+    coefficient may vanish."""
     grid = orbit.form.mesh
     if not orbit.form.smooth_stresses:
         fields = _by_elements(orbit, orbit.points)
@@ -137,23 +139,24 @@ def lasting_tails(orbit: Orbit) -> Array:
 
 
 def _by_elements(orbit: Orbit, states: Array) -> Array:
-    """n1, n2 and m3 of states (m, n) at the nodes of each element, (3, m, elements, p + 1)."""
+    """n1, n2 and m3 at the nodes of each element, (3, m, elements, p + 1). states: (m, n)."""
     form = orbit.form
     return stresses_by_element(form.nodal, form.mesh, form.stresses(states))
 
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def _lasting_on_element(order: int) -> Array:
-    """Columns of `_analysis_on_element` for the last coefficients, (p + 1, `TAILS.last_coefficients`)."""
+    """Last columns of `_analysis_on_element`, (p + 1, `TAILS.last_coefficients`)."""
     return np.ascontiguousarray(_analysis_on_element(order)[:, -TAILS.last_coefficients :])
 
 
 @compiled_for_vectors
 def relative_tail(points: Array, elements: int, analysis: Array) -> float:
-    """Largest 2-norm of the last coefficients of n1, n2 or m3 in an element, in units of the field's largest
-    value.
+    """Largest relative tail in space of n1, n2 and m3: 2-norm of the last coefficients of a field in an
+    element, divided by the largest modulus of this field.
 
-    points: states, (m, n). analysis: matrix from an element's nodes to the last coefficients, (p + 1, count).
+    points: states, (m, n). analysis: matrix from values at the nodes of an element to its last coefficients,
+    (p + 1, count).
     """
     size, count = analysis.shape
     nodes = elements * (size - 1)
@@ -178,13 +181,14 @@ def relative_tail(points: Array, elements: int, analysis: Array) -> float:
 
 
 def _tail_in_time(orbit: Orbit) -> float:
-    """The largest of the tails in time of n1, n2 and m3, in units of the largest values."""
+    """Largest relative tail in time of n1, n2 and m3 (see `largest_tail`)."""
     return largest_tail(orbit.points, _last_in_interval(orbit.stages), orbit.form.mesh.nodes)
 
 
 @lru_cache(maxsize=ELEMENTS.max_pencils)
 def _last_in_interval(stages: int) -> Array:
-    """Weights, (s + 1,), of the values at an interval's start and stages in the last Legendre coefficient."""
+    """Weights, (s + 1,), with which the values at the start and the stages of an interval give its last
+    Legendre coefficient."""
     nodes: Array = np.append(0.0, radau_method(stages).nodes)
     row: Array = legendre_analysis(2 * nodes - 1)[-1]
     return row
@@ -192,11 +196,12 @@ def _last_in_interval(stages: int) -> Array:
 
 @compiled_for_vectors
 def largest_tail(points: Array, row: Array, nodes: int) -> float:
-    """Largest last Legendre coefficient in time of n1, n2 or m3 in any interval, in units of the field's
-    largest value.
+    """Largest relative tail in time of n1, n2 and m3: last Legendre coefficient of a field in a time
+    interval, divided by the largest value of this field. Coefficients and values are measured by their 2-norm
+    over all nodes.
 
-    points: states at the start and all stages, (1 + K s, n). row: weights of an interval's values in the last
-    coefficient, (s + 1,). Sizes are 2-norms of a stress over all nodes.
+    points: states at the start and at all stages, (1 + K s, n). row: as returned by `_last_in_interval`, (s +
+    1,).
     """
     s = len(row) - 1
     worst = 0.0
@@ -221,5 +226,5 @@ def largest_tail(points: Array, row: Array, nodes: int) -> float:
 
 
 def legendre_analysis(nodes: Array) -> Array:
-    """Matrix from values at nodes in [-1, 1], (n,), to Legendre coefficients, (n, n)."""
+    """Matrix, (n, n), that maps values at `nodes`, (n,), in [-1, 1] to Legendre coefficients."""
     return np.linalg.inv(legendre.legvander(nodes, len(nodes) - 1))

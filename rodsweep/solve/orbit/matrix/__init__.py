@@ -1,1 +1,1 @@
-"""Newton's matrix of a periodic orbit: elimination, solutions, multipliers, memory."""
+"""Newton's matrix of a periodic orbit: elimination, solution of linear systems, multipliers, memory."""

@@ -6,11 +6,11 @@ In each interval, with the state x_0 at its start, the stages x_1 ... x_s satisf
 
 with the method's differentiation matrix d (s >= 3), the diagonal mass matrix M (0 where an unknown has no
 time derivative) and the balance F. The off-diagonal blocks of Newton's matrix, d_ij M, are diagonal matrices.
-Therefore the elimination of the first stage costs one inverse X, and that of the second stage one inverse Y
-and three products: both change the other blocks by combinations of Z = M X, W = M Y, Z W, W Z and Z W Z. The
-other stages are eliminated by products of blocks. Each interval becomes a map of its start to its end, and
-the product P of these maps is the derivative of the flow over all intervals. Pivots are chosen within a
-block: the diagonal blocks d_ii M - h F' are regular if h is short compared with the time of growth.
+Therefore the elimination of the first stage costs one inverse X, and the elimination of the second stage one
+inverse Y and three products: the blocks of later stages change by combinations of Z = M X, W = M Y, Z W, W Z
+and Z W Z. Later stages are eliminated by products of blocks. Each interval becomes a map from its start to
+its end. The product P of these maps is the derivative of the flow over all intervals. Pivots are chosen
+within a block: the diagonal blocks d_ii M - h F' are regular if h is short compared with the time of growth.
 """
 
 import numpy as np
@@ -29,10 +29,11 @@ from .workspace import Factors
 def eliminate(
     points: Array, V: Array, duration: float, p: Semidiscrete, factors: Factors, columns: Array
 ) -> Array:
-    """Eliminates Newton's matrix at the points, (1 + K s, n), into the factors.
+    """Eliminates Newton's matrix at `points`, (1 + K s, n), writes it into `factors`, and returns the changes
+    of the end of the last interval by the right-hand sides for a fixed start, (columns, n).
 
-    V: velocities of the stages, (K, s, 3, nodes + 1). columns: right sides, (K, s, columns, n), which are
-    reduced in place. Returns the changes of the last end by the right sides for a fixed start, (columns, n).
+    V: velocities of the stages, (K, s, 3, nodes + 1). duration: length of all intervals, in tau2. columns:
+    right-hand sides, (K, s, columns, n), which are reduced in place.
     """
     K = columns.shape[0]
     s = columns.shape[1]
@@ -40,7 +41,7 @@ def eliminate(
     tip = np.empty((3, n))
     right = np.empty((s, n, n))
     parts = np.empty((5, n, n))
-    # Before the first interval the product of maps is the identity, times M as after every interval.
+    # M times the product of the maps so far, which is the identity before the first interval.
     so_far = np.diag(p.mass)
     ends = np.zeros(columns.shape[2:])
     for k in range(K):
@@ -50,19 +51,19 @@ def eliminate(
             jacobian(points[1 + k * s + i], V[k, i], B[i, i], tip, p.rod, p.matrices)
             for r in range(n):
                 for q in range(n):
-                    # Diagonal block d_ii M - h F'. Column 0 of d belongs to the start of the interval, hence
-                    # i + 1.
+                    # Diagonal block d_ii M - h F'. Column 0 of d is for the start of the interval, so stage i
+                    # has the column i + 1.
                     B[i, i, r, q] *= -h
                 B[i, i, r, r] += p.differentiation[i, i + 1] * p.mass[r]
         _eliminate_interval(B, right, parts, p)
-        # Row 0 of the blocks is free once two stages are eliminated: it keeps the effect of the start on the
-        # end and on the stages between, for `substitute`.
+        # Row 0 of the blocks is unused after two stages are eliminated. The effect of the start on the end
+        # and on the later stages is stored there, for `substitute`.
         square_product(B[s - 1, s - 1], right[s - 1], B[0, 1], 1.0, 0.0)
         for a in range(2, s - 1):
             B[0, a] = right[a]
         reduce(B, columns[k], p)
         to_end(B, columns[k], p, ends)
-        # B[0, 1] acts on M x_0, since `right` belongs to x_0 = M^-1, so M stands between the maps of two
+        # `right` was computed for x_0 = M^-1, so that B[0, 1] acts on M x_0: M is between the maps of two
         # intervals.
         square_product(B[0, 1], so_far, factors.propagator, 1.0, 0.0)
         for r in range(n):
@@ -73,9 +74,10 @@ def eliminate(
 
 @compiled_for_vectors
 def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -> None:
-    """Eliminates the blocks of one interval, (s, s, n, n), of which the diagonal is given.
+    """Eliminates the blocks B of one interval, (s, s, n, n), whose diagonal blocks are given.
 
-    right: right side of each stage for x_0 = M^-1, (s, n, n), made here. parts: work array, (5, n, n).
+    right: output, right-hand side of each stage from the third for x_0 = M^-1, (s, n, n). parts: work array,
+    (5, n, n).
     """
     s = B.shape[0]
     n = B.shape[2]
@@ -86,8 +88,8 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -
     mass = p.mass
     Z = parts[0]
     invert(B[0, 0], pivots, rows)
-    # Schur complement of the second stage. Both off-diagonal blocks are multiples of M, so it costs no
-    # product.
+    # Schur complement of the second stage. It needs no product of matrices, because both off-diagonal blocks
+    # are multiples of M.
     factor = d[1, 1] * d[0, 2]
     for r in range(n):
         for q in range(n):
@@ -107,16 +109,16 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -
 
 @compiled_for_vectors
 def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> None:
-    """Eliminates the first two stages: computes the blocks and the right sides, for x_0 = M^-1, of all
-    further stages.
+    """Eliminates the first two stages: computes the blocks B, and the right-hand sides `right` for x_0 =
+    M^-1, of all later stages.
 
-    parts: (5, n, n), of which the first is M X; the others are computed here.
+    parts: Z, W, Z W, W Z and Z W Z of the module docstring, (5, n, n); Z is given, the rest is computed.
     """
     s = B.shape[0]
     n = B.shape[2]
     d = p.differentiation
     mass = p.mass
-    # `right` is taken for x_0 = M^-1: its columns have no factor M, and the sign of -d_i0 instead.
+    # For x_0 = M^-1 the columns of `right` have the factor -1 instead of M.
     minus = -np.ones(n)
     Z = parts[0]
     W = parts[1]
@@ -149,11 +151,12 @@ def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> Non
 def _subtract_parts(
     out: Array, parts: Array, place: tuple[int, int], rows: tuple[int, int], d: Array, scale: Array
 ) -> None:
-    """Subtracts from another stage's block the terms that the elimination of the first two stages brings, (n,
-    n).
+    """Subtracts from the block `out` of a later stage, (n, n), the terms from the elimination of the first
+    two stages.
 
-    parts: Z, W, Z W, W Z and Z W Z of the module, (5, n, n). place: (stage, column of d, (s, s + 1)) of the
-    block. rows: first row, and the row behind the last. scale: factors of the block's columns, (n,).
+    parts: Z, W, Z W, W Z and Z W Z of the module docstring, (5, n, n). place: (stage, column of d) of the
+    block; d: (s, s + 1). rows: first row, and last row plus 1. scale: factors of the columns of the block,
+    (n,).
     """
     i, c = place
     first = d[0, c]

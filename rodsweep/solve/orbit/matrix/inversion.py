@@ -1,4 +1,5 @@
-"""Inverse of a small dense matrix in place, compiled: most of the work is products of panels."""
+"""Inverse of a small dense matrix in place, compiled; most of the computing time is spent in products of
+panels."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -16,11 +17,14 @@ class InversionSettings(CompiledSettings):
     """Settings for inverses and products of blocks."""
 
     panel: int = 12
-    """Number of columns swept one by one by `invert` before a product updates the remaining columns."""
+    """Number of columns of a panel: `invert` eliminates these columns one by one, then one product updates
+    all other columns."""
     min_pivot: float = 0.1
-    """Smallest pivot in units of its column's largest entry; a smaller pivot is exchanged for this entry."""
+    """A pivot is exchanged for the largest entry of its column if it is smaller than this number times that
+    entry."""
     rows_in_cache: int = 8
-    """Rows of several blocks that fit into the first-level cache together."""
+    """Number of rows of all blocks that are updated together, so that these rows fit into the first-level
+    cache."""
     ranges: ClassVar = {"min_pivot": (0.0, 1.0)}
 
 
@@ -31,8 +35,8 @@ INVERSION = InversionSettings()
 def invert(A: Array, pivots: Any, rows: Array) -> None:
     """Replaces A by A^-1 with Gauss-Jordan elimination and partial pivoting, a panel of columns at a time.
 
-    A: (n, n). Work arrays: pivots, (n,) integers, and rows, (n, panel). A row of A in memory is treated as a
-    column of A's transpose: the inverse of the transpose is the transpose of the inverse.
+    A: (n, n). pivots, rows: work arrays, (n,) integers and (n, panel). The inverse of the transpose is the
+    transpose of the inverse; therefore the rows of A, which are contiguous in memory, are treated as columns.
     """
     n = len(A)
     ones = np.ones(2)
@@ -51,7 +55,7 @@ def invert(A: Array, pivots: Any, rows: Array) -> None:
         product(rows.ctypes.data, panel, A.ctypes.data, extents, ones)
         extents[0] = n - last
         product(rows.ctypes.data + 8 * INVERSION.panel * last, panel, A.ctypes.data + row, extents, ones)
-    # An exchange before the inversion is undone on the other side of the inverse, the last one first.
+    # Exchanges of columns of A are undone as exchanges of rows of the inverse, in reverse order.
     for k in range(n - 1, -1, -1):
         if pivots[k] != k:
             p = pivots[k]
@@ -61,7 +65,8 @@ def invert(A: Array, pivots: Any, rows: Array) -> None:
 
 @compiled_for_vectors
 def _sweep_panel(A: Array, first: int, last: int, pivots: Any) -> None:
-    """Gauss-Jordan steps for the columns from first to last, applied to these columns only."""
+    """Gauss-Jordan steps with the columns from `first` to `last` - 1 as pivot columns, applied to these
+    columns only."""
     n = len(A)
     for k in range(first, last):
         row = A[k]
@@ -81,8 +86,7 @@ def _sweep_panel(A: Array, first: int, last: int, pivots: Any) -> None:
                 A[j, k], A[j, p] = A[j, p], A[j, k]
         inverse = 1.0 / row[k]
         for i in range(n):
-            # The pivot row is negated so that all updates add; its own entry becomes the inverse pivot at the
-            # end.
+            # With the minus sign all updates are additions; the pivot itself is set below.
             row[i] *= -inverse
         for j in range(first, last):
             if j != k:

@@ -1,8 +1,9 @@
-"""Legs of a strongly unstable orbit: runs of intervals over which perturbations grow moderately.
+"""Legs of a strongly unstable orbit: the shooting intervals of multiple shooting, each of several time
+intervals.
 
-The map P over all intervals multiplies rounding errors by the growth of perturbations. Cycles with many
-unstable modes reach 1e15, where Newton's steps have no correct digit. With the start of every leg as an
-unknown (multiple shooting; Ascher, Mattheij & Russell 1995, ch. 4), errors grow over one leg only.
+The map P over all time intervals multiplies rounding errors by the growth of perturbations. This growth is
+1e15 for cycles with many unstable modes, whose Newton steps would have no correct digit. With the state at
+the start of every leg as an unknown (Ascher, Mattheij & Russell 1995, ch. 4), errors grow over one leg only.
 """
 
 from dataclasses import dataclass
@@ -23,13 +24,13 @@ class LegSettings:
     """Settings for the legs of an orbit."""
 
     max_growth: float = 1e7
-    """Largest norm of the map of a leg: a Newton step keeps nine digits. Stable cycles have norms below 1e3,
-    and a single leg."""
+    """Largest norm of the map of a leg; a Newton step then has nine correct digits. Stable cycles have norms
+    below 1e3 and a single leg."""
     sweeps: int = 2
-    """Sweeps of the orthogonal iteration that orders directions by their growth over all legs; the second
-    one starts with directions that are in order."""
+    """Number of sweeps of the orthogonal iteration over all legs. The first sweep orders the directions by
+    their growth; the second starts with ordered directions."""
     negligible_multiplier: float = 1e-17
-    """Largest modulus of a multiplier that counts as 0."""
+    """Multipliers with at most this modulus are treated as 0."""
 
 
 LEGS = LegSettings()
@@ -37,17 +38,17 @@ LEGS = LegSettings()
 
 @dataclass(frozen=True, eq=False)
 class Legs:
-    """Legs of an orbit. edges: first interval of each leg, and the number of intervals, m + 1 numbers. maps:
-    from the start of each leg to its end, (m, n, n)."""
+    """The m legs of an orbit. edges: index of the first time interval of each leg, and the number of time
+    intervals, m + 1 numbers. maps: derivative of the end of each leg by its start, (m, n, n)."""
 
     edges: tuple[int, ...]
     maps: Array
 
     def ends(self, factors: Factors, columns: Array, whole: Array, p: Semidiscrete) -> Array:
-        """Changes of the ends of all legs by right sides for fixed starts, (m, columns, n).
+        """Changes of the ends of all legs by right-hand sides, for fixed starts of the legs, (m, columns, n).
 
-        columns: reduced right sides, (K, s, columns, n). whole: change of the end of the last interval for a
-        fixed start of the first interval, (columns, n).
+        columns: reduced right-hand sides, (K, s, columns, n). whole: changes of the end of the last time
+        interval for a fixed start of the first time interval, (columns, n).
         """
         ends = np.zeros((len(self.maps), *whole.shape))
         if len(ends) == 1:
@@ -59,8 +60,8 @@ class Legs:
         return ends
 
     def substituted(self, factors: Factors, starts: Array, columns: Array, p: Semidiscrete) -> Array:
-        """Changes of all stages, (K, s, 1, n), from changes of the starts, (m, n), and reduced right sides,
-        (K, s, 1, n)."""
+        """Changes of all stages, (K, s, 1, n). starts: changes of the starts of the legs, (m, n). columns:
+        reduced right-hand sides, (K, s, 1, n)."""
         out = np.empty_like(columns)
         for start, (first, last) in zip(starts, pairwise(self.edges), strict=True):
             part = factors._replace(blocks=factors.blocks[first:last])
@@ -68,35 +69,37 @@ class Legs:
         return out
 
     def multipliers(self, orbit: Orbit) -> Complex:
-        """Nonzero multipliers of the map S^-1 P over the solved part of the period, (rank,).
+        """Nonzero multipliers of the map S^-1 P over the solved part of the period, (rank,). Raises
+        LinAlgError if the map is not finite.
 
-        P is never formed: it would lose the digits of the multipliers far below its norm. Orthogonal
-        iteration makes the map triangular, with rows graded by the growth. Raises LinAlgError if an entry is
-        not finite.
+        P itself is not formed, because multipliers far below its norm would lose all digits. Orthogonal
+        iteration gives a triangular matrix whose rows are ordered by their growth.
         """
         *others, last = self.maps
         ahead = triangle = np.eye(len(last))
         for _ in range(LEGS.sweeps):
-            # Directions that vanish over a period would only cost time.
+            # Directions that decay to nothing over a period are dropped, to save time.
             lasting = np.flatnonzero(np.abs(np.diag(triangle)) > LEGS.negligible_multiplier)
             start = ahead = ahead[:, : lasting[-1] + 1] if len(lasting) else ahead
             triangle = np.eye(start.shape[1])
             for A in (*others, orbit.symmetry.returned(last, orbit.form.layout)):
                 ahead, R = np.linalg.qr(A @ ahead)
                 triangle = R @ triangle
-        # The map is `ahead triangle start^T`, which is similar to this matrix.
+        # The map is `ahead triangle start^T`, which has the nonzero eigenvalues of this matrix.
         graded = triangle @ (start.T @ ahead)
         if not np.isfinite(graded).all():
             raise np.linalg.LinAlgError("the derivative of the flow is not finite")
-        # `eigvals` would balance the matrix and so undo the grading: multipliers near 1 lost nine digits.
+        # `eigvals` balances the matrix, which destroys the grading: multipliers near 1 would lose nine
+        # digits.
         values = np.diag(schur(graded, output="complex")[0])
         return values[np.abs(values) > LEGS.negligible_multiplier]
 
 
 def legs_of(factors: Factors, mass: Array) -> Legs:
-    """The longest legs of an eliminated matrix whose maps have moderate norms. mass: M, (n,)."""
+    """The legs of an orbit from its eliminated matrix: each leg is as long as the norm of its map is at most
+    `LEGS.max_growth`. mass: diagonal of M, (n,)."""
     blocks = factors.blocks
-    if not np.linalg.norm(factors.propagator) > LEGS.max_growth:  # nor for nan, which no legs help
+    if not np.linalg.norm(factors.propagator) > LEGS.max_growth:  # also true for nan
         return Legs((0, len(blocks)), factors.propagator[None])
     firsts = [0]
     maps = [blocks[0, 0, 1] * mass]

@@ -1,7 +1,7 @@
-"""Newton's matrix at an orbit: Newton's step, the tangent of the branch, and all Floquet multipliers.
+"""Newton's matrix at an orbit: Newton's step, the derivative by a parameter, and all Floquet multipliers.
 
-The elimination of the intervals (`elimination`) leaves a system for the state at t = 0 and the period. The
-last row of this system is the phase condition.
+After the elimination of the intervals (`elimination`) a system for the state at t = 0 and the period remains.
+Its last row is the phase condition. N: orbit values. K: intervals, s: stages each, n: unknowns of a state.
 """
 
 import numpy as np
@@ -22,14 +22,15 @@ from .substitution import reduce, substitute, to_end
 from .workspace import Factors, MatrixMemory, NewtonWorkspace
 
 NO_CHANGE = NodalChange(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_JUMP_CHANGE)
-"""Placeholder for no change of the rod, which compiled code never reads."""
+"""Placeholder for the change of a rod if there is no parameter; compiled code never reads it."""
 
 
 class Linearisation:
-    """Newton's matrix at an orbit. It corrects nearby orbits until another matrix is made in its workspace.
+    """Newton's matrix at an orbit. The matrix can correct nearby orbits until another matrix is assembled in
+    its workspace.
 
-    step: Newton's step at the orbit, (N,). tangent: derivative of the orbit by the parameter, (N,); None
-    without a parameter.
+    step: Newton's step at the orbit, (N,). tangent: derivative of the orbit values by the parameter
+    `parameter`, (N,); None if no parameter was given.
     """
 
     def __init__(self, orbit: Orbit, workspace: NewtonWorkspace, parameter: str | None = None) -> None:
@@ -49,28 +50,32 @@ class Linearisation:
         self.tangent = None if parameter is None else steps[1]
 
     def correction(self, orbit: Orbit) -> Array:
-        """Newton's step at a nearby orbit, (N,); raises RuntimeError if the factors were overwritten."""
+        """Newton's step at the nearby orbit `orbit`, (N,); raises RuntimeError if the factors were
+        overwritten."""
         step: Array = correct(orbit.values, self._by_period, orbit.semidiscrete, self._memory.factors)
         return step
 
     def multipliers(self) -> Complex:
-        """Floquet multipliers above rounding errors, (rank,), trivial one included, by descending modulus."""
+        """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
+        multiplier."""
         return over_period(partial_multipliers(self._memory.propagator, self.orbit), self.orbit)
 
 
 def partial_multipliers(propagator: Array, orbit: Orbit) -> Complex:
-    """Nonzero multipliers, (rank,), of the map S^-1 P over the solved part of the period; P: (n, n)."""
+    """Nonzero eigenvalues, (rank,), of the map S^-1 P over the solved part of the period. propagator: P, (n,
+    n)."""
     return nonzero_eigenvalues(orbit.symmetry.returned(propagator, orbit.form.layout))
 
 
 def over_period(partial: Complex, orbit: Orbit) -> Complex:
-    """Floquet multipliers by descending modulus, from the multipliers over the solved part, (rank,) each."""
+    """Floquet multipliers over the period, by descending modulus, (rank,). partial: multipliers over the
+    solved part of the period, (rank,)."""
     values: Complex = partial**orbit.symmetry.parts
     return values[np.argsort(-np.abs(values), kind="stable")]
 
 
 def change_along(form: StressForm, name: str) -> ParameterDerivatives:
-    """Change of a rod and of its mass, (n,), with the coordinate of a parameter."""
+    """Derivatives of a rod and of its mass, (n,), by the coordinate of the parameter `name`."""
     change = form.parameter_derivative(name)
     return ParameterDerivatives(change, form.mass_of(change))
 
@@ -79,10 +84,11 @@ def change_along(form: StressForm, name: str) -> ParameterDerivatives:
 def linearise(
     values: Array, count: int, along: ParameterDerivatives, p: Semidiscrete, factors: Factors
 ) -> tuple[Array, Array]:
-    """Eliminates Newton's matrix at an orbit, values (N,), into the factors.
+    """Eliminates Newton's matrix at the orbit with the given `values`, (N,), and writes it into `factors`.
 
-    Returns the steps, (count - 1, N), and the reduced derivative by the period, (K, s, n). count: 2 for
-    Newton's step alone; 3 for Newton's step, then the orbit's derivative along a parameter.
+    Returns (steps, by_period). steps: Newton's step and, if count = 3, the derivative of the orbit values
+    along the parameter of `along`, (count - 1, N). by_period: reduced derivative of the stage residuals by
+    the period, (K, s, n). count: 2 or 3.
     """
     K = factors.blocks.shape[0]
     s = factors.blocks.shape[1]
@@ -97,7 +103,7 @@ def linearise(
     inverse[:, :] = 0.0
     inverse[:n, :n] = factors.propagator
     for i in range(n):
-        # Bordered system of the closing condition: (P - S) dx(0) + (dx(T/p)/dT) dT = jump, and the phase row.
+        # System of the closing condition, (P - S) dx(0) + (dx(T/p)/dT) dT = jump, and of the phase condition.
         inverse[i, n] = ends[0, i]
         for j in range(n):
             inverse[i, j] -= p.symmetry[i, j]
@@ -111,14 +117,14 @@ def linearise(
     rights[0, n] = -phase(points[0], p.rod, p.matrices)
     if count > 2:
         rights[1, n] = phase_change(points[0], along.change, p.rod, p.matrices)
-    # A contiguous copy, because later corrections at nearby orbits need this column only.
+    # A contiguous copy: later corrections at nearby orbits need only this column.
     by_period = columns[:, :, 0].copy()
     return steps_of(rights, by_period, columns[:, :, 1:], p, factors), by_period
 
 
 @compiled_for_vectors
 def jump_of(points: Array, p: Semidiscrete) -> Array:
-    """Residual S x(0) - x(T/p) of points, (1 + K s, n), shape (n,)."""
+    """Residual S x(0) - x(T/p) of the closing condition, (n,). points: states of the orbit, (1 + K s, n)."""
     jump = -points[-1]
     for i in range(len(jump)):
         for j in range(len(jump)):
@@ -128,11 +134,9 @@ def jump_of(points: Array, p: Semidiscrete) -> Array:
 
 @compiled_for_vectors
 def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, factors: Factors) -> Array:
-    """Steps, (columns, N), from right sides of the closing and phase conditions, (columns, n + 1).
-
-    by_period: reduced derivative by the period, (K, s, n). columns: reduced right sides of the stages, (K, s,
-    columns, n).
-    """
+    """Steps, (columns, N). rights: right-hand sides of the closing and phase conditions, (columns, n + 1).
+    by_period: reduced derivative of the stage residuals by the period, (K, s, n). columns: reduced right-hand
+    sides of the stages, (K, s, columns, n)."""
     K, s, count, n = columns.shape
     found = np.zeros((count, n + 1))
     for m in range(count):
@@ -165,9 +169,11 @@ def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, f
 def reduced_residuals(
     points: Array, duration: float, rod: Semidiscrete, p: Semidiscrete, factors: Factors
 ) -> tuple[Array, Array]:
-    """Residuals of points, (1 + K s, n), for a rod, reduced by the matrix of a nearby rod p.
+    """Residuals of `points`, (1 + K s, n), for the rod `rod`, reduced by the factors of a matrix of the
+    nearby rod `p`.
 
-    Returns the reduced residuals, (K, s, 1, n), and the change of the last end for a fixed start, (1, n).
+    Returns (columns, ends): reduced residuals, (K, s, 1, n), and change of the end of the last interval for a
+    fixed start, (1, n).
     """
     K = factors.blocks.shape[0]
     s = factors.blocks.shape[1]
@@ -190,9 +196,10 @@ def reduced_variations(
     p: Semidiscrete,
     factors: Factors,
 ) -> tuple[Array, Array]:
-    """`variation_sides` of an orbit's values for a rod, reduced by the matrix of a nearby rod p.
+    """`variation_sides` for the rod `rod`, reduced by the factors of a matrix of the nearby rod `p`.
 
-    Returns the reduced right sides, (K, s, m, n), and the changes of the last end for a fixed start, (m, n).
+    Returns (columns, ends): reduced right-hand sides, (K, s, m, n), and changes of the end of the last
+    interval for a fixed start, (m, n).
     """
     K = factors.blocks.shape[0]
     s = factors.blocks.shape[1]
@@ -209,13 +216,14 @@ def reduced_variations(
 
 @compiled_for_vectors
 def correct(values: Array, by_period: Array, p: Semidiscrete, factors: Factors) -> Array:
-    """Newton's step at an orbit by the matrix of a nearby orbit; values and step (N,)."""
+    """Newton's step, (N,), at the orbit values `values`, (N,). factors, by_period: from `linearise` at a
+    nearby orbit."""
     K, s, n = by_period.shape
     points = values[:-1].reshape(1 + K * s, n)
     duration = values[-1] / p.parts
     columns, ends = reduced_residuals(points, duration, p, p, factors)
     rights = np.empty((1, n + 1))
-    # The residuals of the stages move the end as well; the start has to close what is left of the jump.
+    # The residuals of the stages move the end, too; this change is subtracted from the jump.
     rights[0, :n] = jump_of(points, p) - ends[0]
     rights[0, n] = -phase(points[0], p.rod, p.matrices)
     return steps_of(rights, by_period, columns, p, factors)[0]
@@ -223,7 +231,8 @@ def correct(values: Array, by_period: Array, p: Semidiscrete, factors: Factors) 
 
 @compiled_for_vectors
 def largest_change(values: Array, step: Array, unknowns: int, nodes: int) -> float:
-    """Largest change of n2, m3 and the period by a step, (N,), each in units of its largest value."""
+    """Largest relative change of n2, m3 and the period by a step, (N,): the largest change of each quantity,
+    divided by the largest modulus of this quantity."""
     largest = abs(step[-1]) / abs(values[-1])
     for change in step:
         # NaN would be lost in the comparisons below.
@@ -231,7 +240,7 @@ def largest_change(values: Array, step: Array, unknowns: int, nodes: int) -> flo
             return np.inf
     most = np.zeros(PLANE_COMPONENTS)
     size = np.zeros(PLANE_COMPONENTS)
-    # From the first stage on: the state at the start is the last stage of the part before.
+    # The state at the start is left out: it is the last stage of the previous part of the period.
     for first in range(unknowns, len(values) - 1, unknowns):
         for a in range(1, PLANE_COMPONENTS):
             for i in range(nodes):

@@ -1,8 +1,9 @@
 """Nonzero eigenvalues of a matrix of low rank, such as the derivative of a flow over a period.
 
-Few directions survive a period. The factorisation A = Q R of this rank, by pivoted Gram-Schmidt, has the
-nonzero eigenvalues of the small matrix R Q. For this purpose Q need not be orthogonal. A = Q R must hold to
-rounding, which it does even if the columns of A differ much in size.
+Most directions decay to rounding error over a period, so that the numerical rank of the derivative A is
+small. If A = Q R is a factorisation of this rank, the nonzero eigenvalues of A are the eigenvalues of the
+small matrix R Q. Pivoted Gram-Schmidt gives A = Q R to rounding error, even if the columns of A differ much
+in size. Q need not be orthogonal to rounding error.
 """
 
 from dataclasses import dataclass
@@ -17,17 +18,19 @@ from ...backend.small_eigenvalues import eigenvalues
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MultiplierSettings:
-    """Settings for the compression of the flow's derivative."""
+    """Settings for the factorisation of the derivative of a flow."""
 
     negligible: float = 1e-17
-    """Largest norm of a negligible column, in units of the largest column of the flow's derivative."""
+    """A remaining column is neglected if its norm is at most this number times the largest column norm of the
+    derivative."""
 
 
 MULTIPLIERS = MultiplierSettings()
 
 
 def nonzero_eigenvalues(A: Array) -> Complex:
-    """Eigenvalues, (rank,), of a matrix (n, n) of low rank, without those that are 0 to rounding.
+    """Eigenvalues, (rank,), of a matrix A of low rank, (n, n), without the eigenvalues that are 0 within
+    rounding error.
 
     Raises LinAlgError if A has entries that are not finite.
     """
@@ -39,7 +42,8 @@ def nonzero_eigenvalues(A: Array) -> Complex:
 
 @compiled_for_vectors
 def _eigenvalues_by_rank(A: Array, negligible: float) -> Complex:
-    """Eigenvalues of A after `compressed`, (rank,); empty, (0,), if A has entries that are not finite."""
+    """Eigenvalues of `compressed(A, negligible)`, (rank,); empty, (0,), if A has entries that are not
+    finite."""
     small = compressed(A, negligible)
     for value in small.flat:
         if not np.isfinite(value):
@@ -49,9 +53,10 @@ def _eigenvalues_by_rank(A: Array, negligible: float) -> Complex:
 
 @compiled_for_vectors
 def compressed(A: Array, negligible: float) -> Array:
-    """Matrix (rank, rank) with the eigenvalues of A, (n, n), apart from zeros of a slightly changed A.
+    """Matrix R Q, (rank, rank), with the nonzero eigenvalues of A, (n, n), in which small columns are
+    neglected.
 
-    negligible: largest column of this change in units of A's largest column.
+    negligible: limit of the norm of a neglected column, divided by the largest column norm of A.
     """
     n = len(A)
     columns = A.T.copy()
@@ -70,13 +75,13 @@ def compressed(A: Array, negligible: float) -> Array:
             break
         q = Q[rank]
         r = R[rank]
-        # Gram-Schmidt with the largest remaining column as pivot, which reveals the rank; the tiny divisor
-        # keeps a zero matrix from dividing by 0.
+        # Gram-Schmidt with the largest remaining column as pivot, which reveals the rank; `least_divisor`
+        # avoids a division by 0 for a zero matrix.
         q[:] = columns[p] / max(size, EXPONENTS.least_divisor)
         for j in range(n):
             if norms[j] > least:
                 norms[j] = _without(columns[j], q, r, j)
-        # The remaining pivot column is rounding error: its norm is set to 0.
+        # The rest of the pivot column is rounding error: its norm is set to 0.
         r[p] = size
         norms[p] = 0.0
         rank += 1
@@ -93,7 +98,8 @@ def compressed(A: Array, negligible: float) -> Array:
 
 @compiled_for_vectors
 def _without(column: Array, q: Array, r: Array, j: int) -> float:
-    """Moves a column's component along q into r[j], and returns the norm of the remaining column."""
+    """Subtracts from `column`, in place, its component along q, stores this component in r[j], and returns
+    the norm of the remaining column."""
     along = 0.0
     left = 0.0
     for i in range(len(q)):

@@ -1,6 +1,7 @@
 """Phase condition of an orbit in the plane, compiled: at t = 0 the tip's y is at an extremum.
 
-The velocity of the tip is computed from the reaction, which converges twice as fast as the velocity field.
+The velocity of the tip is computed from the reaction at the tip, which converges twice as fast as the
+velocity field.
 """
 
 import numpy as np
@@ -15,7 +16,8 @@ from ....model.compiled.compilation import compiled_for_vectors
 
 @compiled_for_vectors
 def phase_change(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices) -> float:
-    """Derivative of `phase` at a start, (n,), along a change of the parameters, negated as a right side."""
+    """Minus the derivative of the phase condition along a change of the parameters, at the state `start` at t
+    = 0, (n,): the right-hand side of the phase equation."""
     V = np.empty(c.drag.shape)
     G = np.empty(c.drag.shape)
     changes = np.empty((3, *c.drag.shape))
@@ -24,15 +26,14 @@ def phase_change(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
     theta = tip_angle(start, c.compliance, m)
     turned = tip_angle(start, change.compliance, m)
     by_angle = np.cos(theta) * G[0, -1] - np.sin(theta) * G[1, -1]
-    # Negated: the phase condition has its right side on the other side of the equation.
+    # With the minus sign of a right-hand side.
     return by_angle * turned - lateral_velocity(changes[2], theta)
 
 
 @compiled_for_vectors
 def phase(start: Array, c: NodalRod, m: NodeMatrices) -> float:
-    """Lateral velocity dy/dt of the tip at the start of the orbit, (n,), from the reaction at the tip: the
-    phase condition.
-    """
+    """Residual of the phase condition: lateral velocity dy/dt of the tip, computed from the reaction at the
+    tip. start: state at t = 0, (n,)."""
     V = np.empty(c.drag.shape)
     G = np.empty(c.drag.shape)
     balance(start, V, G, c, m)
@@ -41,15 +42,16 @@ def phase(start: Array, c: NodalRod, m: NodeMatrices) -> float:
 
 @compiled_for_vectors
 def lateral_velocity(G: Array, theta: float) -> float:
-    """dy/dt of the tip at an angle, from G at all nodes, (3, nodes + 1)."""
-    # G at the tip is the reaction of the weak form: minus the tip's velocity in the body frame, here turned
-    # into the laboratory frame.
+    """Lateral velocity dy/dt of the tip. G: strain rates of the weak form at all nodes, (3, nodes + 1).
+    theta: angle of the tip."""
+    # G at the tip is the reaction of the weak form: minus the velocity of the tip in the body frame, which is
+    # rotated into the laboratory frame here.
     return -(np.sin(theta) * G[0, -1] + np.cos(theta) * G[1, -1])
 
 
 @compiled_for_vectors
 def tip_angle(x: Array, compliance: Array, m: NodeMatrices) -> float:
-    """Angle theta of the tip for a state, (n,), and compliances, (3, nodes + 1)."""
+    """Angle theta of the tip. x: state, (n,). compliance: compliances at all nodes, (3, nodes + 1)."""
     theta = 0.0
     nodes = len(m.weights) - 1
     for i in range(nodes):
@@ -59,7 +61,7 @@ def tip_angle(x: Array, compliance: Array, m: NodeMatrices) -> float:
 
 @compiled_for_vectors
 def phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> None:
-    """Derivative of `phase` with respect to the start, into row, (n,) each."""
+    """Writes the derivative of `phase` by the state `start`, (n,), into `row`, (n,)."""
     n = len(start)
     V = np.empty(c.drag.shape)
     G = np.empty(c.drag.shape)
@@ -74,6 +76,6 @@ def phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> None:
     for i in range(n):
         row[i] = -(sin * tip[0, i] + cos * tip[1, i])
     for i in range(nodes):
-        # theta is the integral of the curvature C m3, so each node turns the tip by its weight.
+        # theta is the integral of the curvature C m3, C: bending compliance.
         turn = m.weights[i] * c.compliance[BENDING_INDEX, i]
         row[stress_index(BENDING_INDEX, i, nodes)] += (sin * G[1, nodes] - cos * G[0, nodes]) * turn

@@ -1,4 +1,6 @@
-"""Right sides of Newton's systems for a periodic orbit, compiled: residuals and their derivatives."""
+"""Right-hand sides of Newton's systems for a periodic orbit, compiled: residuals of the stages and
+derivatives of the residuals. K: intervals, s: stages each, n: unknowns of a state, h: length of an interval
+in tau2."""
 
 from typing import NamedTuple
 
@@ -14,7 +16,8 @@ from .substitution import add_products
 
 
 class ParameterDerivatives(NamedTuple):
-    """Derivatives of the rod's arrays and of its mass, (n,), with respect to a parameter."""
+    """Derivatives by a parameter. change: derivatives of the arrays of the rod. mass: derivative of the
+    diagonal mass matrix, (n,)."""
 
     change: NodalChange
     mass: Array
@@ -22,9 +25,8 @@ class ParameterDerivatives(NamedTuple):
 
 @compiled_for_vectors
 def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
-    """Writes the right side F(x) of M dx/dt = F(x), (n,), with the velocities V and strain rates G, (3, nodes
-    + 1) each.
-    """
+    """Writes the right-hand side of M dx/dt = F(x), (n,), into F, and the velocities and strain rates at the
+    state x into V and G, (3, nodes + 1)."""
     balance(x, V, G, p.rod, p.matrices)
     _store_stresses(G, F)
     if len(p.rod.unknown_velocities):
@@ -33,7 +35,7 @@ def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
 
 @compiled_for_vectors
 def _store_stresses(G: Array, F: Array) -> None:
-    """Copies G at all nodes but the tip, (3, nodes + 1), to its places in F, (n,)."""
+    """Copies G, (3, nodes + 1), at all nodes except the tip to the stress unknowns of F, (n,)."""
     d = G.shape[0]
     n = G.shape[1] - 1
     for a in range(d):
@@ -43,9 +45,9 @@ def _store_stresses(G: Array, F: Array) -> None:
 
 @compiled_for_vectors
 def equations_change(x: Array, F: Array, V: Array, out: Array, change: NodalChange, p: Semidiscrete) -> None:
-    """Derivative of `equations` along a change of the parameters, into F, (n,).
+    """Writes the derivative of F(x) of `equations` along a change of the parameters into F, (n,).
 
-    V: velocity at the state x. out: work array, (3, 3, nodes + 1).
+    x: state, (n,). V: velocities at x, (3, nodes + 1). out: work array, (3, 3, nodes + 1).
     """
     balance_change(x, V, out, change, p.rod, p.matrices)
     _store_stresses(out[2], F)
@@ -59,9 +61,10 @@ def equations_change(x: Array, F: Array, V: Array, out: Array, change: NodalChan
 
 @compiled_for_vectors
 def residuals(points: Array, duration: float, p: Semidiscrete, out: Array) -> None:
-    """Residuals h F(x_i) - sum_j d_ij M x_j of all stages, into out, (K, s, n).
+    """Writes the residuals h F(x_i) - sum_j d_ij M x_j of all stages into `out`, (K, s, n).
 
-    points: states at the start and the stages one after the other, (1 + K s, n).
+    points: state at the start and states of all stages, in order, (1 + K s, n). duration: length of all
+    intervals.
     """
     K, s, n = out.shape
     size = len(p.matrices.weights)
@@ -81,10 +84,11 @@ def residuals(points: Array, duration: float, p: Semidiscrete, out: Array) -> No
 def right_sides(
     points: Array, duration: float, p: Semidiscrete, along: ParameterDerivatives, V: Array, columns: Array
 ) -> None:
-    """Right sides of Newton's system, (K, s, columns, n), and V of the stages, (K, s, 3, nodes + 1).
+    """Writes the right-hand sides of Newton's system into `columns`, (K, s, columns, n), and the velocities
+    of the stages into V, (K, s, 3, nodes + 1).
 
-    The columns are the derivative by the period, the `residuals`, and, if there is a third column, the
-    residuals' derivative along the change of a parameter.
+    Column 0: derivative of the residuals by the period. Column 1: the `residuals`. Column 2, if present:
+    derivative of the residuals along the parameter of `along`. points, duration: as in `residuals`.
     """
     K, s, count, n = columns.shape
     G = np.empty(V.shape[2:])
@@ -98,8 +102,8 @@ def right_sides(
             equations(x, sides[0], V[k, i], G, p)
             _slopes(points[k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
             for r in range(n):
-                # F is used twice: times h in the residual, and as derivative of h F by the period in the
-                # column below. The residual comes first, because the column overwrites F.
+                # sides[0] contains F, which is needed for the residual, and is then overwritten by the
+                # derivative of h F by the period.
                 sides[1, r] = duration * length * sides[0, r] - p.mass[r] * slopes[r]
                 sides[0, r] *= length / p.parts
             if count > 2:
@@ -112,9 +116,10 @@ def right_sides(
 def variation_sides(
     values: Array, p: Semidiscrete, along: ParameterDerivatives, variations: Array, columns: Array
 ) -> None:
-    """Derivatives of an orbit's `residuals` along variations, into columns, (K, s, columns, n).
+    """Writes the derivatives of the `residuals` of an orbit along variations into `columns`, (K, s, columns,
+    n).
 
-    values: values of the orbit, (N,). variations: variations of the values and of the parameter of `along`,
+    values: values of the orbit, (N,). variations: changes of the values and of the parameter of `along`,
     (columns, N + 1).
     """
     K, s, count, n = columns.shape
@@ -131,7 +136,7 @@ def variation_sides(
     J = np.empty((n, n))
     tip = np.empty((len(V), n))
     v = np.empty((count, n))
-    # Eigenvectors of the flow leave the parameter alone; then the derivative by it is not needed.
+    # Eigenvectors of the flow do not change the parameter: the derivative by the parameter is not needed.
     moving = np.any(variations[:, -1] != 0.0)
     columns[:] = 0.0
     for k in range(K):
@@ -149,7 +154,7 @@ def variation_sides(
             add_products(J, v, columns[k, i], h)
             for m in range(count):
                 _slopes(changes[m, k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
-                # h = T/p times the interval's share, so dh/dT is the share over p.
+                # h is T/p times the relative length of the interval, so that dh/dT is this length over p.
                 by_period = variations[m, -2] * p.lengths[k] / p.parts
                 for r in range(n):
                     rates = by_period * F[r] + variations[m, -1] * by_parameter[r]
@@ -158,7 +163,8 @@ def variation_sides(
 
 @compiled_for_vectors
 def _slopes(points: Array, i: int, d: Array, out: Array) -> None:
-    """Slopes sum_j d_ij x_j of one interval's start and stages, (s + 1, n), into out, (n,)."""
+    """Writes sum_j d_ij x_j for stage i into `out`, (n,). points: states x_j at the start and at the stages
+    of an interval, (s + 1, n). d: (s, s + 1)."""
     out[:] = 0.0
     for j in range(len(points)):
         for r in range(len(out)):

@@ -1,6 +1,8 @@
-"""Solutions with an eliminated matrix (`elimination`), compiled, for several right sides at once.
+"""Solution of linear systems with an eliminated matrix (`elimination`), compiled, for several right-hand
+sides.
 
-The first two stages of an interval need their inverses only; the other stages need the interval's blocks.
+The first two stages of an interval need only the inverses of their diagonal blocks; later stages need all
+blocks of the interval, B: (s, s, n, n).
 """
 
 import numpy as np
@@ -13,10 +15,9 @@ from .workspace import Factors
 
 @compiled_for_vectors
 def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
-    """Reduces the right sides of one interval, (s, columns, n), in place; those of the first two stages stay.
-
-    The last stage's right side becomes the change of the interval's end for a fixed start.
-    """
+    """Reduces the right-hand sides of one interval, (s, columns, n), in place. The right-hand sides of the
+    first two stages are unchanged; the last stage's becomes the change of the interval's end for a fixed
+    start."""
     s, count, n = columns.shape
     d = p.differentiation
     mass = p.mass
@@ -29,7 +30,7 @@ def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
                 columns[i, m, r] -= mass[r] * (d[i, 1] * t[m, r] + d[i, 2] * u[m, r])
         for a in range(2, i):
             add_products(B[i, a], columns[a], columns[i], -1.0)
-    # The last stage is solved for at once: the end of the interval is all that the next one needs.
+    # Only the last stage is solved here, because the next interval needs only the end of this interval.
     t[:] = columns[s - 1]
     columns[s - 1] = 0.0
     add_products(B[s - 1, s - 1], t, columns[s - 1], 1.0)
@@ -37,10 +38,8 @@ def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
 
 @compiled_for_vectors
 def to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
-    """Replaces `ends`, changes of an interval's start, (columns, n), by the changes of its end.
-
-    columns: reduced right sides of the stages.
-    """
+    """Replaces `ends`, the changes of the start of an interval, (columns, n), by the changes of its end.
+    columns: reduced right-hand sides of its stages, (s, columns, n)."""
     # The map of an interval acts on M x_0, as in `eliminate`.
     scaled = ends * p.mass
     ends[:] = columns[-1]
@@ -49,7 +48,8 @@ def to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
 
 @compiled_for_vectors
 def _first_two(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -> None:
-    """First two stages, t and u, (columns, n), for right sides y, (s, columns, n), and other stages of 0."""
+    """Writes the changes of the first two stages into t and u, (columns, n). y: right-hand sides, of which
+    only the first two stages are used, (s, columns, n); the changes of later stages are taken as 0."""
     d = p.differentiation
     mass = p.mass
     (count, n) = t.shape
@@ -60,7 +60,7 @@ def _first_two(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -> None:
     for m in range(count):
         for r in range(n):
             side[m, r] = y[1, m, r] - d[1, 1] * mass[r] * t[m, r]
-    # B[1, 1] holds the inverse of the Schur complement; t still lacks the coupling to u, subtracted below.
+    # B[1, 1] is the inverse of the Schur complement. The coupling of t to u is subtracted below.
     add_products(B[1, 1], side, u, 1.0)
     for m in range(count):
         for r in range(n):
@@ -70,9 +70,9 @@ def _first_two(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -> None:
 
 @compiled_for_vectors
 def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
-    """Adds factor A x to y for columns x and y, (columns, n) each, two columns at a time."""
+    """Adds `factor` A x to y, in place, for several columns; x, y: (columns, n), A: (n, n)."""
     count, n = x.shape
-    # Each entry of A is loaded once for two columns: the product is bound by memory, not by arithmetic.
+    # Two columns at a time, so that each entry of A is loaded once for both: memory access limits the speed.
     for m in range(0, count - 1, 2):
         for i in range(n):
             first = 0.0
@@ -92,10 +92,8 @@ def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
 
 @compiled_for_vectors
 def substitute(start: Array, columns: Array, p: Semidiscrete, factors: Factors, out: Array) -> None:
-    """Changes of all stages, into out, from changes of the start and reduced right sides.
-
-    start: (columns, n); columns and out: (K, s, columns, n).
-    """
+    """Writes the changes of all stages into `out`, (K, s, columns, n). start: changes of the start, (columns,
+    n). columns: reduced right-hand sides, (K, s, columns, n)."""
     K, s, count, n = columns.shape
     y = np.empty((2, count, n))
     first = start.copy()
@@ -109,7 +107,7 @@ def substitute(start: Array, columns: Array, p: Semidiscrete, factors: Factors, 
                 scaled[m, r] = mass[r] * first[m, r]
                 for i in range(2):
                     y[i, m, r] = columns[k, i, m, r] - d[i, 0] * scaled[m, r]
-        # Backwards: a stage depends on the later ones, whose blocks were eliminated after it.
+        # In reverse order, because a stage depends on the later stages.
         for a in range(s - 1, 1, -1):
             _back_to(B, a, columns[k], scaled, out[k])
             for m in range(count):
@@ -122,13 +120,12 @@ def substitute(start: Array, columns: Array, p: Semidiscrete, factors: Factors, 
 
 @compiled_for_vectors
 def _back_to(B: Array, a: int, columns: Array, scaled: Array, out: Array) -> None:
-    """Stage a >= 2 (the third or a later one), into out, from reduced right sides, (s, columns, n) both.
-
-    scaled: M times the changes of the start, (columns, n).
-    """
+    """Writes the changes of stage a >= 2 into out[a]. columns: reduced right-hand sides, (s, columns, n).
+    scaled: M times the changes of the start, (columns, n). out: changes of all stages, (s, columns, n), in
+    which later stages are known."""
     s = len(B)
     out[a] = 0.0
-    # The last stage was solved for in `reduce`; only the effect of the start is missing.
+    # `reduce` has solved the last stage for a fixed start; the effect of the start is added.
     if a == s - 1:
         out[a] = columns[a]
         add_products(B[0, 1], scaled, out[a], 1.0)

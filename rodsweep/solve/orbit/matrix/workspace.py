@@ -1,7 +1,8 @@
-"""Memory for the factors of Newton matrices: a solver owns a workspace and lends it to each of its matrices.
+"""Memory for the factors of Newton matrices, shared by all matrices of a solver.
 
-New memory pages cost as much time as half an elimination, so that the matrices of a solver share one buffer.
-Only the last matrix has its factors in the buffer; an earlier matrix raises an error if they are needed.
+New memory pages cost as much time as half an elimination; therefore the matrices of a solver share one
+buffer. The buffer contains the factors of the last matrix. An earlier matrix raises an error if its factors
+are needed.
 """
 
 from dataclasses import dataclass
@@ -18,7 +19,8 @@ class WorkspaceSettings:
     """Settings for the memory of the matrices of orbits."""
 
     kept_numbers: int = 2**23
-    """Numbers that a workspace keeps between rods, 64 MB: enough for most rods."""
+    """Largest size of a buffer that is not freed between rods, in double-precision numbers: 64 MB, enough for
+    most rods."""
 
 
 WORKSPACE = WorkspaceSettings()
@@ -27,11 +29,11 @@ WORKSPACE = WorkspaceSettings()
 class Factors(NamedTuple):
     """Eliminated Newton matrix of all K intervals.
 
-    blocks: (K, s, s, n, n), with inverses of the pivots on the diagonal, row multipliers below, Schur-updated
-    blocks above. In the first two rows and columns, only the first row is used besides the diagonal: column 1
-    holds the change of the end for x_0 = M^-1, and columns 2 to s - 2 hold the right sides of these stages
-    for x_0 = M^-1. propagator: P, (n, n). inverse: inverse of the remaining matrix for start and period, (n +
-    1, n + 1).
+    blocks: (K, s, s, n, n); the diagonal has inverses of the pivot blocks, the part below has row
+    multipliers, the part above has Schur-updated blocks. Off the diagonal, the first two rows and columns are
+    unused, except row 0: column 1 has the change of the end for x_0 = M^-1, columns 2 to s - 2 have the
+    right-hand sides of these stages for x_0 = M^-1. propagator: P, (n, n). inverse: inverse of the remaining
+    matrix for start and period, (n + 1, n + 1).
     """
 
     blocks: Array
@@ -47,7 +49,8 @@ class NewtonWorkspace:
         self._claim = 0
 
     def claim(self, size: int) -> int:
-        """Number of a new claim on the buffer, for a matrix of this size; earlier claims end."""
+        """Starts a new claim on the buffer, ends earlier claims, and returns the number of the claim. size:
+        required size of the buffer."""
         if len(self._buffer) < size:
             self._buffer = np.empty(0)  # frees the old buffer before the new one is allocated
             self._buffer = np.empty(size)
@@ -55,20 +58,22 @@ class NewtonWorkspace:
         return self._claim
 
     def buffer(self, claim: int) -> Array:
-        """Buffer of a claim, (size,) or longer; raises RuntimeError if the claim has ended."""
+        """The buffer, (size,) or longer, for the claim with the number `claim`; raises RuntimeError if this
+        claim has ended."""
         if claim != self._claim:
             raise RuntimeError("the factors of this matrix are overwritten: its workspace was used again")
         return self._buffer
 
     def release(self) -> None:
-        """Ends the last claim, and frees a buffer of more than WORKSPACE.kept_numbers."""
+        """Ends the last claim, and frees the buffer if it is larger than WORKSPACE.kept_numbers."""
         self._claim += 1
         if len(self._buffer) > WORKSPACE.kept_numbers:
             self._buffer = np.empty(0)
 
 
 class MatrixMemory:
-    """Factors of one Newton matrix: blocks in a workspace, and other factors in separate arrays."""
+    """Memory of the factors of one Newton matrix: the blocks are in a workspace, propagator and inverse in
+    separate arrays."""
 
     def __init__(self, workspace: NewtonWorkspace, intervals: int, stages: int, unknowns: int) -> None:
         self.workspace = workspace
@@ -80,6 +85,6 @@ class MatrixMemory:
 
     @property
     def factors(self) -> Factors:
-        """The factors; raises RuntimeError if another matrix was made in the workspace."""
+        """The factors; raises RuntimeError if another matrix was assembled in the workspace."""
         blocks = self.workspace.buffer(self._claim)[: prod(self._shape)].reshape(self._shape)
         return Factors(blocks, self.propagator, self._inverse)
