@@ -1,4 +1,5 @@
-"""Benchmarks: speed against error of rodsweep, with all methods timed in turn in one run.
+"""Benchmarks: computing time and error of rodsweep and of other methods, timed in turn in one run.
 
-Other codes, the peers, are in a folder outside the package, from which `rodsweep.bench.peers` imports them.
+Methods of other codes, the peers, are in a folder outside the package, from which `rodsweep.bench.peers`
+imports them.
 """

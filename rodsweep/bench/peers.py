@@ -1,10 +1,11 @@
-"""The peers: other codes timed beside rodsweep, from the folder `benchmarks` of a checkout.
+"""The peers: other codes that are timed together with rodsweep, from the folder `benchmarks` of a checkout.
 
-The folder is a Python package that is not installed with rodsweep. It offers
+The folder is a Python package that is not installed with rodsweep. The package has the function
 
     versions() -> dict[str, str]
 
-with the versions of the installed peers, and, for each study with peers, a module named like the study with
+which returns the versions of the installed peers by name. For each study with peers, it has a module with the
+name of the study and the function
 
     peers(quick: bool, place: Path) -> Peers
 
@@ -23,46 +24,49 @@ from ..errors import InputError
 from .study import Contender, Measurement
 
 PEER_PACKAGE_NAME = "benchmarks"
-"""Name of the folder of peers in a checkout; also its package name wherever the folder is."""
+"""Name of the folder of peers in a checkout, and name under which its package is imported from any folder."""
 CHECKOUT_FOLDER = Path(__file__).parents[2]
-"""Root folder of the checkout, if rodsweep runs from a checkout."""
+"""Root folder of the checkout from which rodsweep runs; without a checkout, the parent of the installed
+package."""
 PEER_NAMES = {
     "spectrum": "LAPACK, ARPACK and Chebyshev collocation",
     "thresholds": "grids and root finding with SciPy, AUTO-07p and PyCont-Lite",
     "limit_cycle": "further integrators of PETSc, those of SciPy, CVODE and AUTO-07p",
 }
-"""Names of the peers in words by study, for a report without peers."""
+"""Phrase that names the peers of each study, for a report without peers."""
 PeerSection = Callable[[int], tuple[list[str], list[Measurement]]]
-"""Comparison with tables of its own: function from the number of rounds to (blocks of text, measurements)."""
+"""Comparison with separate tables: a function (number of rounds) -> (blocks of text, measurements)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Peers:
-    """Everything that peers contribute to one study."""
+    """Contribution of the peers to one study."""
 
     contenders: Mapping[str, Sequence[Contender]] = field(default_factory=dict)
     """Methods of each race, by the name of the race, with settings from the coarsest to the finest; the study
     defines the races and their cases."""
     sections: Sequence[PeerSection] = ()
-    """Comparisons beside the races of the study."""
+    """Comparisons in addition to the races of the study."""
     notes: Sequence[str] = ()
     """Sentences on the contenders, for the introduction of the report."""
     skipped: Sequence[str] = ()
     """A sentence for each peer that is not installed."""
 
     def of(self, race: str) -> list[Contender]:
-        """Contenders of a race, by the name of the race; empty if no peer takes part."""
+        """Contenders of the race with the name `race`; empty if no peer takes part."""
         return list(self.contenders.get(race, ()))
 
 
 NO_PEERS = Peers()
-"""Contribution of a study without peers."""
+"""Empty contribution, for a study without peers."""
 
 
 def peer_package(directory: Path | None) -> ModuleType | None:
-    """The Python package in a folder of peers; InputError if the folder is no such package.
+    """The Python package of the peers in the folder `directory`; raises InputError if the folder is not such
+    a package.
 
-    directory: None for the folder of the running checkout; without a checkout the result is None.
+    directory: None means the folder in the checkout from which rodsweep runs; the result is None if there is
+    no checkout.
     """
     if directory is not None:
         return _loaded(directory)
@@ -83,7 +87,7 @@ def _loaded(directory: Path) -> ModuleType:
     if not start.is_file() or spec is None or spec.loader is None:
         raise refusal
     package = module_from_spec(spec)
-    sys.modules[PEER_PACKAGE_NAME] = package  # before its modules are imported, which look for it there
+    sys.modules[PEER_PACKAGE_NAME] = package  # needed by imports in its modules
     spec.loader.exec_module(package)
     if not hasattr(package, "versions"):
         raise refusal
@@ -91,10 +95,9 @@ def _loaded(directory: Path) -> ModuleType:
 
 
 def study_peers(package: ModuleType | None, study: str, quick: bool, place: Path) -> Peers:
-    """Contribution of the installed peers to a study; programs are compiled in the directory `place`.
-
-    package: from `peer_package`. quick: fewer settings.
-    """
+    """Contribution of the installed peers to the study with the name `study`. package: as returned by
+    `peer_package`. quick: whether to use fewer settings. place: empty directory in which programs are
+    compiled."""
     module = f"{PEER_PACKAGE_NAME}.{study}"
     if package is None or find_spec(module) is None:
         return NO_PEERS
@@ -103,10 +106,11 @@ def study_peers(package: ModuleType | None, study: str, quick: bool, place: Path
 
 
 def peers_left_out(studies: Sequence[str]) -> str:
-    """Sentence that names the peers of studies run without the folder of peers; "" if they have no peers."""
+    """Sentence that names the missing peers of `studies`, for a run without the folder of peers; "" if these
+    studies have no peers."""
     missing = "; ".join(f"{name}: {PEER_NAMES[name]}" for name in studies if name in PEER_NAMES)
     return missing and (
-        f"The peers are left out ({missing}): they are in the folder `{PEER_PACKAGE_NAME}` of a checkout of "
-        "rodsweep, "
-        f"which `--peers CHECKOUT/{PEER_PACKAGE_NAME}` names."
+        f"The peers are left out ({missing}). A checkout of rodsweep contains these peers in the folder "
+        "`"
+        f"{PEER_PACKAGE_NAME}`; give it as `--peers CHECKOUT/{PEER_PACKAGE_NAME}`."
     )

@@ -1,4 +1,4 @@
-"""Benchmarks in general: methods timed in turn on cases, their errors, and tables in Markdown."""
+"""Parts of all benchmarks: methods timed in turn on cases, errors of the results, and tables in Markdown."""
 
 import resource
 import time
@@ -18,15 +18,16 @@ from ..results.file.measurements import Table
 Outcome = TypeVar("Outcome")
 """Type of the result of a timed function."""
 SHORT_RUN_SECONDS = 0.02
-"""Duration, in s, below which the time of a run depends on the processor caches left by the previous run."""
+"""If a run takes less than this duration, in s, its time depends on the contents of the processor caches
+after the previous run."""
 
 
 @dataclass(frozen=True, slots=True)
 class Contender:
-    """A method at one setting, which takes part in a race.
+    """A method at one setting that takes part in a race.
 
-    group: methods of a group share a colour in the figure. run: function from a case to a result. slow:
-    whether the function runs only once, instead of in every round.
+    group: name of a group of methods, which have the same colour in the figure. run: function (case) ->
+    result. slow: whether the function is run only once, instead of in every round.
     """
 
     method: str
@@ -40,9 +41,9 @@ class Contender:
 class Measurement:
     """Time and error of a method at one setting on one case.
 
-    seconds: median over the rounds. error: relative; nan if no error applies, inf if the method failed, for
-    the reason `failure`. least_seconds: minimum over the rounds, less sensitive to other programs on the
-    machine. extra: further numbers by name.
+    seconds: median time of the rounds. error: relative error; nan if there is no error to measure, inf if the
+    method failed. failure: reason for the failure. least_seconds: minimum time of the rounds, which depends
+    less on other programs. extra: further numbers by name.
     """
 
     case: str
@@ -60,8 +61,9 @@ class Measurement:
 class Study:
     """Result of one benchmark.
 
-    text: report in Markdown. measurements: drawn in the figure. unit: unit of work of a run, as in "ms a
-    point". target: error at which methods are compared. undrawn: further measurements, for the file only.
+    text: report in Markdown. measurements: measurements in the figure. unit: noun for a run, as in "ms a
+    point". target: error at which methods are compared. undrawn: further measurements, which are only in the
+    file.
     """
 
     name: str
@@ -73,20 +75,21 @@ class Study:
 
     @property
     def drawable(self) -> bool:
-        """Whether any measurement has a finite error, which can be drawn against time."""
+        """Whether a measurement in `measurements` has a finite error, so that the figure is not empty."""
         return any(isfinite(m.error) for m in self.measurements)
 
     def draw(self, output: Path) -> None:
-        """Writes the figure: errors against time, a panel for each case, a curve for each method."""
+        """Writes the figure into the file `output`: errors against time, with one panel per case and one
+        curve per method."""
         draw_work_precision(columns_of(self.measurements), f"ms a {self.unit}", self.target, output)
 
     def table(self) -> Table:
-        """All measurements as columns, for the file."""
+        """All measurements as the columns of a table, for the file."""
         return columns_of([*self.measurements, *self.undrawn])
 
 
 def columns_of(measurements: Sequence[Measurement]) -> Table:
-    """Measurements as columns by name; nan for numbers that a measurement lacks."""
+    """The measurements as columns, by name; a number that a measurement does not have is nan."""
     columns: Table = {
         name: [getattr(m, name) for m in measurements]
         for name in ("case", "method", "group", "setting", "seconds", "least_seconds", "error", "failure")
@@ -97,7 +100,8 @@ def columns_of(measurements: Sequence[Measurement]) -> Table:
 
 
 class TimedRuns(NamedTuple, Generic[Outcome]):
-    """Result of the first run of a function, and processor seconds of every timed run."""
+    """Timed runs of a function. outcome: result of the first run. seconds: processor time of every timed run,
+    in s."""
 
     outcome: Outcome
     seconds: tuple[float, ...]
@@ -108,11 +112,12 @@ class TimedRuns(NamedTuple, Generic[Outcome]):
 
 
 def race(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> list[TimedRuns[Outcome]]:
-    """Times functions in turn, round by round; rounds: number of timed rounds of each function.
+    """Results and times of functions, run in turn, round by round. rounds: number of timed rounds of each
+    function.
 
-    A first call of every function, which may load and compile, is timed only if the function has no rounds. A
-    short function is called twice in a row and the second call is timed, so that the processor caches do not
-    depend on the previous function.
+    The first call of a function, which may load and compile code, is timed only if the function has no
+    rounds. A function with a short run is called twice in succession and the second call is timed, so that
+    the processor caches do not depend on the previous function.
     """
     first = [_timed(run) for run in runs]
     seconds: list[list[float]] = [[] for _ in runs]
@@ -124,10 +129,8 @@ def race(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> list[T
 
 
 def timing_order(rounds: Sequence[int]) -> Iterator[int]:
-    """Indices of functions in the order of timing, round by round, so that slow periods affect all functions.
-
-    rounds: number of rounds of each function.
-    """
+    """Indices of functions in the order of timing: round by round, so that a slow period of the machine
+    affects all functions. rounds: number of rounds of each function."""
     for turn in range(max(rounds)):
         yield from (i for i, most in enumerate(rounds) if turn < most)
 
@@ -139,13 +142,13 @@ def _timed(run: Callable[[], Outcome]) -> TimedRuns[Outcome]:
 
 
 def processor_seconds() -> float:
-    """Processor time, in s, used so far by this process and by the finished programs that it started."""
+    """Processor time, in s, used so far by this process and by its finished child processes."""
     programs = resource.getrusage(resource.RUSAGE_CHILDREN)
     return time.process_time() + programs.ru_utime + programs.ru_stime
 
 
 def result_or_error(run: Callable[[Any], Outcome], case: Any) -> Outcome | Exception:
-    """Result of the function `run` on a case, or the exception that it raised."""
+    """Result of `run(case)`, or the exception that this call raised."""
     try:
         with np.errstate(all="ignore"):
             return run(case)
@@ -154,7 +157,8 @@ def result_or_error(run: Callable[[Any], Outcome], case: Any) -> Outcome | Excep
 
 
 class JudgedCase(NamedTuple):
-    """A case of a tournament; judge: function from a result to `error` and further fields of Measurement."""
+    """A case on which methods are compared. judge: function from a result of a method to a dictionary with
+    `error` and further fields of `Measurement`."""
 
     name: str
     case: Any
@@ -164,14 +168,16 @@ class JudgedCase(NamedTuple):
 def measure_case(
     name: str, case: Any, contenders: Sequence[Contender], rounds: int, judge: Callable[[Any], dict[str, Any]]
 ) -> list[Measurement]:
-    """Measurements of all contenders on one case, timed in turn; arguments as in `JudgedCase`."""
+    """Measurements of all contenders on one case, timed in turn. name, case, judge: as in `JudgedCase`.
+    rounds: number of timed rounds."""
     return measure_cases([JudgedCase(name, case, judge)], contenders, rounds)
 
 
 def measure_cases(
     entries: Sequence[JudgedCase], contenders: Sequence[Contender], rounds: int
 ) -> list[Measurement]:
-    """Measurements of all contenders on all cases, timed in turn."""
+    """Measurements of all contenders on all cases `entries`, timed in turn. rounds: number of timed
+    rounds."""
     pairs = [(entry, contender) for entry in entries for contender in contenders]
     runs = [partial(result_or_error, contender.run, entry.case) for entry, contender in pairs]
     raced = race(runs, [0 if contender.slow else rounds for _, contender in pairs])
@@ -188,7 +194,8 @@ def measure_cases(
 def grouped_by_fields(
     measurements: Iterable[Measurement], *names: str
 ) -> dict[tuple[str, ...], list[Measurement]]:
-    """Measurements grouped by the values of the named fields, in order of appearance."""
+    """Lists of measurements with equal values of the fields `names`, by these values, in order of first
+    appearance."""
     groups: dict[tuple[str, ...], list[Measurement]] = {}
     for m in measurements:
         groups.setdefault(tuple(getattr(m, name) for name in names), []).append(m)
@@ -196,12 +203,12 @@ def grouped_by_fields(
 
 
 def every_nth_setting(contenders: Iterable[Contender], stride: int) -> list[Contender]:
-    """Every n-th setting of each method, beginning with the first, for a quick run."""
+    """Contenders with every n-th setting of each method, from the first, for a quick run. stride: n."""
     return [contender for settings in by_method(contenders).values() for contender in settings[::stride]]
 
 
 def by_method(contenders: Iterable[Contender]) -> dict[str, list[Contender]]:
-    """Contenders of each method, by its name, in their order."""
+    """Contenders of each method, in the given order, by the name of the method."""
     methods: dict[str, list[Contender]] = {}
     for contender in contenders:
         methods.setdefault(contender.method, []).append(contender)
@@ -215,7 +222,7 @@ def nan_median(values: Iterable[float]) -> float:
 
 
 class PrintedNumber(float):
-    """A number that is formatted as "" if it is nan."""
+    """A number whose formatted text is "" if the number is nan."""
 
     def __format__(self, form: str) -> str:
         return "" if isnan(self) else super().__format__(form)
@@ -224,8 +231,8 @@ class PrintedNumber(float):
 def markdown_table(head: str, line: str, rows: Iterable[Mapping[str, object]]) -> str:
     """Table in Markdown.
 
-    head: titles of the columns, separated by |. line: format of a row, such as "{method} | {seconds:.2f}".
-    rows: values of each row by name.
+    head: titles of the columns, separated by |. line: format string of a row, such as "{method} |
+    {seconds:.2f}". rows: values of each row, by name.
     """
     lines = [f"| {head} |", "|" + "---|" * (head.count("|") + 1)]
     for row in rows:
@@ -237,5 +244,5 @@ def markdown_table(head: str, line: str, rows: Iterable[Mapping[str, object]]) -
 
 
 def count_text(count: int, noun: str) -> str:
-    """A count with a regular noun: "1 round", "2 rounds"."""
+    """Text of a count with a regular noun, such as "1 round" or "2 rounds"."""
     return f"{count} {noun}{'s' * (count != 1)}"

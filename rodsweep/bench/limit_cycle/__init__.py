@@ -1,1 +1,2 @@
-"""Benchmark of limit cycles: rodsweep, time integrators, and integration until the motion is periodic."""
+"""Benchmark of limit cycles: collocation by rodsweep, time integrators that follow a cycle, and integration
+until the motion is periodic."""

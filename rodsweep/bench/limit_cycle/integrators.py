@@ -1,7 +1,7 @@
 """Time integrators of the limit-cycle benchmark: their task, their tolerances, and the schemes of PETSc.
 
-All integrators use the same compiled rate and exact Jacobian of a beam. A tolerance is the allowed error of
-each component of the state z, in units of the component's largest value.
+All integrators use the same compiled function for dz/dt and the same exact Jacobian. A tolerance is the
+allowed error of each component of the state z, divided by the largest value of this component.
 """
 
 from collections.abc import Callable
@@ -16,14 +16,14 @@ from ...solve.motion.time_scheme import TimeScheme
 from ..study import Contender
 
 TIGHT_TOLERANCE = 3e-7
-"""Tolerance of ARKIMEX 5 below which the default tolerance of Newton's method would limit the accuracy."""
+"""At tolerances of ARKIMEX 5 up to this number, Newton's method needs a smaller tolerance than by default."""
 TIGHT_NEWTON_TOLERANCE = 0.03
-"""Convergence tolerance of Newton's method, as a fraction of the integrator's tolerance, if the latter is
-below TIGHT_TOLERANCE."""
+"""Convergence tolerance of Newton's method divided by the tolerance of the integrator, at integrator
+tolerances up to TIGHT_TOLERANCE."""
 
 
 class IntegrationTask(NamedTuple):
-    """Task of an integrator: beam, initial state z, (unknowns,), and duration in tau2."""
+    """Task of an integrator. z: initial state, (unknowns,). duration: in tau2."""
 
     beam: Beam
     z: Array
@@ -31,15 +31,16 @@ class IntegrationTask(NamedTuple):
 
 
 Integration = Callable[[float, IntegrationTask], Trajectory]
-"""Integrator: function (tolerance, task) -> trajectory; raises ArithmeticError if the integration fails."""
+"""Integrator: a function (tolerance, task) -> trajectory that raises ArithmeticError if the integration
+fails."""
 
 
 @dataclass(frozen=True, slots=True)
 class IntegratorFamily:
-    """An integrator with the tolerances, from the loosest, at which it follows a cycle.
+    """An integrator with its tolerances, from the loosest.
 
-    waiting: tolerances, from the loosest, at which it integrates until the motion is periodic; empty if it
-    does not.
+    tolerances: of the runs that follow a cycle. waiting: of the runs that integrate until the motion is
+    periodic; empty if the integrator has no such runs.
     """
 
     name: str
@@ -48,11 +49,12 @@ class IntegratorFamily:
     waiting: tuple[float, ...] = ()
 
     def followers(self) -> list[Contender]:
-        """Contenders of the race FOLLOWING, one per tolerance: they follow a cycle in time."""
+        """Contenders of the race FOLLOWING, which follow a cycle in time: one for each of `tolerances`."""
         return [self._at(tolerance) for tolerance in self.tolerances]
 
     def waiters(self) -> list[Contender]:
-        """Contenders of the race WAITING, one per tolerance: they integrate until the motion is periodic."""
+        """Contenders of the race WAITING, which integrate until the motion is periodic: one for each of
+        `waiting`."""
         return [self._at(tolerance) for tolerance in self.waiting]
 
     def _at(self, tolerance: float) -> Contender:
@@ -61,10 +63,9 @@ class IntegratorFamily:
 
 
 def petsc_run(family: str, variant: str, tolerance: float, leg: IntegrationTask) -> Trajectory:
-    """Integrates a task by a scheme of PETSc TS, as in the task limit_cycle; ArithmeticError if this fails.
-
-    family, variant: type of TS and name of the scheme, such as "arkimex" and "5".
-    """
+    """Trajectory of the task `leg`, integrated by a scheme of PETSc TS as in the task `limit_cycle`; raises
+    ArithmeticError if the integration fails. family, variant: type of TS and name of the scheme, such as
+    "arkimex" and "5"."""
     newton = TimeScheme().newton if tolerance > TIGHT_TOLERANCE else TIGHT_NEWTON_TOLERANCE
     scheme = TimeScheme(family, variant, tolerance, newton, prefix="bench_")
     run = integrator(leg.beam.mesh, scheme).run(leg.beam, leg.z, leg.duration)
@@ -81,4 +82,4 @@ DEFAULT = IntegratorFamily(
     (1e-5, 5e-6, 2e-6, 1e-6, 3e-7, 1e-7, 1e-8),
     WAITING_TOLERANCES,
 )
-"""Integrator that rodsweep uses by default."""
+"""The integrator that rodsweep uses by default."""

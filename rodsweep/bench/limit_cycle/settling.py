@@ -1,6 +1,5 @@
 """Methods that reach a limit cycle from a given start: integration until the motion is periodic, and
-solve_cycle.
-"""
+`solve_cycle`."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -25,22 +24,23 @@ from .tracking import (
 )
 
 NEAR_HOPF_F = 27.43
-"""Force 0.003 above the Hopf point, at which a motion approaches the cycle very slowly."""
+"""F at 0.003 above the Hopf point, where a motion approaches the cycle very slowly."""
 SOLVE_NAME = "solve_cycle"
-"""Name, in the table, of the solution by rodsweep's solve_cycle."""
+"""Name of rodsweep's `solve_cycle` in the table."""
 WAITING_PREFIX = "waiting, "
-"""Beginning of the names, in the table, of integrations until the motion is periodic."""
+"""Prefix, in the table, of the names of integrations until the motion is periodic."""
 WAITING_PERIODS = 15
 """Duration, in periods, of an integration that should reach the cycle."""
 
 
 @dataclass(frozen=True, slots=True)
 class SettlingMethod:
-    """A method that reaches the limit cycle from a given start, with its error.
+    """A method that reaches the limit cycle from a given start.
 
     force: F. way: name of the method. setting: tolerance. returns: number of returns of the tip until the
-    motion is periodic, nan if it is not. run: the timed function. times: duration of the whole method in
-    units of the duration of `run`. failed: looser tolerances at which the integration failed.
+    motion is periodic; nan if the motion does not become periodic. error: relative error of period and
+    largest tip y. run: the timed function. times: duration of the complete method divided by the duration of
+    `run`. failed: looser tolerances at which the integration failed.
     """
 
     force: float
@@ -58,23 +58,21 @@ class SettlingMethod:
         return isfinite(self.returns)
 
     def row(self, timed: TimedRuns) -> dict[str, str | float]:
-        """Values of a row of `settling_table` by name; timed: times of `run`."""
+        """Values of a row of `settling_table`, by name. timed: times of `run`."""
         about = "about " if self.times != 1 else ""
         return {
             "force": self.force,
             "way": self.way + (f" (fails at {', '.join(self.failed)})" if self.failed else ""),
             "tolerance": self.setting,
-            "returns": f"{about}{self.returns:.0f}" if self.settled else f"not settled in {WAITING_PERIODS}",
+            "returns": f"{about}{self.returns:.0f}" if self.settled else f"over {WAITING_PERIODS}",
             "milliseconds": f"{about}{1e3 * self.times * timed.median:.0f}" if self.settled else "",
             "error": self.error if self.settled else nan,
         }
 
 
 def compare_settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int) -> str:
-    """Runs all methods that reach the cycle, at F = 50 and near the Hopf point; returns their table.
-
-    every: contenders of the race WAITING.
-    """
+    """Runs all methods that reach the cycle, at F = 50 and near the Hopf point, and returns the table of the
+    methods. at: reference cycle at F = 50. every: contenders of the race WAITING."""
     waiting = {method: _waited(at, settings) for method, settings in by_method(every).items()}
     cycle = cycle_at(CYCLE_FORCE)
     left = _error(at, cycle.measures.period, cycle.measures.tip_y_max)
@@ -85,17 +83,18 @@ def compare_settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int
 
 
 def settling_table(waits: Sequence[SettlingMethod], raced: Sequence[TimedRuns]) -> str:
-    """Table of the methods that reach the cycle: returns, times and errors."""
+    """Table of the methods that reach the cycle, with returns, times and errors. raced: times of each
+    method."""
     return (
-        f"From a start of {START_DEFLECTION:g} L to the settled cycle. Waiting ends when two successive "
+        f"From a start of {START_DEFLECTION:g} L to the limit cycle. Waiting ends when two successive "
         "returns "
-        f"agree to {SETTLED_WITHIN:.0e}, at the loosest tolerance that settles with no larger error; the "
-        "user is assumed to know this tolerance. solve_cycle has the same accuracy; its time includes the "
-        f"choice of mesh and the proof of stability. At F = {NEAR_HOPF_F:g} the number of periods is "
-        f"estimated from below as ln({SETTLED_WITHIN:.0e})/ln(largest multiplier), and the time from the "
-        "time per period; the errors are solve_cycle's estimate and, for waiting, the target.\n\n"
+        f"agree to {SETTLED_WITHIN:.0e}. Its tolerance is the loosest with which the error is no larger; "
+        "the user is assumed to know this tolerance. solve_cycle has the same accuracy; its time includes "
+        f"the choice of mesh and the proof of stability. At F = {NEAR_HOPF_F:g} the number of periods is a "
+        f"lower bound, ln({SETTLED_WITHIN:.0e})/ln(largest multiplier), and the time follows from the time "
+        "per period; the error is the estimate of solve_cycle and, for waiting, the required accuracy.\n\n"
     ) + markdown_table(
-        "F | way | tolerance | returns | ms | error left",
+        "F | method | tolerance | returns | ms | error",
         "{force:g} | {way} | {tolerance} | {returns} | {milliseconds} | {error:.0e}",
         [wait.row(timed) for wait, timed in zip(waits, raced, strict=True)],
     )
@@ -106,9 +105,8 @@ def _error(at: ReferenceCycle, period: float, height: float) -> float:
 
 
 def _waited(at: ReferenceCycle, settings: Sequence[Contender]) -> SettlingMethod:
-    """Integration at the loosest tolerance at which two successive returns agree and are accurate.
-
-    settings: contenders of one integrator, from the loosest tolerance.
+    """Integration at the loosest tolerance at which two successive returns agree, and period and largest tip
+    y are accurate, within SETTLED_WITHIN. settings: contenders of one integrator, from the loosest tolerance.
     """
     leg = IntegrationTask(
         at.beam, START_DEFLECTION * leading_mode(at.beam).z.real, WAITING_PERIODS * at.period
@@ -133,11 +131,8 @@ def _waited(at: ReferenceCycle, settings: Sequence[Contender]) -> SettlingMethod
 
 
 def _near_hopf(settled: Sequence[Contender]) -> list[SettlingMethod]:
-    """Methods that reach the cycle near the Hopf point.
-
-    The number of periods until an integrated motion is periodic is estimated from the largest Floquet
-    multiplier.
-    """
+    """Methods that reach the cycle near the Hopf point. The number of periods until an integrated motion is
+    periodic is estimated from the largest Floquet multiplier. settled: contender of each integrator."""
     cycle = cycle_at(NEAR_HOPF_F)
     leg = IntegrationTask(*state_on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
     count = log(SETTLED_WITHIN) / log(cycle.multiplier)

@@ -41,14 +41,12 @@ FOLLOWING = "following"
 WAITING = "waiting"
 """Name of the race in which integrators run until the motion is periodic."""
 DRAWN_ERRORS = {"error of the period": "period_error", "error of the largest tip y": "amplitude_error"}
-"""Errors drawn in the figure, by title of their panel."""
+"""Names of the errors in the figure, by the title of the panel."""
 
 
 def limit_cycle_study(quick: bool, peers: Peers) -> Study:
-    """Runs the benchmark: errors against times, methods that reach a cycle, cost of a sweep, peers' sections.
-
-    quick: fewer rounds, tolerances and rods.
-    """
+    """Runs the benchmark: errors and times of integrators, methods that reach a cycle, cost of a point of a
+    sweep, and sections of the peers. quick: whether to use fewer rounds, tolerances and rods."""
     warm_up()
     rounds, stride = (QUICK_ROUND_COUNT, 2) if quick else (ROUND_COUNT, 1)
     at = solve_reference()
@@ -73,14 +71,15 @@ def limit_cycle_study(quick: bool, peers: Peers) -> Study:
 
 
 def introduction(rounds: int) -> str:
-    """Description of the race FOLLOWING for the report; rounds: number of timed rounds."""
+    """Description of the race FOLLOWING for the report. rounds: number of timed rounds."""
     k1, k2, gamma3, gamma1 = (FIG5_ROD.values[name] for name in NONLINEAR_PARAMETERS[1:])
     return (
-        f"The settled cycle of k1 = {k1:g}, k2 = {k2:g}, gamma3 = {gamma3:g}, gamma1 = {gamma1:g}, "
+        f"The limit cycle of k1 = {k1:g}, k2 = {k2:g}, gamma3 = {gamma3:g}, gamma1 = {gamma1:g}, "
         f"F = {CYCLE_FORCE:g}, followed for {FOLLOWED_PERIODS} periods; one element of order {CYCLE_ORDER}, "
-        f"{3 * CYCLE_ORDER} unknowns. All integrators call the same compiled rate and Jacobian; the "
-        "tolerance is per component of the state, in units of the component's largest value. Errors of the "
-        "period and of the largest tip y are relative and rms over 5 returns. Times are medians of "
+        f"{3 * CYCLE_ORDER} unknowns. All integrators call the same compiled functions for the rate and its "
+        "Jacobian; the tolerance is the allowed error of each component of the state, divided by the largest "
+        "value of this component. Errors of the period and of the largest tip y are relative and rms over 5 "
+        "returns. Times are medians of "
         f"{count_text(rounds, 'interleaved round')}."
     )
 
@@ -101,7 +100,8 @@ def work_table(measurements: Sequence[Measurement]) -> str:
 
 
 def target_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the race FOLLOWING at equal error: interpolated time of every method at the error TARGET."""
+    """Table of the race FOLLOWING at equal error: time of every method, interpolated at the error
+    TARGET_ERROR."""
     at = {}
     for (method,), own in grouped_by_fields(measurements, "method").items():
         errors = [m.error for m in own]
@@ -114,11 +114,11 @@ def target_table(measurements: Sequence[Measurement]) -> str:
         for method, (median, least) in at.items()
     ]
     return (
-        f"At an error of {TARGET_ERROR:.0e}, the larger of the two errors, interpolated. The last column "
+        f"Time at which the larger of the two errors is {TARGET_ERROR:.0e}, interpolated. The last column "
         "uses the "
         "minimum times over all rounds, which depend less on the load of the machine:\n\n"
     ) + markdown_table(
-        "method | ms a period | times the default's time | by the least times",
+        "method | ms a period | times the default's time | by minimum times",
         "{method} | {ms:.2f} | {ratio:.2f} | {by_least:.2f}",
         rows,
     )
@@ -126,11 +126,11 @@ def target_table(measurements: Sequence[Measurement]) -> str:
 
 def time_at_error(target: float, errors: Sequence[float], times: Sequence[float]) -> float:
     """Time of a method at the error `target`, interpolated in logarithms; nan if the method does not reach
-    it.
+    this error.
 
-    errors, times: of all settings, from the loosest. The interpolation uses the last setting with an error
-    above the target and its successor, so that an accidentally small error of a loose tolerance does not
-    count.
+    errors, times: of all settings, from the loosest. The time is interpolated between the last setting with
+    an error above the target and the next setting, so that an accidentally small error at a loose tolerance
+    has no effect.
     """
     above = [k for k, error in enumerate(errors) if not error <= target]
     if not above or above[-1] + 1 == len(errors) or not isfinite(errors[above[-1]]):

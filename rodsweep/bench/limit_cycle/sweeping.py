@@ -1,4 +1,4 @@
-"""Cost of a point of a sweep: the cycle of a rod solved from a neighbour's cycle, and without a neighbour.
+"""Cost of a point of a sweep: the cycle of a rod, solved from a neighbour's cycle or without a neighbour.
 
 The cost includes all work of the task limit_cycle: mesh, Newton's method, all Floquet multipliers, the
 verdict and the error estimate. Errors are measured against the same cycle on meshes with errors of 1e-11.
@@ -46,25 +46,25 @@ RODS = (
 )
 """Rods whose cycles are solved: near and far from Hopf points, stiff, shortened to half by the force, a cone
 as far from its Hopf point as the first rod, and the first rod made of rubber."""
-QUICK_RODS = (RODS[2],)  # of a quick run
+QUICK_RODS = (RODS[2],)  # for a quick run
 SWEPT_PARAMETERS = NONLINEAR_PARAMETERS[:2]
-"""Parameters along which the neighbour of a rod lies."""
+"""Parameters along which sweeps are timed; neighbouring points differ in one of these parameters."""
 STEP_RATIO = 1.01
 """Ratio of the parameter values of two neighbouring points of the sweep."""
 WARM_UP_POINT_COUNT = 6
-"""Number of points solved before the timed points, after which the mesh is chosen."""
+"""Number of untimed points before the timed points; the mesh is chosen during these points."""
 TIMED_POINT_COUNT = 22
-"""Number of timed points: from one calibration of the mesh errors up to the next."""
+"""Number of timed points: the number of points from one calibration of the mesh errors to the next."""
 ACCURACY, REFERENCE_ACCURACY = 1e-7, 1e-11
-"""Relative accuracy requested from rodsweep, and that of the reference cycles."""
+"""Relative accuracies of the cycles requested from rodsweep and of the reference cycles."""
 SWEEP_PREFIX, COLD_PREFIX = "sweep over ", "cold, "
-"""Beginnings of the names, in the table, of solutions from a neighbour's cycle, and without a neighbour."""
+"""Prefixes, in the table, of the names of solutions from a neighbour's cycle and without a neighbour."""
 COLD_STARTS = {"leading mode": "mode", "Hopf point": "hopf"}
 """Values of the option `start` for solutions without a neighbour, by name in the table."""
 FAILED_COLUMNS = dict.fromkeys(
     ("period_error", "amplitude_error", "estimate", "multipliers", "order", "intervals", "stages"), nan
 )
-"""Values of the table's columns for a failed point: nan."""
+"""Values, nan, in the columns of the table for a failed point."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,19 +80,19 @@ class ExactCycle:
 
     @classmethod
     def near(cls, orbit: Orbit) -> "ExactCycle":
-        """The exact cycle of the orbit's rod."""
+        """The reference cycle near the orbit `orbit`, for the rod of this orbit."""
         found = refined_at_period(orbit, REFERENCE_ACCURACY, NewtonWorkspace())
         return cls(found.orbit, found.measures.period, found.measures.tip_y_max)
 
     def at(self, F: float) -> "ExactCycle":
-        """The reference cycle of the same rod at a force F close to its own."""
+        """The reference cycle of the same rod at the force F, which must be close to the present force."""
         form = self.orbit.form
         near = replace(self.orbit, form=replace(form, rod=replace(form.rod, F=F)))
         orbit = newton(near, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
         return ExactCycle(orbit, orbit.period, CyclePath(orbit).extrema["tip_y_max"])
 
     def errors_of(self, period: float, tip_y_max: float) -> dict[str, float]:
-        """Relative errors of a period in tau2 and of a largest tip y in L, by name of the column."""
+        """Relative errors of a computed period, in tau2, and largest tip y, in L, by name of the column."""
         return {
             "period_error": abs(period / self.period - 1),
             "amplitude_error": abs(tip_y_max / self.tip_y_max - 1),
@@ -101,10 +101,8 @@ class ExactCycle:
 
 @dataclass(frozen=True, eq=False)
 class SweptRod:
-    """A rod at which a timed sweep ends.
-
-    rod: the rod. exact_cycle: its reference cycle. neighbours: cycle from which the timed sweep starts, by
-    swept parameter. workspace: buffers of Newton's matrices, shared by all points of a sweep.
+    """A rod at which timed sweeps end. exact_cycle: reference cycle of the rod. neighbours: cycle from which
+    the timed sweep starts, by swept parameter. workspace: memory of Newton's matrices, shared by all points.
     """
 
     rod: Rod
@@ -114,7 +112,7 @@ class SweptRod:
 
 
 def swept_rod(point: Rod, accuracy: float) -> SweptRod:
-    """Solves the untimed points of the sweeps that end at a rod, and the reference cycle of the rod."""
+    """The rod `point` with its reference cycle, and with the solved untimed points of the sweeps."""
     neighbours: dict[str, Neighbour | None] = {}
     workspace = NewtonWorkspace()
     for axis in SWEPT_PARAMETERS:
@@ -130,7 +128,7 @@ def swept_rod(point: Rod, accuracy: float) -> SweptRod:
 
 
 def earlier_rod(point: Rod, axis: str, steps: int) -> Rod:
-    """Rod of the sweep along `axis` that comes `steps` points before the rod `point`, at larger values."""
+    """Rod of the sweep along `axis` that is `steps` points before the rod `point`, at a larger value."""
     return replace(point, **{axis: getattr(point, axis) * STEP_RATIO**steps})
 
 
@@ -145,21 +143,22 @@ def solve_from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
 
 
 def solve_from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
-    """Solves the cycle of a rod without a neighbour; start: value of the option `start`."""
+    """The cycle of a rod, solved without a neighbour. start: value of the option `start`."""
     return require_cycle(
         solve_cycle(rod.rod, replace(cycle_request(accuracy), start=start), workspace=rod.workspace)
     )
 
 
 def require_cycle(cycle: Cycle) -> Cycle:
-    """The cycle unchanged; raises ArithmeticError if the solve found no stable cycle."""
+    """The argument `cycle`; raises ArithmeticError unless it is a stable cycle."""
     if cycle.status != CycleStatus.cycle:
         raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")
     return cycle
 
 
 def cycle_contenders(accuracy: float) -> list[Contender]:
-    """Contenders that solve the cycle of a `SweptRod`: one for each swept parameter and each cold start."""
+    """Contenders that solve the cycle of a `SweptRod`: one for each swept parameter and for each cold
+    start."""
     setting = f"{accuracy:.0e}"
     warm = [
         Contender(SWEEP_PREFIX + axis, setting, SWEEP_PREFIX, partial(solve_from_neighbour, axis, accuracy))
@@ -173,14 +172,14 @@ def cycle_contenders(accuracy: float) -> list[Contender]:
 
 
 def measure_sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement]:
-    """Measurements of all contenders of `cycle_contenders` on all rods `points`, timed in turn."""
+    """Measurements of all `cycle_contenders` on all rods `points`, timed in turn."""
     rods = [swept_rod(point, ACCURACY) for point in points]
     entries = [JudgedCase(rod_label(rod.rod), rod, partial(cycle_errors, rod.exact_cycle)) for rod in rods]
     return measure_cases(entries, cycle_contenders(ACCURACY), rounds)
 
 
 def rod_label(point: Rod) -> str:
-    """Label of a rod in the tables: F, k1, k2, gamma3, gamma1, and taper and law if not the default."""
+    """Label of a rod in the tables: F, k1, k2, gamma3, gamma1; taper, law and section if not the default."""
     further = [] if point.taper == 1 else [f"taper {point.taper:g}"]
     further += [] if point.build.standard else [point.build.law, point.build.section]
     values = (point.F, point.k1, point.k2, point.gamma3, point.gamma1)
@@ -189,9 +188,7 @@ def rod_label(point: Rod) -> str:
 
 def cycle_errors(exact: ExactCycle, cycle: Cycle) -> dict[str, Any]:
     """Fields of `Measurement` for a cycle: errors, error estimate, mesh, and number of Floquet multipliers.
-
-    The mesh and the multipliers are missing if the solve returned no orbit.
-    """
+    Mesh and number are missing if there is no orbit."""
     errors = exact.errors_of(cycle.measures.period, cycle.measures.tip_y_max)
     extra = errors | {"estimate": cycle.errors.largest, "order": float(cycle.elements * cycle.order)}
     if cycle.neighbour is not None:
@@ -211,8 +208,8 @@ def sweep_introduction() -> str:
         "rod, with the finer meshes that calibrate errors. It includes the straight rod's spectrum, the "
         "choice of the mesh, the verdict, and the error estimate, which is the larger of the estimates for "
         "the period and for the extrema. Errors of the period and of the largest tip y are relative to a "
-        f"solution on meshes with errors of {REFERENCE_ACCURACY:.0e}. Multipliers are counted above "
-        "rounding. The order in space is that of one element; the intervals in time cover half a period if "
+        f"solution on meshes with errors of {REFERENCE_ACCURACY:.0e}. Multipliers above rounding error are "
+        "counted. The order is summed over the elements; the intervals in time cover half a period if "
         "the cycle is symmetric."
     )
 
@@ -224,7 +221,7 @@ def milliseconds_per_point(m: Measurement) -> float:
 
 
 def sweep_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the cost of a point, a line for each rod and start, and of the medians over the rods."""
+    """Table of the cost of a point: one line for each rod and start, and medians over the rods."""
     lines = [
         {"rod": m.case, "way": m.method, "ms": milliseconds_per_point(m), "failure": m.failure}
         | FAILED_COLUMNS

@@ -1,9 +1,9 @@
 """Errors and times of integrators that follow a limit cycle.
 
-Every integrator starts on the cycle of one rod. The reference is the cycle on the same mesh in space, and on
-a mesh in time with rounding errors only. Period and amplitude are measured in the same way for all
-integrators: the steps around a return of the tip and around the largest y are repeated in small steps, so
-that the measured error is an error of the integrator and not of an interpolation.
+Every integrator starts on the cycle of one rod. The reference is the cycle on the same mesh in space and on a
+mesh in time whose errors are rounding errors. Period and amplitude are measured in the same way for all
+integrators: the steps around a return of the tip and around the largest y are repeated with small steps, so
+that the measured error is the error of the integrator, not of an interpolation.
 """
 
 from collections.abc import Iterable
@@ -36,44 +36,42 @@ FIG5_ROD = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
 CYCLE_FORCE = 50.0
 """F of the followed cycle."""
 CYCLE_ORDER = 18
-"""Order of the single element in space, which gives period and amplitude to 1e-9 at F = 50."""
+"""Order of the single element in space; at F = 50 its relative errors of period and amplitude are 1e-9."""
 REFERENCE_INTERVALS, REFERENCE_STAGES = 32, 6
-"""Numbers of intervals and of stages of the reference's mesh in time, over half a period."""
+"""Number of time intervals in half a period, and number of stages of an interval, on the mesh of the
+reference cycle."""
 REFERENCE_NEWTON_TOLERANCE = 1e-13
-"""Relative tolerance of Newton's method for the reference."""
+"""Relative tolerance of Newton's method for the reference cycle."""
 PERIOD_MAP = TimeScheme("arkimex", "5", tolerance=1e-8, newton=1e-6, equal_steps=True, prefix="bench_map_")
 """Scheme of the small steps by which returns and extrema are located. The error of its Newton iteration is
 negligible."""
 FOLLOWED_PERIODS = 6.3
-"""Duration of a run, in periods. Errors omit the first return, because the start is not exactly on the
-cycle."""
+"""Duration of a run, in periods. The first return is left out of the errors, because the start is not exactly
+on the cycle."""
 TARGET_ERROR = 1e-6
 """Error at which integrators are compared: the larger of the relative errors of period and amplitude."""
 SETTLED_WITHIN = 1e-7
-"""Accuracy requested from solve_cycle; also the relative distance between two successive returns at which an
-integrated motion counts as periodic."""
+"""Relative accuracy requested from `solve_cycle`. An integrated motion is periodic if the relative distance
+between the states at two successive returns is at most this number."""
 START_DEFLECTION = 0.1
-"""Tip deflection, in L, of the start from which methods reach the cycle."""
+"""Tip deflection, in L, of the start from which the methods reach the cycle."""
 MAX_RETURNS = 300
-"""Maximum number of returns of the tip that solve_cycle may integrate."""
+"""Maximum number of returns of the tip over which `solve_cycle` may integrate."""
 SMALL_STEP_COUNT = 20
 """Number of small steps around a return or an extremum."""
 SPLINE_DEGREE = 7
-"""Degree of the interpolating spline through the small steps."""
+"""Degree of the interpolating spline through the states after the small steps."""
 NEWTON_CORRECTION_COUNT = 2
-"""Number of Newton steps from the root of the spline to the return, as the spline has errors of 1e-8 rad."""
+"""Number of Newton steps that correct a return found on the spline, which has errors of 1e-8 rad."""
 REPEATED_STEP_FACTOR = 1.25
-"""Duration of the repeated small steps, in units of the original step; a factor of 1 could miss the
-return."""
+"""Ratio of the total duration of the small steps to the repeated step. With the ratio 1 the return could be
+missed."""
 
 
 @dataclass(frozen=True, eq=False)
 class ReferenceCycle:
-    """Reference cycle of the benchmark.
-
-    beam: rod on its mesh in space. state: state z on the cycle, (unknowns,). period: in tau2. tip_y_max:
-    largest y of the tip in L.
-    """
+    """Reference cycle of the benchmark. beam: rod on its mesh in space. state: state z on the cycle,
+    (unknowns,). period: in tau2. tip_y_max: largest y of the tip, in L."""
 
     beam: Beam
     state: Array
@@ -87,19 +85,20 @@ def cycle_request(accuracy: float) -> CycleRequest:
 
 
 def cycle_at(force: float) -> Cycle:
-    """The cycle of FIG5_ROD at a force, solved as by the task limit_cycle."""
+    """The cycle of FIG5_ROD at F = `force`, solved as in the task `limit_cycle`."""
     return solve_cycle(FIG5_ROD.changed(F=force), cycle_request(SETTLED_WITHIN), along="F")
 
 
 def orbit_of(cycle: Cycle) -> Orbit:
-    """The orbit of a cycle on the mesh that its solve chose; ArithmeticError if the solve found no cycle."""
+    """The orbit of the solved cycle `cycle`; raises ArithmeticError if no cycle was found."""
     if cycle.neighbour is None:
         raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")
     return cycle.neighbour.predictor.orbit
 
 
 def state_on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
-    """(beam of an orbit for integrators, state z of the orbit at the largest y of the tip, (unknowns,))."""
+    """Returns (beam, z): the rod and mesh of an orbit as a beam for integrators, and the state of the orbit
+    at the largest y of the tip, (unknowns,)."""
     form = orbit.form
     beam = Beam(form.rod, form.mesh)
     return beam, (orbit.start.reshape(3, -1) * beam.sqrt_compliance[:, :-1]).ravel()
@@ -113,7 +112,8 @@ def solve_reference() -> ReferenceCycle:
 
 
 def measure_following(at: ReferenceCycle, contenders: Iterable[Contender], rounds: int) -> list[Measurement]:
-    """Measurements of all contenders that follow the reference cycle `at`; seconds are per period."""
+    """Measurements of the `contenders`, which follow the reference cycle `at` in time; times are divided by
+    the number of periods."""
     leg = IntegrationTask(at.beam, at.state, FOLLOWED_PERIODS * at.period)
     return [
         replace(m, seconds=m.seconds / FOLLOWED_PERIODS, least_seconds=m.least_seconds / FOLLOWED_PERIODS)
@@ -122,10 +122,8 @@ def measure_following(at: ReferenceCycle, contenders: Iterable[Contender], round
 
 
 def run_errors(at: ReferenceCycle, run: Trajectory) -> dict[str, Any]:
-    """Fields of `Measurement` for a run: relative rms errors of the period and of the largest tip y.
-
-    at: the reference cycle. The first return of the run does not count.
-    """
+    """Fields of `Measurement` for a run: relative rms errors of the period and of the largest tip y, without
+    the first return, and steps per period. at: reference cycle."""
     found = tip_returns(at.beam, run)
     period = _rms(np.diff(found.times)[1:] / at.period - 1)
     amplitude = _rms(found.heights[1:] / at.tip_y_max - 1)
@@ -140,10 +138,10 @@ def _rms(values: NDArray[np.floating]) -> float:
 
 @dataclass(frozen=True, eq=False)
 class TipReturns:
-    """Returns of the tip in a run: times at which the tip angle theta rises through 0.
+    """Returns of the tip in a run, at which the tip angle theta rises through 0.
 
-    times: in tau2, (k,). states: z, (k, unknowns). heights: largest y of the tip, in L, between two
-    successive returns, (k - 1,).
+    times: of the returns, in tau2, (k,). states: z at the returns, (k, unknowns). heights: largest y of the
+    tip, in L, between successive returns, (k - 1,).
     """
 
     times: Array
@@ -174,14 +172,14 @@ def tip_returns(beam: Beam, run: Trajectory) -> TipReturns:
 
 
 def largest_y_near(beam: Beam, run: Trajectory, k: int) -> float:
-    """Largest y of the tip, in L, in the two steps of a run that meet at its k-th state."""
+    """Largest y of the tip, in L, during the step of a run to its k-th state and the step after."""
     again = _again(beam, run.states[k - 1], run.times[k + 1] - run.times[k - 1])
     height = _spline(again.times, beam.tip(again.states)[1])
     return float(height(height.derivative().roots(extrapolate=False)).max())
 
 
 def _again(beam: Beam, z: Array, duration: float) -> Trajectory:
-    """Integration from a state z, (unknowns,), over a duration in tau2, in SMALL_STEP_COUNT equal steps."""
+    """Trajectory from the state z, (unknowns,), over `duration`, in tau2, in SMALL_STEP_COUNT equal steps."""
     limit = RunLimit(max_steps=SMALL_STEP_COUNT + 2)
     return integrator(beam.mesh, PERIOD_MAP).run(beam, z, duration, duration / SMALL_STEP_COUNT, limit)
 

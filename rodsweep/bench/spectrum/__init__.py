@@ -1,1 +1,1 @@
-"""Benchmark of spectra: rodsweep, and peers such as dense QZ, Chebyshev collocation and Arnoldi codes."""
+"""Benchmark of spectra: rodsweep, and peers such as dense QZ, Chebyshev collocation and Arnoldi methods."""

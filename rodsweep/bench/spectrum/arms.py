@@ -1,7 +1,7 @@
 """Spectra of arms that vary along their length, so that D has no closed form.
 
-The contenders of the race ARM_RACE take `UnsolvedArms` and return at least the WANTED_MODES leading
-eigenvalues, (modes,).
+The contenders of the race ARM_RACE are functions of `UnsolvedArms` that return at least the MODE_COUNT
+leading eigenvalues, (modes,).
 """
 
 from collections.abc import Callable, Sequence
@@ -35,7 +35,8 @@ SEGMENTS = Profile(
     (0.0, 0.2, 0.2, 0.4, 0.4, 0.6, 0.6, 0.8, 0.8, 1.0),
     tuple((r**2, r**2, r**4, 1.0, 1.0, r**2) for r in (1.0, 1.0, 0.6, 0.6, 1.2, 1.2, 0.5, 0.5, 0.8, 0.8)),
 )
-"""Profile of an arm of five segments whose radii are 1, 0.6, 1.2, 0.5 and 0.8 of the radius at the clamp."""
+"""Profile of an arm of five segments, with radii of 1, 0.6, 1.2, 0.5 and 0.8 times the radius at the
+clamp."""
 ARMS = {
     "cone": Rod(F=12.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5),
     "five segments": Rod(F=4.0, k1=1e4, k2=1e4, gamma3=1e-4, build=Build(profile=SEGMENTS)),
@@ -44,35 +45,34 @@ ARMS = {
     ),
 }
 ORDERS = (6, 8, 10, 12, 14, 16, 20)
-"""Orders of the elements at which eigensolvers are run."""
+"""Orders of the elements on which eigensolvers are run."""
 EDGE_ACCURACY = 1e-2
-"""Accuracy for which the edges of the elements are chosen; a higher order makes the mesh more accurate."""
+"""Accuracy for which the edges of the elements are chosen; the orders in ORDERS make the mesh more
+accurate."""
 TARGET_ERROR = 1e-10
 """Relative error at which the methods are compared."""
 REFERENCE_REFINEMENT = 16.0
-"""Factor on |w| for which the elements of the reference D are chosen."""
+"""The elements of the reference D resolve moduli |w| up to this number times the |w| of the arm."""
 NEWTON_STEP_COUNT = 3
-"""Number of Newton steps on the reference D."""
+"""Number of Newton steps with the reference D."""
 
 
 class UnsolvedArms:
-    """Yields an arm whose force grows by a rounding unit with each call, as rodsweep keeps solved arms.
-
-    rod: the arm before the first call.
-    """
+    """Source of arms that were not solved before: F grows by one rounding unit with each arm, because
+    rodsweep caches solved arms. rod: the arm before the first."""
 
     def __init__(self, rod: Rod):
         self._values = dict(rod.values)
         self._build = rod.build
 
     def another(self) -> Rod:
-        """The arm under the next force."""
+        """The arm with the next larger F."""
         self._values["F"] = nextafter(self._values["F"], inf)
         return Rod(**self._values, build=self._build)
 
 
 def exact_arm_spectrum(rod: Rod) -> list[complex]:
-    """The WANTED_MODES leading eigenvalues of an arm, by Newton's method on D with finer elements."""
+    """The MODE_COUNT leading eigenvalues of an arm, by Newton's method for D with finer elements."""
     determinant = ArmDeterminant(rod)
     roots: list[complex] = rodsweep_spectrum(rod, certify=True).tolist()
     for _ in range(NEWTON_STEP_COUNT):
@@ -82,7 +82,7 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
 
 
 def arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measurement]:
-    """Measurements of rodsweep, Krylov-Schur and peers at all sizes on all ARMS."""
+    """Measurements of rodsweep, Krylov-Schur and the peers on all ARMS, at all sizes of the eigenproblem."""
     measurements = []
     for name, rod in ARMS.items():
         judge = partial(_judged, exact_arm_spectrum(rod))
@@ -91,12 +91,13 @@ def arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measurement]:
 
 
 def _judged(exact: list[complex], w: Complex) -> dict[str, float]:
-    """Field `error` of `Measurement` for eigenvalues w, (modes,)."""
+    """Field `error` of `Measurement` for computed eigenvalues w, (modes,). exact: reference eigenvalues."""
     return {"error": relative_error(w, exact)}
 
 
 def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
-    """Table of the time and error of every method on every arm, at the fastest size that reaches TARGET."""
+    """Table of the time and error of every method on every arm, at the fastest size with an error of at most
+    TARGET_ERROR."""
     rows = [
         {
             "method": method,
@@ -109,12 +110,12 @@ def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
         "that "
         f"reaches this error, {count_text(rounds, 'round')}. Cones have half the radius at their tips, the "
         "segments have radii of 1, 0.6, 1.2, 0.5 and 0.8, and rubber is neo-Hookean with a swelling section. "
-        "Errors are distances from the roots of D on elements for 16 times the |w|:\n\n"
+        "Errors are relative distances from the roots of D, with elements that resolve 16 times the |w|:\n\n"
     ) + markdown_table(" | ".join(["method", *ARMS]), "{method} | {cells}", rows)
 
 
 def _cheapest(measurements: Sequence[Measurement]) -> str:
-    """Cell of `arm_table` for one method on one arm; measurements: at all sizes."""
+    """Cell of `arm_table` for one method on one arm. measurements: at all sizes."""
     reached = [m for m in measurements if m.error <= TARGET_ERROR]
     if not reached:
         return f"no better than {min(m.error for m in measurements):.0e}"
@@ -123,19 +124,19 @@ def _cheapest(measurements: Sequence[Measurement]) -> str:
 
 
 def mesh_of_arm(rod: Rod, order: int) -> ArmMesh:
-    """Mesh of an arm with as few elements as resolve its variation, and with elements of the given order."""
+    """Mesh of an arm with elements of the order `order`, and with the smallest number of elements that
+    resolves the variation of the arm."""
     return ArmMesh(arm_mesh(rod, MODE_COUNT, EDGE_ACCURACY).edges, order)
 
 
 def solve_next_arm(solve: Callable[[Rod, int], Complex], size: int, arms: UnsolvedArms) -> Complex:
-    """Eigenvalues, (modes,), of the next arm by an eigensolver of rods; size: order or number of
-    intervals.
-    """
+    """Eigenvalues, (modes,), of the next arm by the eigensolver `solve`. size: its second argument, an order
+    or a number of intervals."""
     return solve(arms.another(), size)
 
 
 def _krylov_schur(rod: Rod, order: int) -> Complex:
-    """Leading eigenvalues, (modes,), of an arm by SLEPc's Krylov-Schur, without refinement on D."""
+    """Leading eigenvalues, (modes,), of an arm by SLEPc's Krylov-Schur, without Newton's method for D."""
     w = arm_solver(mesh_of_arm(rod, order)).solve(rod, ArmProblem(rod).shift, MODE_COUNT, tight=True)
     return leading_eigenvalues(w, MODE_COUNT + 1)
 
@@ -145,7 +146,7 @@ def _own(certify: bool, arms: UnsolvedArms) -> Complex:
 
 
 def contenders() -> list[Contender]:
-    """Contenders of ARM_RACE: rodsweep with and without certificate, and Krylov-Schur at all orders."""
+    """Contenders of ARM_RACE: rodsweep without and with certificate, and Krylov-Schur at all orders."""
     own = [
         Contender(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_own, False)),
         Contender(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_own, True)),

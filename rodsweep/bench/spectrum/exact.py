@@ -14,19 +14,17 @@ from ...solve.spectrum.status import SpectrumStatus
 DIGIT_COUNT = 30
 """Number of correct decimal digits of the eigenvalues."""
 GUARD_DIGIT_COUNT = 25
-"""Number of additional digits of the computation, more than the cancellation in D loses."""
+"""Number of additional digits in the computation, more than are lost by cancellation in D."""
 SECANT_STEP = mp.mpf(10) ** -12
 """Relative distance between the two starting points of the secant method."""
 MAX_ROOT_DISTANCE = 20
-"""Maximum distance between a root and its starting value, in units of the estimated error of the starting
-value; a root farther away counts as a different root."""
+"""Largest distance of a root from its starting value, divided by the estimated error of the starting value; a
+root at a larger distance is a different root."""
 
 
 def multiprecision_determinant(rod: Rod) -> Callable[[Any], Any]:
-    """The characteristic determinant D of a rod as a function of w, in multiple precision (mpmath).
-
-    D is that of `rodsweep.determinant.value`; the parameters of the rod are taken as exact.
-    """
+    """The characteristic determinant D of a rod as a function of w, in multiple precision (mpmath), defined
+    as in `rodsweep.determinant.value`. The parameters of the rod are taken as exact."""
     F = mp.mpf(rod.F)
     gamma3 = mp.mpf(rod.gamma3)
     c1, c2 = (0 if np.isinf(k) else 1 / mp.mpf(k) for k in (rod.k1, rod.k2))
@@ -47,9 +45,10 @@ def multiprecision_determinant(rod: Rod) -> Callable[[Any], Any]:
 
 
 def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
-    """The leading eigenvalues of a rod to DIGITS digits, as numbers of mpmath.
+    """The `modes` leading eigenvalues of a rod to DIGIT_COUNT digits, as numbers of mpmath.
 
-    Raises ArithmeticError if the list of eigenvalues is not certified, or if an eigenvalue leads to no root.
+    Raises ArithmeticError if the list of eigenvalues is not certified, or if no root of D is found near an
+    eigenvalue.
     """
     found = solve_spectrum(rod, SpectrumRequest(modes, 1e-11, certify=True))
     if found.status != SpectrumStatus.ok or not found.certified:
@@ -60,8 +59,8 @@ def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
         for w, error in zip(found.eigenvalues, found.error_estimate, strict=True):
             start = mp.mpc(complex(w))
             root = mp.findroot(D, (start, start * (1 + SECANT_STEP)), tol=SECANT_STEP**5, verify=False)
-            # Near a simple root D grows linearly: from |D| at a relative distance of SECANT_STEP follows |D|
-            # at a distance of 10^-DIGITS.
+            # Near a simple root |D| is proportional to the distance: `small` is |D| at the relative distance
+            # 10^-DIGIT_COUNT.
             small = abs(D(root * (1 + SECANT_STEP))) * mp.mpf(10) ** -DIGIT_COUNT / SECANT_STEP
             if abs(root - start) > MAX_ROOT_DISTANCE * error or abs(D(root)) > small:
                 raise ArithmeticError(f"{rod}: {complex(w)} does not lead to a root of D")
@@ -70,10 +69,8 @@ def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
 
 
 def relative_error(w: Complex | Exception, exact: list[Any]) -> float:
-    """Largest relative distance of any exact eigenvalue from the nearest computed one; w: (modes,).
-
-    inf if w is empty, or an exception of the solver.
-    """
+    """Largest relative distance of an exact eigenvalue from the nearest computed eigenvalue; inf if w is
+    empty or an exception of the solver. w: computed eigenvalues, (modes,)."""
     if isinstance(w, Exception) or not len(w):
         return float("inf")
     with mp.workdps(DIGIT_COUNT):

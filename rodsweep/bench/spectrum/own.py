@@ -1,4 +1,4 @@
-"""rodsweep's own spectra in the benchmark of spectra, and names and numbers shared by all methods."""
+"""Spectra by rodsweep in the benchmark of spectra, and names and numbers shared by all methods."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from ...solve.spectrum.search import SpectrumRequest, solve_spectrum
 MODE_COUNT = 4
 """Number of leading eigenvalues that every method computes."""
 ACCURACY = 1e-12
-"""Relative accuracy requested from rodsweep, whose error does not depend on the request."""
+"""Relative accuracy requested from rodsweep; the error of the eigenvalues does not depend on this request."""
 UNCERTIFIED_NAME = "rodsweep, certificate off"
 """Name of rodsweep without certificate in the tables."""
 CERTIFIED_NAME = "rodsweep, certificate on"
@@ -21,10 +21,12 @@ RODSWEEP_GROUP, PENCIL_GROUP = "this tool", "the same pencil"
 
 
 def rodsweep_spectrum(rod: Rod, certify: bool) -> Complex:
-    """Leading eigenvalues, (modes,), of a rod by rodsweep, which chooses the mesh itself."""
+    """Leading eigenvalues, (modes,), of a rod by rodsweep, with a mesh chosen by rodsweep. certify: whether
+    to prove the list of eigenvalues complete."""
     return solve_spectrum(rod, SpectrumRequest(MODE_COUNT, ACCURACY, certify)).eigenvalues
 
 
 def leading_eigenvalues(w: Complex, count: int) -> Complex:
-    """The `count` eigenvalues of w, (n,), with the largest real parts, largest first; (count,)."""
+    """The `count` eigenvalues with the largest real parts, by descending real part, (count,). w: eigenvalues,
+    (n,)."""
     return w[np.argsort(-w.real, kind="stable")][:count]

@@ -1,7 +1,7 @@
 """The spectrum benchmark: time and error of the leading eigenvalues of the paper's rods and of hard rods.
 
-The contenders of the race RACE take a `Rod` and return at least the WANTED_MODES leading eigenvalues,
-(modes,).
+The contenders of the race SPECTRUM_RACE are functions of a `Rod` that return at least the MODE_COUNT leading
+eigenvalues, (modes,).
 """
 
 from collections.abc import Sequence
@@ -45,7 +45,7 @@ from .own import (
 )
 
 ORDERS = (8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 40, 56, 80)
-"""Orders of rodsweep's pencil at which eigensolvers are run."""
+"""Orders of the elements of rodsweep's pencil on which eigensolvers are run."""
 SPECTRUM_RACE = "spectrum"
 """Name of the race of spectra of rods."""
 PAPER_RODS = {
@@ -63,7 +63,7 @@ HARD_RODS = {
     "nearly crushed: F = 0.999 k1, k1 = 200": Rod(F=199.8, k1=200.0, k2=1e4, gamma3=1e-4),
     "12 unstable modes: F = 2000, k1 = 1e4": Rod(F=2000.0, k1=1e4, k2=1e4, gamma3=1e-4),
 }
-"""Rods on which methods lose accuracy or speed, beside an easy rod, by name in the table."""
+"""Rods on which methods lose accuracy or speed, and an easy rod for comparison, by name in the table."""
 TARGET_ERRORS = (1e-12, 1e-10, 1e-6)
 """Relative errors at which the methods are compared, smallest first."""
 ROUND_COUNT = 25
@@ -71,14 +71,12 @@ ROUND_COUNT = 25
 QUICK_ROUND_COUNT = 2
 """Number of timed rounds of a quick run."""
 QUICK_STRIDE = 3
-"""A quick run uses every third size on hard rods and arms."""
+"""On hard rods and arms a quick run uses every n-th size; this number is n."""
 
 
 def spectrum_study(quick: bool, peers: Peers) -> Study:
-    """Runs the benchmark: the paper's rods at equal errors, hard rods at all sizes, and arms.
-
-    quick: fewer rounds, target errors and sizes.
-    """
+    """Runs the benchmark: the paper's rods at equal errors, hard rods at all sizes, and arms. quick: whether
+    to use fewer rounds, target errors and sizes."""
     warm_up()
     rounds, stride = (QUICK_ROUND_COUNT, QUICK_STRIDE) if quick else (ROUND_COUNT, 1)
     rods = [
@@ -99,9 +97,10 @@ def spectrum_study(quick: bool, peers: Peers) -> Study:
 def cheapest_contenders(
     every: Sequence[Contender], rod: Rod, exact: list[Any], target: float
 ) -> dict[str, Contender]:
-    """For every method that reaches the error `target` on a rod, its contender with the smallest such size.
+    """For every method that reaches the error `target` on a rod: the contender with the smallest size that
+    reaches this error, by name of the method.
 
-    every: contenders of all methods, sizes increasing. exact: exact eigenvalues of the rod.
+    every: contenders of all methods, by ascending size. exact: exact eigenvalues of the rod.
     """
     found: dict[str, Contender] = {}
     for contender in every:
@@ -114,10 +113,8 @@ def cheapest_contenders(
 def equal_error_table(
     every: Sequence[Contender], rods: Sequence[Rod], exact: Sequence[list[Any]], target: float, rounds: int
 ) -> str:
-    """Times all methods, at each rod's smallest size with the error `target`; returns their table.
-
-    exact: exact eigenvalues of each rod.
-    """
+    """Times all methods on all rods, each at the smallest size that reaches the error `target`, and returns
+    the table of the methods. exact: exact eigenvalues of each rod."""
     fit = [cheapest_contenders(every, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
     names = list(dict.fromkeys(contender.method for contender in every))
     runs = {
@@ -150,7 +147,7 @@ def equal_error_table(
 
 
 def measure_hard_rods(every: Sequence[Contender], rounds: int) -> list[Measurement]:
-    """Measurements of the contenders `every` on the hard rods."""
+    """Measurements of the contenders `every` on all HARD_RODS."""
     measurements = []
     for case, rod in HARD_RODS.items():
         judge = partial(spectrum_error, exact_spectrum(rod, MODE_COUNT))
@@ -159,12 +156,13 @@ def measure_hard_rods(every: Sequence[Contender], rounds: int) -> list[Measureme
 
 
 def spectrum_error(exact: list[Any], w: Complex) -> dict[str, float]:
-    """Field `error` of `Measurement` for eigenvalues w, (modes,)."""
+    """Field `error` of `Measurement` for computed eigenvalues w, (modes,). exact: exact eigenvalues."""
     return {"error": relative_error(w, exact)}
 
 
 def hard_rod_table(measurements: Sequence[Measurement]) -> str:
-    """Table of hard rods: the smallest error of every method, and its time for ten times this error."""
+    """Table of hard rods: the smallest error of every method, and the time of the method for at most ten
+    times this error."""
     rows = [
         {
             "method": method,
@@ -180,30 +178,28 @@ def hard_rod_table(measurements: Sequence[Measurement]) -> str:
 
 
 def hard_cell(measurements: Sequence[Measurement]) -> str:
-    """Cell of `hard_rod_table` for one method on one rod; measurements: at all sizes."""
+    """Cell of `hard_rod_table` for one method on one rod. measurements: at all sizes."""
     least = min(m.error for m in measurements)
     near = min((m for m in measurements if m.error <= 10 * least), key=lambda m: m.seconds)
     return "failed" if isinf(least) else f"{least:.0e}, {1e3 * near.seconds:.2f} ms"
 
 
 def pencil_mesh(order: int) -> Resolution:
-    """Mesh of one element of an order, or of several equal elements if the order exceeds the largest
-    allowed.
-    """
+    """Mesh of one element of the order `order`, or of several equal elements with this total order if the
+    order exceeds its maximum."""
     elements = ceil(order / RESOLUTION.max_order)
     return Resolution(elements, ceil(order / elements))
 
 
 def krylov_schur(rod: Rod, size: int) -> Complex:
-    """Leading eigenvalues, (modes,), of a rod by SLEPc's Krylov-Schur, without refinement on D; size:
-    order.
-    """
+    """Leading eigenvalues, (modes,), of a rod by SLEPc's Krylov-Schur, without Newton's method for D. size:
+    order of the pencil."""
     w = uniform_solver(pencil_mesh(size)).solve(rod, transverse_problem(rod).shift, MODE_COUNT, tight=True)
     return leading_eigenvalues(w, MODE_COUNT + 1)
 
 
 def contenders() -> list[Contender]:
-    """Contenders of RACE: rodsweep with and without certificate, and Krylov-Schur at all sizes."""
+    """Contenders of SPECTRUM_RACE: rodsweep without and with certificate, and Krylov-Schur at all orders."""
     return [
         Contender(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=False)),
         Contender(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=True)),

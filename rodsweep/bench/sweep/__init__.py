@@ -1,1 +1,1 @@
-"""Benchmark of sweeps: complete runs of `rodsweep run`, with their scaling, overhead and memory."""
+"""Benchmark of sweeps: scaling, overhead and memory of complete runs of `rodsweep run`."""

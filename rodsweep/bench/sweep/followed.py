@@ -1,4 +1,5 @@
-"""Speed of spectra whose eigenvalues are followed along an axis of a grid, against points solved alone."""
+"""Time of sweeps of spectra whose eigenvalues are followed along an axis of the grid, compared with sweeps
+whose points are solved one by one."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -19,19 +20,21 @@ parameters:
   taper: {taper}
 spectrum: {{modes: 4, follow: {4}}}
 """
-"""Config of a sweep, a format of `str.format`: numbers of F, k1, k2 and gamma3; F_max; taper; follow."""
+"""Config of a sweep, as a format string. Fields: 0 to 3: numbers of values of F, k1, k2 and gamma3; 4: value
+of `follow`; F_max; taper."""
 FOLLOWED = "followed"
-"""Name of sweeps whose eigenvalues are followed."""
+"""Name of the method for sweeps whose eigenvalues are followed."""
 ALONE = "alone"
-"""Name of sweeps whose points are solved alone."""
+"""Name of the method for sweeps whose points are solved one by one."""
 
 
 @dataclass(frozen=True, slots=True)
 class ComparedGrids:
-    """Two grids over F, k1, k2 and gamma3: one along whose longest axis eigenvalues are followed, and a
-    smaller one for points solved alone.
+    """Two grids over F, k1, k2 and gamma3: a grid for following eigenvalues along its longest axis, and a
+    smaller grid of points solved one by one.
 
-    name: names the longest axis. shape, smaller: numbers of values. F_max: largest force. taper: of all rods.
+    name: text that names the longest axis. shape, smaller: numbers of values of F, k1, k2 and gamma3 of the
+    two grids. F_max: largest force. taper: taper of all rods.
     """
 
     name: str
@@ -48,19 +51,21 @@ GRIDS = (
     ComparedGrids("12 of F", (12, 12, 12, 12), (12, 12, 12, 6)),
     ComparedGrids("512 of F, cones", (512, 2, 4, 2), (32, 2, 4, 2), F_max=20.0, taper=0.5),
 )
-"""Pairs of grids on which followed eigenvalues and points solved alone are timed."""
+"""Pairs of grids that are timed."""
 QUICK_GRIDS = (
     ComparedGrids("64 of F", (64, 2, 2, 2), (8, 2, 2, 2)),
     ComparedGrids("12 of F", (12, 2, 3, 2), (2, 2, 2, 2)),
     ComparedGrids("64 of F, cones", (64, 2, 2, 2), (2, 2, 2, 2), F_max=20.0, taper=0.5),
 )
-"""Pairs of grids of a quick run."""
+"""Pairs of grids that are timed in a quick run."""
 
 
 def followed_sweeps(place: Path, run: Callable[..., CommandRun], quick: bool) -> list[Measurement]:
-    """Measurements of sweeps of certified spectra on one rank, followed and alone, on all grids.
+    """Measurements of sweeps of certified spectra on one rank: for each pair of grids first FOLLOWED, then
+    ALONE.
 
-    place: directory of the sweeps. run: see `RunCase` of `rodsweep.bench.sweep.study`. quick: small grids.
+    place: directory of the sweeps. run: see `RunCase` of `rodsweep.bench.sweep.study`. quick: whether to use
+    small grids.
     """
     found = []
     for axis in QUICK_GRIDS if quick else GRIDS:
@@ -77,7 +82,8 @@ def followed_sweeps(place: Path, run: Callable[..., CommandRun], quick: bool) ->
 
 
 def followed_measurement(case: SweepCase, method: str, run: CommandRun) -> Measurement:
-    """Measurement of a sweep: times, numbers of points with a mesh and without certificate, and memory."""
+    """Measurement of the run `run` of a sweep: times, number of points solved on a mesh, number of points
+    without certificate, and memory."""
     variables = read_view(case.directories[0] / RESULT).variables
     extra = {
         "points": float(case.points),
@@ -93,7 +99,8 @@ def followed_measurement(case: SweepCase, method: str, run: CommandRun) -> Measu
 
 
 def followed_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the sweeps, a line for each grid. measurements: followed and alone in turn."""
+    """Table of the sweeps, with one line per pair of grids. measurements: as returned by
+    `followed_sweeps`."""
     rows = []
     for one, other in zip(measurements[::2], measurements[1::2], strict=True):
         gain = other.extra["microseconds_solving"] / one.extra["microseconds_solving"]
@@ -101,10 +108,10 @@ def followed_table(measurements: Sequence[Measurement]) -> str:
         rows.append(row | one.extra | {f"{name}_alone": value for name, value in other.extra.items()})
     return (
         "Certified spectra, `modes: 4`, along the longest axis of grids of F, k1, k2, gamma3, on one rank; "
-        '"alone" is `follow: false` on a part of the same grid. Seconds are stated by the run, including '
+        '"alone" is `follow: false` on a part of the same grid. Seconds are printed by the run and include '
         "loading of compiled code, scheduling and storing; µs of the solver are from `seconds` in the file. "
-        '"With a mesh" counts points that could not be followed or not be proved. Cones have half the '
-        "radius at their tips:\n\n"
+        '"With a mesh" is the number of points that could not be followed, or not be proved complete. Cones '
+        "have half the radius at their tips:\n\n"
     ) + markdown_table(
         "axis | points | s | µs a point | µs of the solver | alone | times | with a mesh | not certified "
         "| MB a rank",

@@ -1,8 +1,8 @@
-"""Runs of sweeps as a user would start them: their time, the memory of each rank, and bytes on disk.
+"""Runs of sweeps started as by a user: time, memory of each rank, and size of the files.
 
-The caller gives the words that start the measured command. Three arguments follow these words: a directory,
-in which every rank writes its peak memory in bytes into a file FIRST_RANK-PID or OTHER_RANKS-PID; the kind of
-solver, SOLVED, INSTANT or KILLED; and the words of the `rodsweep` command.
+The caller gives the first arguments of the measured command. Further arguments are appended: a directory, in
+which every rank writes its peak memory in bytes into a file FIRST_RANK_PREFIX-PID or OTHER_RANKS_PREFIX-PID;
+the kind of solver, SOLVED, INSTANT or KILLED; and the arguments of `rodsweep`.
 """
 
 import os
@@ -23,14 +23,15 @@ from ...results.file.view import read_view
 from ...results.run.journal import journal_directory
 
 RESULT, NOTES = "c.h5", "notes"
-"""Names, in the directory of a sweep, of the result file and of the folder in which ranks write their
-memory."""
+"""Names, in the directory of a sweep, of the result file and of the folder with the peak memory of the
+ranks."""
 FIRST_RANK_PREFIX = "first"
-"""Beginning of the name of the file with the peak memory of the first rank."""
+"""Prefix of the name of the file with the peak memory of the first rank."""
 OTHER_RANKS_PREFIX = "other"
-"""Beginning of the names of the files with the peak memory of all other ranks."""
+"""Prefix of the names of the files with the peak memory of each other rank."""
 SOLVED, INSTANT, KILLED = "solved", "instant", "killed"
-"""Kinds of solver: the real solver; random results at once; random results and a kill at the last point."""
+"""Kinds of solver: the real solver; a solver that returns random results at once; this solver, with a kill of
+the process at the last point."""
 CONFIG_NAME = "c.yaml"
 """Name of the config in the directory of a sweep."""
 SPECTRUM_CONFIG = """
@@ -42,7 +43,7 @@ parameters:
   gamma3: 1.0e-4
 spectrum: {{modes: 2}}
 """
-"""Config of a sweep of spectra, a format of `str.format`: numbers of values of F and of k2."""
+"""Config of a sweep of spectra, as a format string. forces, softnesses: numbers of values of F and of k2."""
 CYCLE_CONFIG = "task: limit_cycle\nparameters: {points: points.csv}\n"
 """Config of a sweep of limit cycles over a list of points."""
 HOPF_FORCE = 27.4271941267592812
@@ -53,8 +54,8 @@ HOPF_FORCE = 27.4271941267592812
 class SweepCase:
     """A sweep to be run.
 
-    points: their number. directories: of the config; with several directories, each has a part of the points,
-    and one command for each directory runs at the same time. kind: kind of solver.
+    points: number of points. directories: directories with a config. If there are several, each config has a
+    part of the points, and one command per directory runs, all at the same time. kind: kind of solver.
     """
 
     name: str
@@ -64,9 +65,11 @@ class SweepCase:
 
 
 def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCase:
-    """A sweep of spectra over F, two values of k1, and k2; its config is written into `directory`.
+    """A sweep of spectra over F, two values of k1, and k2, whose config is written into the new directory
+    `directory`.
 
-    points: approximate number of points; from 200 on it is rounded down to hundreds. kind: kind of solver.
+    points: number of points, which is rounded down to a multiple of 100, below 200 to a multiple of 4. kind:
+    kind of solver.
     """
     forces = 50 if points >= 200 else 2
     softnesses = points // (2 * forces)
@@ -76,9 +79,8 @@ def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCa
 
 
 def cycle_case(directory: Path, points: int, kind: str) -> SweepCase:
-    """A sweep of limit cycles of very different cost, in random order; its config is written into
-    `directory`.
-    """
+    """A sweep of limit cycles whose costs differ much, in random order; its config is written into the new
+    directory `directory`."""
     directory.mkdir()
     rows = [f"{F!r},1e4,1e2,1e-2,1" for F in mixed_forces(points).tolist()]
     (directory / "points.csv").write_text("\n".join(["F,k1,k2,gamma3,gamma1", *rows]) + "\n")
@@ -87,9 +89,7 @@ def cycle_case(directory: Path, points: int, kind: str) -> SweepCase:
 
 
 def mixed_forces(count: int) -> np.ndarray:
-    """Forces far below the Hopf point, just below, just above, and far above it, in random order,
-    (count,).
-    """
+    """Forces F far below, just below, just above and far above HOPF_FORCE, in random order, (count,)."""
     below = count // 5
     close = count // 6
     above = count // 4
@@ -111,32 +111,35 @@ class CommandRun:
     seconds: float
     """Clock time of the whole command, in s."""
     stated_seconds: float
-    """Clock time printed by the command, in s, without the start of Python and MPI; nan if it was killed."""
+    """Clock time printed by the command, in s, without the start of Python and MPI; nan if the command was
+    killed."""
     solver_seconds: float
     """Time in the solver, in s, summed over the ranks."""
     peak_memory: tuple[int, ...]
-    """Peak memory, in bytes, of the first rank, and the largest peak memory of all other ranks."""
+    """Peak memory of the first rank, and largest peak memory of the other ranks, in bytes."""
     file_bytes: int
     """Size of the result files in bytes."""
     journal_bytes: int
-    """Size, in bytes, of the journals that a killed run left."""
+    """Size, in bytes, of the journals of an unfinished run."""
     processors_busy_elsewhere: float
-    """Number of processors that other programs kept busy; nan if unknown."""
+    """Mean number of processors that other programs kept busy; nan if unknown."""
     busy_fraction: float
-    """Fraction of the ranks' time spent on points instead of waiting; nan without the real solver."""
+    """Fraction of the time of all ranks that was spent on points, not on waiting; nan for other solvers than
+    SOLVED."""
 
 
 def launcher_words(ranks: int) -> list[str]:
-    """Words that start a command on several ranks; empty without mpiexec."""
+    """Arguments that start a command on `ranks` ranks; empty if there is no mpiexec."""
     beside = Path(sys.executable).with_name("mpiexec")
     found = str(beside) if beside.exists() else shutil.which("mpiexec")
     return [found, "-n", str(ranks)] if found else []
 
 
 def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = True) -> CommandRun:
-    """Runs a sweep on some ranks. Raises EnvironmentIncomplete if the run fails and was not to be killed.
+    """Runs a sweep on `ranks` ranks and returns its measurements. Raises EnvironmentIncomplete if a run fails
+    that was not to be killed.
 
-    command: words that start the measured command. fresh: whether to replace an existing result file.
+    command: first arguments of the measured command. fresh: whether to replace an existing result file.
     """
     others = _seconds_of_others()
     began = time.monotonic()
@@ -169,7 +172,7 @@ def _start(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> sub
     return subprocess.Popen(
         [*words, str(notes), kind, *run],
         cwd=directory,
-        env=dict(os.environ),  # as this process was started: MPI adds variables to the C environment only
+        env=dict(os.environ),  # as at the start of this process: MPI adds variables only to the C environment
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -177,7 +180,8 @@ def _start(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> sub
 
 
 def _inside(process: subprocess.Popen[str], kind: str) -> float:
-    """Time in s that a finished command printed; nan if the command was killed on purpose."""
+    """Waits for the command to finish, and returns the time in s that the command printed; nan if it was
+    killed on purpose."""
     output, errors = process.communicate()
     said = re.search(r"points? in ([\d.]+) s on", output)
     stopped = said is None or "stopped by" in output
@@ -187,26 +191,23 @@ def _inside(process: subprocess.Popen[str], kind: str) -> float:
 
 
 def _peak(case: SweepCase, rank: str) -> int:
-    """Peak memory in bytes of the first rank, or the largest peak memory of all other ranks.
-
-    rank: FIRST_RANK or OTHER_RANKS.
-    """
+    """Peak memory of the first rank, or largest peak memory of the other ranks, in bytes. rank:
+    FIRST_RANK_PREFIX or OTHER_RANKS_PREFIX."""
     notes = (note for directory in case.directories for note in (directory / NOTES).glob(f"{rank}-*"))
     return max((int(note.read_text()) for note in notes), default=0)
 
 
 def _solving(file: Path) -> tuple[float, float]:
-    """(time in the solver in s, fraction of the ranks' time spent on points), from a result file."""
+    """(time in the solver in s, fraction of the time of all ranks that was spent on points), from a result
+    file."""
     view = read_view(file)
     busy, idle = (float(view.attributes[f"rank_{name}_seconds"].sum()) for name in ("busy", "idle"))
     return float(view.variables["seconds"].sum(dtype=float)), busy / (busy + idle)
 
 
 def _seconds_of_others() -> float:
-    """Processor time, in s, of all processes of the machine except finished children of this one.
-
-    nan if unknown.
-    """
+    """Processor time, in s, of all processes of the machine except the finished children of this process; nan
+    if unknown."""
     try:
         line = Path("/proc/stat").read_text().split("\n", 1)[0]
         user, nice, system, _, _, irq, softirq, steal = map(int, line.split()[1:9])

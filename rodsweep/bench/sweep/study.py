@@ -1,7 +1,7 @@
-"""The sweep benchmark: speedup by a second rank, and overhead of a point in addition to its solve.
+"""The sweep benchmark: speedup by a second rank, and overhead of a point in addition to its solution.
 
-All numbers are measured on runs of `rodsweep run`. For the overhead of up to 1e6 points, a solver that
-returns random results at once replaces the real solver.
+All numbers are measured on runs of `rodsweep run`. To measure the overhead of up to 1e6 points, an instant
+solver, which returns random results at once, replaces the real solver.
 """
 
 from collections.abc import Callable, Sequence
@@ -35,18 +35,18 @@ from .launch import (
 )
 
 SWEEP_SIZES, QUICK_SIZES = (10**3, 10**4, 10**5, 10**6), (10**3, 10**4)
-"""Numbers of points of the sweeps with the instant solver, and those of a quick run."""
+"""Numbers of points of the sweeps with the instant solver, in a complete and in a quick run."""
 SINGLE_RUN_FROM = 10**6
-"""Number of points from which a sweep with the instant solver is run only once: its start takes a negligible
-part of its time."""
+"""Sweeps with the instant solver are run only once from this number of points; their start takes negligible
+time."""
 SPECTRUM_COUNT, QUICK_SPECTRUM_COUNT = 200_000, 6_000
-"""Number of points of the sweep of spectra, and that of a quick run."""
+"""Number of points of the sweep of spectra, in a complete and in a quick run."""
 CYCLE_COUNT, QUICK_CYCLE_COUNT = 200, 10
-"""Number of points of the sweep of limit cycles, and that of a quick run."""
+"""Number of points of the sweep of limit cycles, in a complete and in a quick run."""
 ROUND_COUNT, CYCLE_ROUND_COUNT, QUICK_ROUND_COUNT = 3, 2, 1
-"""Numbers of timed rounds: of spectra, of limit cycles, and of all sweeps in a quick run."""
+"""Numbers of timed rounds of spectra, of limit cycles, and of all sweeps of a quick run."""
 TWO_COMMANDS = "spectra, two commands"
-"""Name of the case of two simultaneous commands, each with half of the spectra on one rank. Their speed is an
+"""Name of the case of two simultaneous commands, each with half of the spectra on one rank; its speed is an
 upper bound for the speed of two ranks."""
 MEGABYTE = 1e6
 """Number of bytes of a megabyte."""
@@ -54,20 +54,20 @@ INTRODUCTION = """
 `mpiexec -n RANKS rodsweep run CONFIG` as a whole, medians of interleaved rounds. Spectra: `modes: 2`,
 certified, over F, k1, k2. Two commands, each with half of the spectra on one rank, show the largest possible
 gain of two processors on this machine. Limit cycles: k1 = 1e4, k2 = 1e2, gamma3 = 1e-2, at mixed forces far
-below the Hopf point, down to 1e-6 below and 1e-7 above it, and far above. "Inside" is the time stated by the
-run, without the start of Python and MPI; "% busy" is the share of the ranks' time in the sweep spent on
-points instead of waiting. "Beside the solver" is the ranks' time inside minus the `seconds` in the file:
+below the Hopf point, down to 1e-6 below and 1e-7 above it, and far above. "Inside" is the time printed by the
+run, without the start of Python and MPI; "% busy" is the fraction of the ranks' time in the sweep spent on
+points, not on waiting. "Outside the solver" is the ranks' time inside minus the `seconds` in the file:
 loading compiled code, scheduling, storing, and waiting. Memory is the peak of a rank's resident set. A second
 rank gains less while other programs, or the host of a virtual machine, keep processors busy."""
 """Description of the measurements for the report."""
 RunCase = Callable[..., CommandRun]
-"""`run_case` after its first argument, the words that start the measured command, is bound."""
+"""`run_case` with its first argument, the start of the measured command, bound."""
 
 
 def sweep_study(quick: bool, command: Sequence[str]) -> Study:
     """Runs the benchmark: speedup by a second rank, followed eigenvalues, and overhead of a point.
 
-    quick: fewer points and rounds. command: words that start the measured command, see
+    quick: whether to use fewer points and rounds. command: first arguments of the measured command, see
     `rodsweep.bench.sweep.launch`.
     """
     run = partial(run_case, command)
@@ -79,12 +79,12 @@ def sweep_study(quick: bool, command: Sequence[str]) -> Study:
     blocks = [INTRODUCTION.strip(), solved_table(solved), followed_table(followed)]
     blocks += [instant_table(instant), growth_table(instant)]
     if len(ranks) == 1:
-        blocks.append("Two ranks are skipped: there is no mpiexec beside this Python or on PATH.")
+        blocks.append("Two ranks are skipped: there is no mpiexec in the folder of this Python or on PATH.")
     return Study("sweep", "\n\n".join(blocks), [*solved, *followed, *instant])
 
 
 def solved_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
-    """Measurements of sweeps of spectra and of limit cycles with the real solver, in turn.
+    """Measurements of sweeps of spectra and of limit cycles with the real solver, run in turn.
 
     place: directory of the sweeps. ranks: numbers of ranks.
     """
@@ -108,7 +108,7 @@ def solved_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) 
 def instant_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
     """Measurements of sweeps of all sizes with the instant solver: complete, killed and resumed.
 
-    place: directory of the sweeps. ranks: numbers of ranks. Sweeps are killed at the last point on one rank.
+    place: directory of the sweeps. ranks: numbers of ranks of complete sweeps; other sweeps have one rank.
     """
     sizes, rounds = (QUICK_SIZES, QUICK_ROUND_COUNT) if quick else (SWEEP_SIZES, ROUND_COUNT)
     entries = []
@@ -134,7 +134,7 @@ def measure_in_turn(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]])
 
 
 def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -> Measurement:
-    """Measurement of a sweep from all its runs, mostly medians; the error is nan, as sweeps have no error."""
+    """Measurement of a sweep from all its runs; times are medians, and the error is nan."""
     seconds = nan_median(run.seconds for run in runs)
     processes = ranks * len(case.directories)
     memory = [max(values) / MEGABYTE for values in zip(*(run.peak_memory for run in runs), strict=True)]
@@ -160,7 +160,7 @@ def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -
 
 
 def row_numbers(m: Measurement) -> dict[str, object]:
-    """All numbers of a measured sweep, by name, for a row of a table."""
+    """Numbers of a measured sweep, by name, for a row of a table."""
     microseconds = 1e6 * m.extra["ranks"] * m.seconds / m.extra["points"]
     return {"case": m.case, "seconds": m.seconds, "microseconds": microseconds, **m.extra}
 
@@ -169,7 +169,7 @@ def solved_table(measurements: Sequence[Measurement]) -> str:
     """Table of the sweeps of spectra and limit cycles with the real solver."""
     rows = []
     for m in measurements:
-        kind = m.case.split(",")[0]  # two commands are compared with the same sweep in one command
+        kind = m.case.split(",")[0]  # two commands are compared with one command for the same sweep
         one = next(other for other in measurements if other.case == kind and other.extra["ranks"] == 1)
         gains = {
             "gain": nan if m is one else one.seconds / m.seconds,
@@ -179,7 +179,7 @@ def solved_table(measurements: Sequence[Measurement]) -> str:
         rows.append(row_numbers(m) | gains)
     return markdown_table(
         "sweep | points | ranks | s | points a second | gain | gain inside | % busy "
-        "| µs a point beside the solver | MB a rank | processors busy elsewhere",
+        "| µs a point outside the solver | MB a rank | processors busy elsewhere",
         "{case} | {points:.0f} | {ranks:.0f} | {seconds:.2f} | {points_per_second:.4g} | {gain:.2f} "
         "| {inside:.2f} | {busy:.1f} | {microseconds_overhead:.0f} | {rss_megabytes:.1f} "
         "| {processors_elsewhere:.2f}",
@@ -227,7 +227,7 @@ def growth_table(measurements: Sequence[Measurement]) -> str:
 
 
 def sweep_totals(m: Measurement) -> dict[str, float]:
-    """Totals of a measured sweep by name: microseconds of all ranks, bytes of the file and of memory."""
+    """Totals of a measured sweep, by name: microseconds of all ranks, bytes of the file, bytes of memory."""
     return {
         "microseconds": 1e6 * m.extra["ranks"] * m.seconds,
         "file": m.extra["file_bytes_per_point"] * m.extra["points"],
@@ -237,10 +237,11 @@ def sweep_totals(m: Measurement) -> dict[str, float]:
 
 
 def growth_power(start: Measurement, less: Measurement, more: Measurement) -> float:
-    """Exponent with which the time of a sweep, minus that of the smallest sweep, grows with the number of
-    points.
+    """Exponent p of growth, t(n) - t(n0) ~ (n - n0)^p; t(n): time of a sweep with n points, n0: points of
+    `start`.
 
-    start: the smallest sweep. less, more: successive sizes. nan if the time does not grow.
+    start: the smallest sweep. less, more: two successive sizes. nan if `less` is `start`, or if the time does
+    not grow.
     """
     if less is start or min(less.seconds, more.seconds) <= start.seconds:
         return nan

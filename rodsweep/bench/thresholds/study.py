@@ -1,7 +1,8 @@
-"""The thresholds benchmark: first onset and first Hopf point, with errors against values of 30 digits.
+"""The thresholds benchmark: first onset and first Hopf point, with errors relative to values of 30 digits.
 
-rodsweep finds all changes of a rod and proves the list complete. The contenders of the races ONSET and HOPF
-take a `ThresholdCase` and return a `FirstThreshold`; peers find the first onset or the first Hopf point only.
+rodsweep finds all stability changes of a rod and can prove the list complete; peers find only the first onset
+or the first Hopf point. The contenders of the races ONSET and HOPF are functions of a `ThresholdCase` that
+return a `FirstThreshold`.
 """
 
 from collections.abc import Iterable, Sequence
@@ -27,19 +28,19 @@ from ..study import (
 )
 
 ONSET, HOPF = "onset", "hopf"
-"""Kinds of thresholds: names of the races, of fields of `ThresholdCase`, and of kinds in rodsweep's
-results."""
+"""Kinds of thresholds, which are also names of the races, of fields of `ThresholdCase`, and of kinds in
+rodsweep's results."""
 WRONG_THRESHOLD = 0.3
-"""Relative error from which a computed threshold counts as a different change, and the exact one as
-missed."""
+"""With at least this relative error, a computed threshold belongs to a different stability change, and the
+exact threshold was missed."""
 
 
 @dataclass(frozen=True)
 class ThresholdCase:
     """A rod with its exact first thresholds.
 
-    onset, hopf: F of the first onset and of the first Hopf point, rounded from 30 digits; nan if there is
-    none. search_end: F at which the searches of peers end.
+    onset, hopf: F of the first onset and of the first Hopf point, rounded from 30 digits; nan if the rod has
+    no such threshold. search_end: F at which the searches of peers end.
     """
 
     name: str
@@ -56,9 +57,10 @@ class ThresholdCase:
         return Rod(F=F, k1=self.k1, k2=self.k2, gamma3=self.gamma3, taper=self.taper, build=self.build)
 
     def error_of(self, kind: str, found: float) -> float:
-        """Relative error of the computed threshold `found` of a kind, ONSET or HOPF.
+        """Relative error of the computed threshold `found` of the kind `kind`, ONSET or HOPF.
 
-        nan if there is no threshold and none was found; inf if it was missed, or if there is none.
+        nan if the rod has no threshold and no threshold was found; inf if the threshold was missed, or if a
+        threshold was found that the rod does not have.
         """
         exact = getattr(self, kind)
         if isnan(exact):
@@ -69,10 +71,10 @@ class ThresholdCase:
 
 @dataclass(frozen=True, slots=True)
 class FirstThreshold:
-    """Computed first threshold, and the work of its search; a kind of work that is not counted is nan.
+    """Computed first threshold, and cost of its search; nan for numbers that were not counted.
 
-    force: F of the threshold, nan if none was found. solves: number of eigenproblems. determinants: number of
-    evaluations of D. products: number of matrix-vector products.
+    force: F of the threshold; nan if no threshold was found. solves: number of eigenproblems. determinants:
+    number of evaluations of D. products: number of matrix-vector products.
     """
 
     force: float
@@ -90,10 +92,11 @@ CASES = (
     ThresholdCase("narrow", 147.93, 1e4, 1e-4, 23.7456428120601644, 74.8251556528066767, 140.0),
     ThresholdCase("soft", 1e4, 3.0, 1e-2, 4.15946661669787928, 7.93638669176118928),
 )
-"""Uniform rods of the benchmark. "narrow" flutters only from F = 74.83 to 75.98, between the points of a
-coarse grid. In "soft", more and more pairs become unstable, so that a long step misses the first pair."""
+"""Uniform rods of the benchmark. "narrow" flutters only from F = 74.83 to 75.98, which is between two points
+of a coarse grid. In "soft", further pairs soon become unstable, so that a search with a long step misses the
+first pair."""
 QUICK_CASES = tuple(case for case in CASES if case.name in ("Fig. 2b", "Fig. 2d", "filament"))
-"""Uniform rods of a quick run."""
+"""Uniform rods in a quick run."""
 ARM_CASES = (
     ThresholdCase("cone", 1e4, 1e2, 1e-2, 4.57243445318968512, 11.0801159252882371, taper=0.5),
     ThresholdCase(
@@ -108,8 +111,8 @@ ARM_CASES = (
 )
 """Arms that vary along their length."""
 ARM_INTRODUCTION = (
-    "The same for arms: a cone with half the radius at its tip, and five segments with radii of 1, 0.6, 1.2, "
-    "0.5 and 0.8. rodsweep finds all changes in 0 < F < 60 to the requested accuracy of 1e-10."
+    "The same tables for arms: a cone with half the radius at its tip, and five segments with radii of 1, "
+    "0.6, 1.2, 0.5 and 0.8. rodsweep finds all changes in 0 < F < 60 to the requested accuracy of 1e-10."
 )
 """Description of the tables of arms for the report."""
 KIND_TITLES = {ONSET: "onset", HOPF: "Hopf point"}
@@ -119,7 +122,7 @@ ROUND_COUNT = 5
 QUICK_ROUND_COUNT = 1
 """Number of timed rounds of a quick run."""
 MAX_DIGITS = 16
-"""Maximum number of correct digits that a threshold is credited with."""
+"""Upper limit of the counted number of correct digits of a threshold."""
 F_MAX = 200.0
 """Largest F of rodsweep's search on uniform rods."""
 ARM_F_MAX = 60.0
@@ -129,10 +132,8 @@ RODSWEEP = "rodsweep"
 
 
 def thresholds_study(quick: bool, peers: Peers) -> Study:
-    """Runs the benchmark: tables of the onset and of the Hopf point, for uniform rods and for arms.
-
-    quick: fewer rods and rounds.
-    """
+    """Runs the benchmark: tables of the onset and of the Hopf point, for uniform rods and for arms. quick:
+    whether to use fewer rods and rounds."""
     warm_up()
     cases, rounds = (QUICK_CASES, QUICK_ROUND_COUNT) if quick else (CASES, ROUND_COUNT)
     blocks = [" ".join([introduction(rounds), *peers.notes])]
@@ -147,7 +148,8 @@ def thresholds_study(quick: bool, peers: Peers) -> Study:
 
 
 def contenders(kind: str) -> list[Contender]:
-    """Contenders of the race of a kind of threshold: rodsweep with and without its proof of completeness."""
+    """Contenders of the race for the threshold `kind`: rodsweep with and without its proof of
+    completeness."""
     return [
         Contender("rodsweep, all changes", "with proof", RODSWEEP, partial(rodsweep_threshold, kind, True)),
         Contender(
@@ -157,10 +159,8 @@ def contenders(kind: str) -> list[Contender]:
 
 
 def rodsweep_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThreshold:
-    """The first threshold of a kind by rodsweep, which finds all changes of the rod.
-
-    certify: whether rodsweep proves the list of changes complete.
-    """
+    """The first threshold of the kind `kind` by rodsweep, from the list of all changes of the rod. certify:
+    whether rodsweep proves this list complete."""
     rod = case.rod(0.0)
     F_max = F_MAX if rod.standard else ARM_F_MAX
     result = solve_thresholds(rod, ThresholdsRequest(F_max, 1e-10, certify, 64))
@@ -173,7 +173,7 @@ def rodsweep_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstTh
 def measure_rods(
     kind: str, cases: Iterable[ThresholdCase], every: Sequence[Contender], rounds: int
 ) -> list[Measurement]:
-    """Measurements of the contenders `every` of one kind of threshold on each rod."""
+    """Measurements of the contenders `every`, which find the threshold `kind`, on each rod."""
     measurements = []
     for case in cases:
         name = f"{case.name}, {KIND_TITLES[kind]}"
@@ -182,10 +182,8 @@ def measure_rods(
 
 
 def threshold_error(case: ThresholdCase, kind: str, first: FirstThreshold) -> dict[str, Any]:
-    """Fields of `Measurement` for a computed threshold: error, failure, work, digits per eigenproblem.
-
-    Digits are correct decimal digits, 0 if the threshold was missed.
-    """
+    """Fields of `Measurement` for the computed threshold `first`: error, failure, cost, and correct decimal
+    digits per eigenproblem (0 if the threshold was missed)."""
     error = case.error_of(kind, first.force)
     missed = "missed" if isnan(first.force) else f"wrong ({first.force:.2f})"
     digits = -log10(min(max(error, 10**-MAX_DIGITS), 1.0))
@@ -195,9 +193,8 @@ def threshold_error(case: ThresholdCase, kind: str, first: FirstThreshold) -> di
 
 
 def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
-    """Table of one kind of threshold, a line for each method and setting: medians over the rods, and
-    errors.
-    """
+    """Table of one kind of threshold, with one line for each method and setting: medians over the rods, and
+    errors on each rod."""
     rods = list(dict.fromkeys(m.case.split(",")[0] for m in measurements))
     rows = []
     for (method, setting), own in grouped_by_fields(measurements, "method", "setting").items():
@@ -219,11 +216,11 @@ def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
 
 
 def introduction(rounds: int) -> str:
-    """Description of the tables of uniform rods for the report; rounds: number of timed rounds."""
+    """Description of the tables of uniform rods for the report. rounds: number of timed rounds."""
     return (
         f"Relative error of the first onset and of the first Hopf point; medians over the rods and "
-        f"{count_text(rounds, 'round')}. rodsweep finds all changes in 0 < F < {F_MAX:g} (or below k1) at "
-        "once. "
-        "It evaluates D in addition to its eigenproblems, and locates each change to rounding, whatever "
-        "accuracy is requested. Digits = -log10(error), 0 where the threshold was missed."
+        f"{count_text(rounds, 'round')}. rodsweep finds all changes in 0 < F < {F_MAX:g} (or below k1) in "
+        "one search. "
+        "In addition to eigenproblems it evaluates D, and it locates each change to rounding error at any "
+        "requested accuracy. Digits = -log10(error), 0 where the threshold was missed."
     )

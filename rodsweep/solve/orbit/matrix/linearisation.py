@@ -68,8 +68,7 @@ def partial_multipliers(propagator: Array, orbit: Orbit) -> Complex:
 
 
 def over_period(partial: Complex, orbit: Orbit) -> Complex:
-    """Floquet multipliers over the period, by descending modulus, (rank,). partial: multipliers over the
-    solved part of the period, (rank,)."""
+    """Floquet multipliers over the period, by descending modulus. partial: over the solved part, (rank,)."""
     values: Complex = partial**orbit.symmetry.parts
     return values[np.argsort(-np.abs(values), kind="stable")]
 
