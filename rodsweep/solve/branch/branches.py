@@ -45,26 +45,26 @@ class BranchStatus(PointStatus):
 
     ok = (
         0,
-        "every branch born at a Hopf point within the range, or where such a branch loses its symmetry, is "
-        "followed to its end to the requested accuracy, and all its special points are located",
+        "every branch from a Hopf point within the range, and every branch from a symmetry breaking on these "
+        "branches, is followed to its end to the requested accuracy, and all special points are located",
         True,
     )
     stopped = (
         1,
-        "a branch stops before its end because no further cycle was found; the other branches are complete; "
-        "the message says where; change the accuracy in either direction, or shorten the range",
+        "no further cycle was found on a branch before its end; the message says where; all other branches "
+        "are complete; use a smaller or larger number for the accuracy, or shorten the range",
     )
     list_full = 2, "there are more cycles or special points than the file holds; raise cycles or special"
     special_undecided = (
         3,
-        "a special point misses the requested accuracy, as its error says, or multipliers cross the unit "
-        "circle where no special point was found; a smaller number for the accuracy may decide it",
+        "the error of a special point exceeds the requested accuracy, or multipliers cross the unit circle "
+        "where no special point was found; try a smaller number for the accuracy",
     )
     search_open = (
         4,
-        "the branches are complete, but a Hopf point may be missing: two may nearly coincide within an open "
-        "range, the search for them may have ended early, or a count disagrees; `certify: false` accepts a "
-        "count that disagrees",
+        "the branches are complete, but a Hopf point may be missing: two Hopf points may nearly coincide "
+        "within an open range, the search may have ended early, or a count of unstable modes may disagree; "
+        "`certify: false` ignores the count",
     )
     failed = 5, "the search for Hopf points failed and nothing is stored; the message says why"
 

@@ -48,9 +48,9 @@ class CoexistenceStatus(PointStatus):
     )
     special_undecided = (
         7,
-        "the branches are complete, but a special point misses the requested accuracy, or a stable state is "
-        "undecided because the multipliers of cycles disagree between two special points or are 1 within "
-        "their errors; a smaller number for the accuracy may decide it",
+        "the branches are complete, but the error of a special point exceeds the requested accuracy, or a "
+        "stable state is undecided: multipliers of cycles between two special points disagree about "
+        "stability or have modulus 1 within their errors; try a smaller number for the accuracy",
     )
     special_full = 8, "there are more special points on the branches of the row than the file holds"
 

@@ -245,5 +245,5 @@ def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> Ar
         breaking = limits.breakings[which]
         special = replace(breaking.point, message="", orbit=None)
         return BranchEnd(special, complete=True, end_breaking=breaking)
-    why = "the cycles become symmetric, but no known symmetry breaking is there"
+    why = "the cycles become symmetric, but no known symmetry breaking is near"
     return BranchEnd(end_point(start, EndReason.no_cycle_found, why), complete=False)

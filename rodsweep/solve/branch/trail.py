@@ -70,7 +70,7 @@ class BranchRecord:
             self.settle()
         except Unsolvable as why:
             curve.cut(len(self._waiting))
-            message = f"the errors of the cycles beyond cannot be measured: {why}"
+            message = f"the errors of the next cycles cannot be measured: {why}"
             special = end_point(self._measured, EndReason.no_cycle_found, message)
             end = replace(end, special=special, complete=False)
         special = end.special

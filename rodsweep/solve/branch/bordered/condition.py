@@ -93,8 +93,8 @@ def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:
     # compared.
     if form.omega_unknown != orbit.form.omega_unknown:
         raise Unsolvable(
-            f"at gamma3 = {form.rod.gamma3:.3g} Omega becomes an unknown or is eliminated, and cycles cannot "
-            "be followed across"
+            f"cycles cannot be followed past gamma3 = {form.rod.gamma3:.3g}, where Omega becomes an unknown "
+            "or is eliminated"
         )
     if not result.period > 0:
         raise Unsolvable("Newton's method lost the cycle: its period is not positive")

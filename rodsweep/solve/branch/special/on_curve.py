@@ -191,8 +191,8 @@ def orbit_with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
         raise Unsolvable(f"the curve leaves the allowed range of the parameters: {error}") from error
     if form.omega_unknown != orbit.form.omega_unknown:
         raise Unsolvable(
-            f"at gamma3 = {form.rod.gamma3:.3g} Omega becomes an unknown or is eliminated, and cycles cannot "
-            "be followed across"
+            f"cycles cannot be followed past gamma3 = {form.rod.gamma3:.3g}, where Omega becomes an unknown "
+            "or is eliminated"
         )
     return replace(orbit, form=form)
 
