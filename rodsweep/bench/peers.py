@@ -46,7 +46,7 @@ class Peers:
     """Methods of each race, by the name of the race, with settings from the coarsest to the finest; the study
     defines the races and their cases."""
     sections: Sequence[PeerSection] = ()
-    """Comparisons in addition to the races of the study."""
+    """Functions that make further comparisons, in addition to the races of the study."""
     notes: Sequence[str] = ()
     """Sentences on the contenders, for the introduction of the report."""
     skipped: Sequence[str] = ()
@@ -110,7 +110,6 @@ def peers_left_out(studies: Sequence[str]) -> str:
     studies have no peers."""
     missing = "; ".join(f"{name}: {PEER_NAMES[name]}" for name in studies if name in PEER_NAMES)
     return missing and (
-        f"The peers are left out ({missing}). A checkout of rodsweep contains these peers in the folder "
-        "`"
-        f"{PEER_PACKAGE_NAME}`; give it as `--peers CHECKOUT/{PEER_PACKAGE_NAME}`."
+        f"The peers are left out ({missing}): give their folder, `{PEER_PACKAGE_NAME}` of a checkout of "
+        f"rodsweep, as `--peers CHECKOUT/{PEER_PACKAGE_NAME}`."
     )

@@ -112,8 +112,8 @@ class TimedRuns(NamedTuple, Generic[Outcome]):
 
 
 def race(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> list[TimedRuns[Outcome]]:
-    """Results and times of functions, run in turn, round by round. rounds: number of timed rounds of each
-    function.
+    """Results and times of the functions `runs`, called in turn, round by round. rounds: number of timed
+    rounds of each function.
 
     The first call of a function, which may load and compile code, is timed only if the function has no
     rounds. A function with a short run is called twice in succession and the second call is timed, so that

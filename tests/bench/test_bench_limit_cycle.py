@@ -92,7 +92,7 @@ def test_tables_show_what_failed():
     assert "| a | 1e-05 | failed (ArithmeticError) |" in work_table([failed])
     never = SettlingMethod(50.0, "waiting, a", "", np.nan, np.inf, print, failed=("1e-06", "1e-07"))
     text = settling_table([never], [TimedRuns(None, (1.0,))])
-    assert "waiting, a (fails at 1e-06, 1e-07) |  | not settled" in text
+    assert "waiting, a (fails at 1e-06, 1e-07) |  | not reached" in text
 
 
 @cache
@@ -169,7 +169,7 @@ def test_the_benchmark_times_peers_beside_rodsweep(monkeypatch):
     assert "\n\nA note.\n\n| method |" in study.text
     assert "| failing | 1e-05 | failed (ArithmeticError) |" in study.text
     assert "| double |" in study.text.split("times the default's time")[1]
-    assert "| 50 | waiting, failing (fails at 1e-05, 1e-07) |  | not settled" in study.text
+    assert "| 50 | waiting, failing (fails at 1e-05, 1e-07) |  | not reached" in study.text
     assert "| 50 | waiting, double | 1e-07 |" in study.text
     assert "| 27.43 | waiting, double | 1e-07 | about" in study.text
     assert "| 27.43 | waiting, failing" not in study.text

@@ -16,7 +16,8 @@ from ...solve.motion.time_scheme import TimeScheme
 from ..study import Contender
 
 TIGHT_TOLERANCE = 3e-7
-"""At tolerances of ARKIMEX 5 up to this number, Newton's method needs a smaller tolerance than by default."""
+"""At integrator tolerances up to this number, Newton's method has the tolerance TIGHT_NEWTON_TOLERANCE,
+because the default tolerance would limit the accuracy of ARKIMEX 5."""
 TIGHT_NEWTON_TOLERANCE = 0.03
 """Convergence tolerance of Newton's method divided by the tolerance of the integrator, at integrator
 tolerances up to TIGHT_TOLERANCE."""

@@ -24,7 +24,7 @@ from .tracking import (
 )
 
 NEAR_HOPF_F = 27.43
-"""F at 0.003 above the Hopf point, where a motion approaches the cycle very slowly."""
+"""Force F at a distance of 0.003 above the Hopf point, where a motion approaches the cycle very slowly."""
 SOLVE_NAME = "solve_cycle"
 """Name of rodsweep's `solve_cycle` in the table."""
 WAITING_PREFIX = "waiting, "
@@ -64,7 +64,9 @@ class SettlingMethod:
             "force": self.force,
             "way": self.way + (f" (fails at {', '.join(self.failed)})" if self.failed else ""),
             "tolerance": self.setting,
-            "returns": f"{about}{self.returns:.0f}" if self.settled else f"over {WAITING_PERIODS}",
+            "returns": f"{about}{self.returns:.0f}"
+            if self.settled
+            else f"not reached in {WAITING_PERIODS} periods",
             "milliseconds": f"{about}{1e3 * self.times * timed.median:.0f}" if self.settled else "",
             "error": self.error if self.settled else nan,
         }
@@ -83,8 +85,7 @@ def compare_settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int
 
 
 def settling_table(waits: Sequence[SettlingMethod], raced: Sequence[TimedRuns]) -> str:
-    """Table of the methods that reach the cycle, with returns, times and errors. raced: times of each
-    method."""
+    """Table of the methods `waits`, with returns, times and errors. raced: times of each method."""
     return (
         f"From a start of {START_DEFLECTION:g} L to the limit cycle. Waiting ends when two successive "
         "returns "

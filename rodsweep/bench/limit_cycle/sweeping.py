@@ -150,7 +150,7 @@ def solve_from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
 
 
 def require_cycle(cycle: Cycle) -> Cycle:
-    """The argument `cycle`; raises ArithmeticError unless it is a stable cycle."""
+    """The argument `cycle`; raises ArithmeticError if no stable cycle was found."""
     if cycle.status != CycleStatus.cycle:
         raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")
     return cycle

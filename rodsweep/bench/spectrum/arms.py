@@ -130,13 +130,14 @@ def mesh_of_arm(rod: Rod, order: int) -> ArmMesh:
 
 
 def solve_next_arm(solve: Callable[[Rod, int], Complex], size: int, arms: UnsolvedArms) -> Complex:
-    """Eigenvalues, (modes,), of the next arm by the eigensolver `solve`. size: its second argument, an order
-    or a number of intervals."""
+    """Eigenvalues, (modes,), of the next arm of `arms` by the eigensolver `solve`. size: second argument of
+    `solve`, an order or a number of intervals."""
     return solve(arms.another(), size)
 
 
 def _krylov_schur(rod: Rod, order: int) -> Complex:
-    """Leading eigenvalues, (modes,), of an arm by SLEPc's Krylov-Schur, without Newton's method for D."""
+    """Leading eigenvalues, (modes,), of an arm by SLEPc's Krylov-Schur on elements of the given order,
+    without Newton's method for D."""
     w = arm_solver(mesh_of_arm(rod, order)).solve(rod, ArmProblem(rod).shift, MODE_COUNT, tight=True)
     return leading_eigenvalues(w, MODE_COUNT + 1)
 

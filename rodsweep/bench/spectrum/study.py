@@ -114,7 +114,8 @@ def equal_error_table(
     every: Sequence[Contender], rods: Sequence[Rod], exact: Sequence[list[Any]], target: float, rounds: int
 ) -> str:
     """Times all methods on all rods, each at the smallest size that reaches the error `target`, and returns
-    the table of the methods. exact: exact eigenvalues of each rod."""
+    the table of the methods. every: contenders of all methods, by ascending size. exact: exact eigenvalues of
+    each rod."""
     fit = [cheapest_contenders(every, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
     names = list(dict.fromkeys(contender.method for contender in every))
     runs = {

@@ -82,8 +82,8 @@ def followed_sweeps(place: Path, run: Callable[..., CommandRun], quick: bool) ->
 
 
 def followed_measurement(case: SweepCase, method: str, run: CommandRun) -> Measurement:
-    """Measurement of the run `run` of a sweep: times, number of points solved on a mesh, number of points
-    without certificate, and memory."""
+    """Measurement of the sweep `case` by `method` from its run `run`: times, number of points solved on a
+    mesh, number of points without certificate, and memory."""
     variables = read_view(case.directories[0] / RESULT).variables
     extra = {
         "points": float(case.points),

@@ -28,7 +28,7 @@ ranks."""
 FIRST_RANK_PREFIX = "first"
 """Prefix of the name of the file with the peak memory of the first rank."""
 OTHER_RANKS_PREFIX = "other"
-"""Prefix of the names of the files with the peak memory of each other rank."""
+"""Prefix of the names of the files with the peak memory of the remaining ranks."""
 SOLVED, INSTANT, KILLED = "solved", "instant", "killed"
 """Kinds of solver: the real solver; a solver that returns random results at once; this solver, with a kill of
 the process at the last point."""
@@ -180,8 +180,8 @@ def _start(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> sub
 
 
 def _inside(process: subprocess.Popen[str], kind: str) -> float:
-    """Waits for the command to finish, and returns the time in s that the command printed; nan if it was
-    killed on purpose."""
+    """Waits for the command to finish, and returns the time in s that the command printed; nan if the command
+    was killed on purpose."""
     output, errors = process.communicate()
     said = re.search(r"points? in ([\d.]+) s on", output)
     stopped = said is None or "stopped by" in output

@@ -60,8 +60,8 @@ class ArcPoint:
     """Measured errors of the last cycle with measured errors, from which the errors of this cycle are
     estimated."""
     unmeasured: int = 0
-    """Number of steps since the last cycle with measured errors; 0 if the errors of this cycle were measured.
-    """
+    """Number of steps since the last cycle with measured errors; 0 if the errors of this cycle are
+    measured."""
     arc_since_measured: float = 0.0
     """Arc length of the branch since the last cycle with measured errors."""
     before: PreviousCycle | None = None
@@ -127,7 +127,7 @@ class ArcPoint:
 
     def _taylor(self, before: PreviousCycle) -> Array:
         """Coefficients, (3, N + 1), of the predicting cubic: factors of the arc length, of its square and of
-        its cube."""
+        its cube. before: previous cycle, through which the cubic passes."""
         name = self.scale.name
         mesh = mesh_of(self.orbit)
         last = mesh.carry(before.orbit)
@@ -147,10 +147,10 @@ class ArcPoint:
 
 
 def branch_derivatives(found: ConvergedOrbit, scale: Scale, tangent: Array) -> BranchDerivatives:
-    """Derivatives of a branch at the cycle `found`: its scale and unit tangent. scale: scale of another cycle
-    of the branch. tangent: tangent of any length, (N + 1,).
+    """Scale and unit tangent of a branch at the cycle `found`. scale: scale at another cycle of the branch.
+    tangent: tangent of any length, (N + 1,).
 
-    In the result curvature and multiplier rate are 0; the caller must set both.
+    In the result curvature and multiplier rate are 0, to be set by the caller.
     """
     own = Scale.of(found.orbit, scale.name, scale.min_deflection_unit)
     ahead = own.moved(found.orbit, tangent)
@@ -160,8 +160,7 @@ def branch_derivatives(found: ConvergedOrbit, scale: Scale, tangent: Array) -> B
 
 def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix) -> Array:
     """Tangent of the branch at an orbit, (N + 1,), from the orbit's bordered matrix. side: direction in
-    components (deflection, log period, parameter), (3,); the sign of the tangent is such that their angle is
-    acute."""
+    components (deflection, log period, parameter), (3,); the tangent makes an acute angle with `side`."""
     tangent = matrix.direction(side)
     # A null vector has no sign; the branch must not turn back.
     return tangent if scale.moved(orbit, tangent) @ side > 0 else -tangent
@@ -175,7 +174,7 @@ def next_point(start: ArcPoint, accuracy: float) -> ArcPoint:
 
 
 def cycle_at_length(start: ArcPoint, length: float, accuracy: float) -> ArcPoint:
-    """The cycle at the arc length `length` from `start`; raises Unsolvable if none is found or if the
+    """The cycle at the arc length `length` from `start`; raises Unsolvable if no cycle is found, or if the
     prediction error or the angle is so large that the cycle may lie on another branch."""
     return ARC_STEPS.accepted(_stepped(start, accuracy, length)).solution
 

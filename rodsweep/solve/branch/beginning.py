@@ -79,10 +79,11 @@ class HopfBirth:
 
     @property
     def amplitude_coefficient(self) -> float:
-        """Amplitude coefficient a, in L, of the branch born at the Hopf point with the parameter value p.
+        """Amplitude coefficient a, in L, of the branch that starts at the Hopf point with the parameter value
+        p.
 
-        The cycle at a nearby parameter value p' has a largest tip y of |a| sqrt(|p' - p|/p). The sign of a is
-        that of p' - p: negative if the cycles exist at p' < p.
+        The cycle at a nearby parameter value p' has a largest tip y of |a| sqrt(|p' - p|/p). a < 0 if the
+        cycles exist at p' < p, otherwise a > 0.
         """
         # Along a stiffness the coordinate is 1/k, which falls as the parameter rises.
         turned = -1.0 if Path(self.rod, self.name).inverse else 1.0
@@ -152,7 +153,7 @@ def hopf_as_special_point(hopf: HopfBirth) -> SpecialPoint:
 
 
 def first_cycle(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) -> ArcPoint:
-    """The first cycle of the branch from a Hopf point, to a relative accuracy; raises Unsolvable.
+    """The first cycle of the branch from the Hopf point `hopf`, to a relative accuracy; raises Unsolvable.
 
     workspace: memory of Newton's matrices.
     """

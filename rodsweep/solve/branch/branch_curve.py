@@ -1,5 +1,5 @@
-"""A branch as it is stored: parameter, period, amplitude, errors and multiplier of each cycle, and special
-points."""
+"""A branch as stored in the result file: parameter, period, amplitude, errors and multiplier of each cycle,
+and special points."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -29,7 +29,7 @@ class BranchPoint:
     multiplier: float
     """Modulus of the largest nontrivial Floquet multiplier."""
     unstable_count: int
-    """Number of Floquet multipliers outside the unit circle; -1 if a multiplier lies on the circle within its
+    """Number of Floquet multipliers outside the unit circle; -1 if a multiplier has modulus 1 within its
     error."""
 
     @classmethod
@@ -57,8 +57,8 @@ class BranchPoint:
 
 
 def _margin(point: ArcPoint) -> float:
-    """Error of the modulus of a multiplier near the unit circle. It is the sum of the relative error of the
-    largest multiplier and of a multiple of the error of the trivial multiplier, whose exact value is 1."""
+    """Error of the modulus of a multiplier near the unit circle: relative error of the largest multiplier,
+    plus a multiple of the error of the trivial multiplier, whose exact value is 1."""
     cycle = point.cycle
     relative = cycle.errors.multiplier_error / max(cycle.largest_multiplier, 1.0)
     return relative + REFINEMENT.multiplier_error_factor * cycle.trivial_error

@@ -157,7 +157,7 @@ def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> Bran
 
 def _range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
     """(smallest value, largest value of the parameter without crushing, index of the end at which the rod is
-    crushed, -1 if it is crushed at neither end)."""
+    crushed, -1 if the rod is crushed at neither end)."""
     low = request.start
     high = request.stop
     share = rod.build.relative_crushing_force(rod.taper)
@@ -224,8 +224,8 @@ def _judged(
     found: Transitions, curves: list[BranchCurve], failures: list[str], request: BranchRequest
 ) -> tuple[BranchStatus, str]:
     """(status, message) of all branches of a rod: status of the first problem in the order of `BranchStatus`,
-    and all messages. found: search for Hopf points. failures: messages for Hopf points without a normal form.
-    """
+    and all messages. found: result of the search for Hopf points. failures: messages on Hopf points without a
+    normal form."""
     messages = [
         f"branch {number}: {special.message} at {request.along} = {special.at:.9g}"
         for number, curve in enumerate(curves, 1)

@@ -30,8 +30,8 @@ def _shared_status(status: ThresholdStatus) -> tuple[int, str, bool]:
 
 
 class CoexistenceStatus(PointStatus):
-    """Outcome of a row with cycles: the status of the search for stability changes unless it is ok, otherwise
-    the status of the branches."""
+    """Outcome of a row with cycles: the status of the search for stability changes if this search has a
+    problem, otherwise the status of the branches."""
 
     ok = _shared_status(ThresholdStatus.ok)
     not_certified = _shared_status(ThresholdStatus.not_certified)
@@ -141,9 +141,9 @@ def _undecided(name: str, values: Array) -> str:
 def _judged(
     row: DiagramRow, branches: BranchesOfRod, special: int, undecided: Array
 ) -> tuple[CoexistenceStatus, str]:
-    """(status, message) of a row; a problem in the search for stability changes determines the status before
-    problems of the branches. special: maximum number of stored special points. undecided: parameter values,
-    (n,), at which the stable states are undecided because of the cycles."""
+    """(status, message) of a row: status of the search for stability changes if this search has a problem,
+    otherwise status of the branches. special: maximum number of stored special points. undecided: parameter
+    values, (n,), at which the stable states are undecided because of the cycles."""
     message = "; ".join(filter(None, [row.message, branches.message]))
     # The most serious problem first: without all changes of the straight rod, branches may be missing.
     if row.status is not ThresholdStatus.ok:
@@ -170,8 +170,8 @@ class StabilityInterval:
 
 def stable_cycles_at(values: Array, branches: BranchesOfRod, certify: bool) -> NDArray[np.int8]:
     """Existence of a stable cycle at each parameter value, (values,): 1 if a stable cycle exists, 0 if no
-    branch has a stable cycle, -1 if undecided. certify: whether 0 requires a proof that no Hopf point is
-    missing."""
+    branch has a stable cycle, -1 if undecided. branches: all branches of the row. certify: whether 0 requires
+    a proof that no Hopf point is missing."""
     complete = branches.status in (BranchStatus.ok, BranchStatus.special_undecided)
     known = complete and (branches.proved or not certify)
     found = np.full(len(values), 0 if known else -1, dtype=np.int8)

@@ -167,8 +167,9 @@ class BranchCalibration:
 
 
 def _interpolated(one: Array, other: Array, share: float) -> Array:
-    """Geometric interpolation at the fraction `share` between two arrays of errors of equal shape, times
-    `interpolation_factor`, but at most the larger of the two errors."""
+    """Geometric interpolation between the errors `one` and `other`, arrays of equal shape, at the fraction
+    `share` of the distance from `one`; times `interpolation_factor`, but at most the larger of the two
+    errors."""
     # Errors of a mesh change by factors along a branch, so their logarithms are interpolated.
     logarithms = np.log(np.maximum([one, other], BRANCH_ERRORS.min_error))
     means = np.exp(logarithms[0] + share * (logarithms[1] - logarithms[0]))
@@ -227,8 +228,8 @@ def _difference(
 
 
 def sensitivity_of(path: CyclePath, derivatives: BranchDerivatives) -> float:
-    """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch at the cycle
-    `path`."""
+    """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch at the cycle `path`.
+    derivatives: of the branch at this cycle."""
     orbit: Orbit = path.orbit
     ahead = CyclePath(
         moved_orbit(orbit, derivatives.scale.name, BRANCH_ERRORS.sensitivity_step * derivatives.tangent)

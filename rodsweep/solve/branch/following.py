@@ -114,7 +114,7 @@ def _place_on(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> Solv
 
 
 def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
-    """The end of a branch without cycles, at its first special point."""
+    """The end of a branch without cycles, at its first special point. message: cause of a failure."""
     born = curve.special[0]
     return replace(
         born,
@@ -209,8 +209,8 @@ def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
 
 
 def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """The end of a branch at a Hopf point between two cycles; or `start` with half the step length if its
-    amplitude is too large for an extrapolation to the Hopf point."""
+    """The end of a branch at a Hopf point between two cycles; or `start` with half the step length, if the
+    amplitude of `start` is too large for an extrapolation."""
     shorter = arc_length_between(start, end) / 2
     if start.cycle.measures.tip_y_max > BRANCH_END.max_last_amplitude:
         if shorter < ARC_STEPS.min_length:

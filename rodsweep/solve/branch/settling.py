@@ -53,9 +53,9 @@ def first_measured_cycle(
     """The solved orbit `found` as the first cycle of a branch, with measured errors within the accuracy, on a
     finer mesh if necessary; raises Unsolvable.
 
-    side: direction of the branch in components (deflection, log period, parameter), (3,). born: arc length
-    from the special point where the branch starts; parameter and multipliers are quadratic in this arc
-    length.
+    scale: units of arc length. side: direction of the branch in components (deflection, log period,
+    parameter), (3,). born: arc length from the special point where the branch starts; parameter and
+    multipliers are quadratic in this arc length.
     """
     derivatives = branch_derivatives(
         found, scale, tangent_at(found.orbit, scale, side, bordered_matrix_of(found))

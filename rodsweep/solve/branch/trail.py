@@ -16,7 +16,7 @@ from .special.point import EndReason, SpecialKind, SpecialPoint
 
 def end_point(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialPoint:
     """The special point for the end of a branch at its last cycle `point`; the errors are NaN, to be set by
-    the caller."""
+    the caller. message: cause of a failure."""
     measures = point.cycle.measures
     at = getattr(point.orbit.form.rod, point.scale.name)
     return SpecialPoint(

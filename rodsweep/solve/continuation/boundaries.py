@@ -1,7 +1,7 @@
 """Search for all curves through the seed points on the rows of a parameter plane; each curve is traced only
 once.
 
-The search does not depend on the kind of the curves or on the process that traces them. If the result of a
+The search does not depend on the kind of the curves or on the process that traces a curve. If the result of a
 unit of work (a part of a curve) is missing, the search stops and names this unit. The caller then repeats the
 search with more results.
 """
@@ -31,7 +31,7 @@ class BoundaryProblem(Protocol[Curve]):
         """Distance of the seed point `seed` from a curve, in units of the length of a row."""
 
     def same(self, one: Curve, other: Curve) -> bool:
-        """Whether two curves are identical."""
+        """Whether the curves `one` and `other` are identical."""
 
 
 @dataclass(frozen=True, slots=True)

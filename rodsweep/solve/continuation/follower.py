@@ -81,10 +81,10 @@ class StepControl:
     min_ratio: float = 0.5
     """Smallest ratio of a step length to the length of the previous, accepted step."""
     max_solutions: int = 5000
-    """Maximum number of solutions on a curve; the curve ends there."""
+    """Maximum number of solutions on a curve."""
     min_measured: float = 1e-9
-    """Lower limit of the prediction error, and of the angle in radians, in the choice of a step length; it
-    avoids a division by 0."""
+    """Lower limit of the prediction error, and of the angle in radians, in the choice of a step length; this
+    limit avoids a division by 0."""
 
     def __post_init__(self) -> None:
         if not self.max_ratio > 1:
@@ -161,7 +161,7 @@ def follow_curve(
     report: Callable[[Sequence[Solution]], None],
 ) -> Curve[Solution]:
     """The curve from the solution `start`, in the direction that `problem` chooses. report: function that is
-    called before every step with all solutions so far."""
+    called before every step with all solutions so far. control: step length control."""
     solutions = [start]
     length = control.first_length
     margins = problem.margins(start)

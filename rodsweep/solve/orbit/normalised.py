@@ -3,7 +3,8 @@ point.
 
 The values that change sign under the reflection grow as the square root of the distance from a Hopf point.
 Divided by the size of the orbit these values are smooth; the squared size grows linearly. The size is the
-norm of the bending moment at t = 0, and its definition contains no parameter. N: number of orbit values.
+norm of the bending moment at t = 0, and its definition contains no parameter. N: number of orbit values. r:
+arrays of the normalisation (`reflected`).
 """
 
 from functools import lru_cache

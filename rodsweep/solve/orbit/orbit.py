@@ -38,7 +38,8 @@ class Orbit:
 
     @classmethod
     def of(cls, form: StressForm, symmetry: Symmetry, period: float, states: Array, stages: int) -> "Orbit":
-        """The orbit with the period `period`, in tau2. states: at t = 0 and at all stages, (1 + K s, n)."""
+        """The orbit with the period `period`, in tau2. states: states at t = 0 and at all stages, (1 + K s,
+        n)."""
         values = np.append(states.ravel(), period)
         return cls(form, symmetry, (len(states) - 1) // stages, stages, values)
 

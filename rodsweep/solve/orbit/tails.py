@@ -95,8 +95,8 @@ def _space_coefficients(orbit: Orbit) -> Array:
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def _analysis_on_element(order: int) -> Array:
-    """Matrix, (p + 1, p + 1): a row of values at the nodes of an element times this matrix is the row of
-    Legendre coefficients."""
+    """Matrix, (p + 1, p + 1): a row of values at the nodes of an element of order p times this matrix is the
+    row of Legendre coefficients."""
     return np.ascontiguousarray(legendre_analysis(2 * mesh(1, order).positions - 1).T)
 
 

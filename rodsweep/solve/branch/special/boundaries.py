@@ -98,7 +98,7 @@ class SpecialBoundaries:
 
 @dataclass(frozen=True, slots=True)
 class _TracedCurve:
-    """A curve joined from two halves. distances: of nearby special points, by index, in lengths of a row."""
+    """Curve joined from two halves. distances: of special points near the curve, by index, in row lengths."""
 
     curve: CycleCurve
     distances: Mapping[int, float]

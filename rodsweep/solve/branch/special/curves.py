@@ -188,8 +188,8 @@ class SpecialCurveProblem:
     def located_zero(
         self, behind: Sequence[SolvedPoint], outer: SolvedPoint, margin: int
     ) -> SolvedPoint | None:
-        """The point between `behind[-1]` and `outer` at which the margin number `margin` is 0; None if it is
-        not found. For the margin of the amplitude: `outer`."""
+        """The point between `behind[-1]` and `outer` at which the margin number `margin` is 0; None if no
+        such point is found. For the margin of the amplitude: `outer`."""
         inner = behind[-1]
         if END_BY_MARGIN[margin] is CurveEnd.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated

@@ -17,18 +17,18 @@ from .point import SpecialKind
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CurveIdentitySettings:
-    """Tolerances for deciding whether a special point lies on a known curve, and whether two curves are
+    """Settings of two tests: whether a special point lies on a curve, and whether two curves are
     identical."""
 
     max_distance: float = 1e-6
     """A special point of a row lies on a curve if its distance from the curve is at most this fraction of the
     length of a row."""
     max_chord_distance: float = 0.1
-    """A special point can lie on the arc between two points of a curve only if its distance from the interval
-    between them along the row is at most this fraction of the length of a row."""
+    """A special point can lie on the arc between two points of a curve only if its distance, along the row,
+    from the interval of these two points is at most this fraction of the length of a row."""
     max_period_change: float = 0.1
-    """A special point can lie on the arc between two points of a curve only if its period differs from the
-    interval of their periods by at most this fraction."""
+    """A special point can lie on the arc between two points of a curve only if its period is within the
+    interval of the two points' periods, extended by this fraction."""
     max_period_difference: float = 1e-4
     """Largest relative difference between the periods of two solutions for the same cycle."""
     max_end_distance: float = 1e-4

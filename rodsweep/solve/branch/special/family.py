@@ -61,7 +61,8 @@ class CycleFamily:
     def about(
         cls, kind: SpecialKind, rows: PlaneAxis, point: SolvedPoint, workspace: NewtonWorkspace
     ) -> "CycleFamily":
-        """The family of the cycles near the point `point` of a curve of special points."""
+        """The family of the cycles near the point `point` of a curve of special points. Other arguments as in
+        the class."""
         small = kind == SpecialKind.fold and point.tip_y_max < ACROSS_CURVE.small_fold_cycle
         return cls(kind, rows, point.scale, point.ahead, small, workspace)
 
@@ -161,7 +162,7 @@ class _SecantAcross:
         self.before: _CycleAcross | None = None
         self.length = float(family.border @ family.scale.components(start))
         self.trusted = ACROSS_CURVE.max_linear_step if same else ACROSS_CURVE.max_carried_step
-        """Longest last secant step while the derivatives do not come from two cycles of this search."""
+        """Longest last secant step until the derivatives are computed from two cycles of this search."""
         contraction = rates.contraction if rates and not family.small else inf
         self.near = NearbyCycleSolver(family, self.orbit, contraction)
 
@@ -223,11 +224,12 @@ class _SecantAcross:
         )
 
     def _moved(self, step: float, rates: NormalDerivatives) -> Orbit:
-        """The last cycle moved linearly by a step across the curve."""
+        """The last cycle, moved by `step` across the curve along the derivatives `rates`."""
         return moved_orbit(self.orbit, self.family.scale.name, step * rates.on(self.orbit))
 
     def _point(self, step: float, rates: NormalDerivatives) -> SolvedPoint:
-        """The point of the curve: the last cycle moved linearly by a short step across the curve."""
+        """The point of the curve: the last cycle, moved by the short step `step` across the curve along the
+        derivatives `rates`."""
         family = self.family
         matrix = self.near.matrix
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)

@@ -161,7 +161,7 @@ def _point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
 
 def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) -> SpecialPoint:
     """A special point that could not be located between the cycles `start` and `end`: values at `end`, with
-    the differences between the two cycles as errors."""
+    the differences between the two cycles as errors. message: cause of the failure."""
     name = start.scale.name
     measures = end.cycle.measures
     before = start.cycle.measures
@@ -203,7 +203,8 @@ def _zero(
     kind: SpecialKind, segment: BranchSegment, guess: float, slope: float
 ) -> tuple[float, Orbit, float]:
     """(arc length of the zero of the test function near `guess`, cycle at this zero, slope of the test
-    function), by the secant method; raises Unsolvable. slope: approximate slope, for the first step."""
+    function), by the secant method on `segment`; raises Unsolvable. slope: approximate slope, for the first
+    step."""
     linear = (
         SPECIAL_POINT.max_linear_step_at_fold if kind == SpecialKind.fold else SPECIAL_POINT.max_linear_step
     )

@@ -157,8 +157,8 @@ class SolvedPoint:
         return np.append(moved, self.place - other.place)
 
     def across(self, step: Array) -> Array:
-        """Unit normal of the curve, (2,), in components (along the branch, along the rows' axis); it is
-        perpendicular to the step along the curve `step`, (4,)."""
+        """Unit normal of the curve, (2,), in components (along the branch, along the rows' axis);
+        perpendicular to `step`, (4,), a step along the curve."""
         way = np.array([float(self.ahead @ step[:3]), step[3]])
         # Rotated by a right angle, so that the correction does not move along the curve.
         return np.array([-way[1], way[0]]) / np.linalg.norm(way)
@@ -207,7 +207,7 @@ def arc_lengths(points: Sequence[SolvedPoint]) -> Array:
 
 
 def chord_slope(one: SolvedPoint, other: SolvedPoint) -> float:
-    """Slope of the chord between two points of a curve: change of the parameter along a row, divided by the
-    change of the rows' axis coordinate; 0 if the axis coordinates are equal."""
+    """Slope of the chord between two points of a curve: difference of the parameter along a row, divided by
+    the difference of the rows' axis coordinate; 0 if the axis coordinates are equal."""
     apart = other.place - one.place
     return (other.at - one.at) / apart if apart else 0.0

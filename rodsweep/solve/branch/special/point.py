@@ -49,7 +49,7 @@ class SpecialPointSettings:
     """Relative tolerance of the bracketing: for the test function, divided by its smaller modulus at the two
     ends; for the arc length, divided by the step."""
     max_mesh_pairs: int = 4
-    """Maximum number of comparisons of two meshes."""
+    """Maximum number of comparisons of a special point on two successive meshes."""
     min_more_orders: int = 2
     """Smallest increase of the order of the elements on the next finer mesh."""
     max_more_orders: int = 8

@@ -32,8 +32,8 @@ def eliminate(
     """Eliminates Newton's matrix at `points`, (1 + K s, n), writes it into `factors`, and returns the changes
     of the end of the last interval by the right-hand sides for a fixed start, (columns, n).
 
-    V: velocities of the stages, (K, s, 3, nodes + 1). duration: length of all intervals, in tau2. columns:
-    right-hand sides, (K, s, columns, n), which are reduced in place.
+    V: velocities of the stages, (K, s, 3, nodes + 1). duration: total length of the intervals, in tau2.
+    columns: right-hand sides, (K, s, columns, n), which are reduced in place.
     """
     K = columns.shape[0]
     s = columns.shape[1]

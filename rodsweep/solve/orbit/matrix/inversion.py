@@ -20,7 +20,7 @@ class InversionSettings(CompiledSettings):
     """Number of columns of a panel: `invert` eliminates these columns one by one, then one product updates
     all other columns."""
     min_pivot: float = 0.1
-    """A pivot is exchanged for the largest entry of its column if it is smaller than this number times that
+    """A pivot is exchanged for the largest entry of its column if |pivot| is less than this number times this
     entry."""
     rows_in_cache: int = 8
     """Number of rows of all blocks that are updated together, so that these rows fit into the first-level
@@ -65,8 +65,8 @@ def invert(A: Array, pivots: Any, rows: Array) -> None:
 
 @compiled_for_vectors
 def _sweep_panel(A: Array, first: int, last: int, pivots: Any) -> None:
-    """Gauss-Jordan steps with the columns from `first` to `last` - 1 as pivot columns, applied to these
-    columns only."""
+    """Gauss-Jordan steps on A, (n, n), with the pivot columns `first` to `last` - 1, applied in place to
+    these columns only. pivots: output, index of the column exchanged with each column, (n,)."""
     n = len(A)
     for k in range(first, last):
         row = A[k]

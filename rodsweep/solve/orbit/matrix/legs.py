@@ -96,8 +96,8 @@ class Legs:
 
 
 def legs_of(factors: Factors, mass: Array) -> Legs:
-    """The legs of an orbit from its eliminated matrix: each leg is as long as the norm of its map is at most
-    `LEGS.max_growth`. mass: diagonal of M, (n,)."""
+    """The legs of an orbit, from its eliminated matrix. Time intervals are joined to a leg as long as the
+    norm of the leg's map is at most `LEGS.max_growth`. mass: diagonal of M, (n,)."""
     blocks = factors.blocks
     if not np.linalg.norm(factors.propagator) > LEGS.max_growth:  # also true for nan
         return Legs((0, len(blocks)), factors.propagator[None])

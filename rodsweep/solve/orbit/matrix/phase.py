@@ -1,7 +1,7 @@
 """Phase condition of an orbit in the plane, compiled: at t = 0 the tip's y is at an extremum.
 
 The velocity of the tip is computed from the reaction at the tip, which converges twice as fast as the
-velocity field.
+velocity field. c, m: nodal values of the rod and matrices of its mesh.
 """
 
 import numpy as np

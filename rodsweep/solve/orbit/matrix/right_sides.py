@@ -63,8 +63,8 @@ def equations_change(x: Array, F: Array, V: Array, out: Array, change: NodalChan
 def residuals(points: Array, duration: float, p: Semidiscrete, out: Array) -> None:
     """Writes the residuals h F(x_i) - sum_j d_ij M x_j of all stages into `out`, (K, s, n).
 
-    points: state at the start and states of all stages, in order, (1 + K s, n). duration: length of all
-    intervals.
+    points: state at the start and states of all stages, in order, (1 + K s, n). duration: total length of the
+    intervals, in tau2.
     """
     K, s, n = out.shape
     size = len(p.matrices.weights)

@@ -33,15 +33,15 @@ class AugmentedSettings:
     curve of special points; the estimate is the test function divided by its slope."""
     min_contraction: float = 10.0
     """Lower limit of the assumed contraction rate: the ratio of successive corrections, divided by the
-    relative distance from the cycle of the matrix. The measured rate is 2 or 3 for large cycles; a larger
-    assumed rate is safe."""
+    relative distance of the cycle from the orbit at which the matrix was assembled. The measured rate is 2 or
+    3 for large cycles; a larger assumed rate is safe."""
     contraction_safety: float = 3.0
     """The contraction rate assumed for the next cycle is the measured rate times this factor."""
     max_correction_ratio: float = 0.3
     """A new matrix is assembled if the ratio of the sizes of successive corrections exceeds this number."""
     rounding_correction: float = 1e-8
     """The iteration stops if a correction has at most this relative size and is hardly smaller than the
-    correction before: it is then rounding error."""
+    previous correction: the correction is then rounding error."""
     max_corrections: int = 30
     """Maximum number of corrections of one cycle."""
     inverse_shift: float = 1e-9
@@ -124,8 +124,8 @@ class TorusFunction:
         return abs(self.multiplier) - 1
 
     def start_from(self, parts: Array) -> None:
-        """Sets the approximate eigenvector, as real and imaginary part, (2, N + 1), that the next call of
-        `correct` improves."""
+        """Sets the approximate eigenvector that the next call of `correct` improves. parts: real and
+        imaginary part, (2, N + 1)."""
         self.vectors = parts
 
     def correct(self, orbit: Orbit) -> None:

@@ -48,8 +48,9 @@ class NearbyCycleSolver:
         self.border = family.border
         self._family = family
         self.contraction = contraction
-        """Assumed contraction rate: ratio of successive corrections, divided by the relative distance from
-        the cycle of the matrix. Each solution of a cycle updates the rate unless the family is `small`."""
+        """Assumed contraction rate: ratio of successive corrections, divided by the relative distance of the
+        cycle from the orbit of the matrix. Each solution of a cycle updates the rate unless the family is
+        `small`."""
         self._eliminate(start)
 
     def _eliminate(self, orbit: Orbit) -> None:
@@ -98,8 +99,8 @@ class NearbyCycleSolver:
         raise Unsolvable(f"Newton's corrections of a cycle do not converge; the last step is {change:.0e}")
 
     def _corrected(self, orbit: Orbit, condition: BorderCondition) -> tuple[Orbit, float]:
-        """(orbit after one correction with the present matrix, relative change of the orbit); raises
-        Unsolvable."""
+        """(orbit after one correction under `condition` with the present matrix, relative change of the
+        orbit); raises Unsolvable."""
         step = self.matrix.correction(orbit, self.border, condition.residual(orbit))
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
         if not change <= ORBIT_NEWTON.longest_step:
