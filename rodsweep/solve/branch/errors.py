@@ -84,8 +84,8 @@ class BranchDerivatives:
         if self.rate**2 >= 4 * abs(self.curvature * off):
             return off / self.rate
         way = np.copysign(1.0, off * self.rate)
-        # At a fold off is quadratic in the length: rate s + curvature s^2/2 = off; the root is bounded from
-        # above.
+        # At a fold `off` is quadratic in the length s: rate s + curvature s^2/2 = off. This is an upper bound
+        # of the root.
         return float(way * 2 * (abs(off) / max(abs(self.curvature), EXPONENTS.least_divisor)) ** 0.5)
 
 

@@ -64,7 +64,7 @@ class OrbitMeans(NamedTuple):
 @compiled_for_vectors
 def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> TipPath:
     """Path of the tip. states: states at equidistant times of the solved part of the period, (K, n): half the
-    period for a symmetric orbit, otherwise the period. period: in tau2."""
+    period for a symmetric orbit, otherwise the period. period: in tau2. m: from `tip_matrices`."""
     size = len(p.matrices.weights)
     order = len(m.ends) - 1
     strains = np.empty((2, 3, len(states), len(m.lengths) * (order + 1)))

@@ -133,9 +133,9 @@ def jump_of(points: Array, p: Semidiscrete) -> Array:
 
 @compiled_for_vectors
 def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, factors: Factors) -> Array:
-    """Steps, (columns, N). rights: right-hand sides of the closing and phase conditions, (columns, n + 1).
-    by_period: reduced derivative of the stage residuals by the period, (K, s, n). columns: reduced right-hand
-    sides of the stages, (K, s, columns, n)."""
+    """Changes of the orbit values, (columns, N). rights: right-hand sides of the closing and phase
+    conditions, (columns, n + 1). by_period: reduced derivative of the stage residuals by the period, (K, s,
+    n). columns: reduced right-hand sides of the stages, (K, s, columns, n)."""
     K, s, count, n = columns.shape
     found = np.zeros((count, n + 1))
     for m in range(count):

@@ -53,7 +53,7 @@ def _eigenvalues_by_rank(A: Array, negligible: float) -> Complex:
 
 @compiled_for_vectors
 def compressed(A: Array, negligible: float) -> Array:
-    """Matrix R Q, (rank, rank), with the nonzero eigenvalues of A, (n, n), in which small columns are
+    """Matrix R Q, (rank, rank), with the nonzero eigenvalues of A = Q R, (n, n), after small columns are
     neglected.
 
     negligible: limit of the norm of a neglected column, divided by the largest column norm of A.

@@ -16,8 +16,8 @@ from .workspace import Factors
 @compiled_for_vectors
 def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
     """Reduces the right-hand sides of one interval, (s, columns, n), in place. The right-hand sides of the
-    first two stages are unchanged; the last stage's becomes the change of the interval's end for a fixed
-    start."""
+    first two stages are unchanged. The right-hand side of the last stage becomes the change of the interval's
+    end for a fixed start."""
     s, count, n = columns.shape
     d = p.differentiation
     mass = p.mass
