@@ -40,8 +40,8 @@ fails."""
 class IntegratorFamily:
     """An integrator with its tolerances, from the loosest.
 
-    tolerances: of the runs that follow a cycle. waiting: of the runs that integrate until the motion is
-    periodic; empty if the integrator has no such runs.
+    tolerances: tolerances of the runs that follow a cycle. waiting: tolerances of the runs until the motion
+    is periodic; empty if the integrator has no such runs.
     """
 
     name: str

@@ -15,9 +15,10 @@ class BranchWorkSettings:
     """Exponents of the model of the computing time, fitted to measured times."""
 
     distance_exponent: float = 0.75
-    """Exponent of d/D in the fraction of the computing time of one branch."""
+    """Exponent of the relative distance d/D from the Hopf point in the fraction of the computing time of one
+    branch."""
     length_exponent: float = 0.5
-    """Exponent of D in the computing time of one branch."""
+    """Exponent of the length D of a branch in the computing time of this branch."""
 
 
 BRANCH_WORK = BranchWorkSettings()

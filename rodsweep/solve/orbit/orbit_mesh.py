@@ -46,11 +46,11 @@ class OrbitMeshSettings:
     fewest_stages: int = 3
     """Number of collocation stages at accuracies above the largest of `stage_accuracies`."""
     max_more_orders: int = 12
-    """Largest increase of the element order in one choice of a mesh; tails at higher orders are extrapolated
-    too far."""
+    """Largest increase of the element order in one choice of a mesh; the tail cannot be extrapolated to
+    higher orders."""
     max_interval_ratio: int = 4
-    """Largest ratio of the new number of time intervals to the present number; tails at larger ratios are
-    extrapolated too far."""
+    """Largest ratio of the new number of time intervals to the present number; the tail cannot be
+    extrapolated to larger ratios."""
     more_intervals: float = 1.2
     """Factor on the number of time intervals if the mesh chosen from the tails is not finer than the present
     mesh."""
