@@ -1,9 +1,10 @@
-"""Lets one thread of this process solve at a time, and runs signal handlers only where a solver reports
+"""Lets one thread of this process solve at a time, and delays signal handlers until a solver reports
 progress.
 
-PETSc, the pooled solvers, HDF5 and matplotlib may be used by one thread at a time. A handler that raises, as
-the handler of Ctrl-C does, does harm anywhere else: while compiled code calls Python to make a NamedTuple of
-results, the process ends with a segmentation fault, and pydantic replaces the exception by a different one.
+PETSc, the pooled solvers, HDF5 and matplotlib may be used by one thread at a time. A signal handler that
+raises an exception, for example on Ctrl-C, must not run at other times: if compiled code is calling Python to
+make a NamedTuple of results, the process ends with a segmentation fault, and pydantic replaces the exception
+by a different exception.
 """
 
 import inspect
@@ -29,7 +30,7 @@ _signals = tuple(map(int, signal.valid_signals()))
 
 
 def one_at_a_time(function: Callable[P, R]) -> Callable[P, R]:
-    """Decorator: `function` waits until no other thread executes a function with this decorator."""
+    """Decorator: a call of `function` waits until no other thread executes a function with this decorator."""
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
@@ -40,7 +41,8 @@ def one_at_a_time(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def signals_held(function: Callable[P, R]) -> Callable[P, R]:
-    """Decorator: signal handlers run only at the solvers' progress reports, or when `function` ends."""
+    """Decorator: while `function` runs, signal handlers run only at the solvers' progress reports; the
+    handlers of the remaining signals run when `function` ends."""
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
@@ -51,9 +53,9 @@ def signals_held(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def solving(function: Callable[P, R]) -> Callable[P, R]:
-    """Decorator for a solve: `one_at_a_time` and `signals_held`.
+    """Decorator for a solve: combines `one_at_a_time` and `signals_held`.
 
-    An exception destroys all pooled solvers, because it may have interrupted a solver at work.
+    An exception destroys all pooled solvers, because the exception may have interrupted a solver at work.
     """
 
     @wraps(function)
@@ -70,7 +72,7 @@ def solving(function: Callable[P, R]) -> Callable[P, R]:
 class HeldSignals:
     """Context in which Python's signal handlers wait for the next progress report or the end of the context.
 
-    Python runs signal handlers in the main thread only; in other threads the context does nothing.
+    Python runs signal handlers in the main thread only; in another thread the context has no effect.
     """
 
     def __init__(self) -> None:
@@ -96,8 +98,8 @@ class HeldSignals:
         self._call_handlers()
 
     def call_due(self, _: MakePosition) -> None:
-        """Calls the handlers of the signals that arrived since the last call; a handler's exception is
-        raised."""
+        """Calls the handlers of the signals that arrived since the last call; passes on an exception of a
+        handler."""
         if self._due and current_thread() is main_thread():
             self._call_handlers()
 

@@ -1,8 +1,8 @@
-"""Compiled functions that not every run calls, compiled at the installation.
+"""Compiled functions that only some runs call, compiled at the installation.
 
-A run loads what every point needs by the functions `warm_up` of the solvers. The first branch with a fold,
-the first spectra between which a rod loses its stability, and the first arm that varies along its length
-would wait for the functions below, up to 40 s.
+The functions that every run calls are loaded by the functions `warm_up` of the solvers. Without this module,
+the first branch with a fold, the first spectra between which a rod loses its stability, and the first arm
+that varies along its length would wait up to 40 s for the compiler.
 """
 
 import numpy as np
@@ -36,9 +36,9 @@ SAMPLE_SEGMENTS = Rod(
 )
 SAMPLE_ACCURACY = 1e-4
 SAMPLE_INTERVALS = 2
-"""Number of intervals in time, the smallest for which an orbit has a mesh."""
+"""Number of time intervals of the sample orbit: the smallest number for which an orbit has a mesh."""
 SAMPLE_STAGES = 3
-"""Number of stages of an interval, for which the functions are not compiled anew."""
+"""Number of collocation stages per interval of the sample orbit; other numbers need no new compilation."""
 
 
 def warm_up() -> None:
@@ -48,7 +48,7 @@ def warm_up() -> None:
 
 
 def warm_up_arms() -> None:
-    """Solves spectra along a sweep, thresholds and a cycle of arms that vary along their length."""
+    """Solves spectra along a sweep, stability changes and a cycle of arms that vary along their length."""
     path = Path(SAMPLE_CONE, "F")
     spectra = SpectrumRequest(2, SAMPLE_ACCURACY, certify=True)
     solve_stretch(Stretch(path, np.linspace(SAMPLE_CONE.F, 1.2 * SAMPLE_CONE.F, 12)), spectra)
@@ -59,7 +59,8 @@ def warm_up_arms() -> None:
 
 
 def warm_up_uniform() -> None:
-    """Calls each function with arrays of the types that runs have, and of values without a meaning."""
+    """Calls each function with arguments of the types used in runs; the values of the arguments have no
+    meaning."""
     w = np.ones((1, 2), dtype=complex)
     stability_change_between((SAMPLE_ROD.coefficients, SAMPLE_ROD.direction("F")), (1.0, 2.0), -w[0], w[0], 2)
     widest_gap(Track(w, w, np.zeros((1, 2)), np.zeros((1, 2), np.int64)), 0, 1)

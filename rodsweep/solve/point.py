@@ -15,11 +15,12 @@ Outcome = TypeVar("Outcome", bound=Any)
 
 
 class Unsolvable(Exception):
-    """The model or the numerical method has no solution for a rod; the message says why."""
+    """The rod has no solution in the model, or the numerical method finds none; the message states the
+    cause."""
 
 
 FAILURES = (*PETSC_ERRORS, Unsolvable, ArithmeticError, MemoryError, np.linalg.LinAlgError)
-"""Exceptions that count as a failed solve; any other exception is a bug and ends the run."""
+"""Exceptions that are treated as a failed solve; any other exception is a bug and ends the run."""
 
 
 def solved(
@@ -27,8 +28,8 @@ def solved(
     failed: Callable[[str], Outcome],
     more_failures: tuple[type[Exception], ...] = (),
 ) -> Outcome:
-    """Result of `solve()`, or `failed(cause)` after an exception in `FAILURES` or `more_failures`. `seconds`
-    is set to the duration."""
+    """Result of `solve()`, or of `failed(cause)` after an exception in `FAILURES` or `more_failures`; the
+    field `seconds` is set to the duration."""
     started = time.perf_counter()
     try:
         with np.errstate(all="ignore"):
@@ -40,6 +41,7 @@ def solved(
 
 
 def cause_of(error: BaseException) -> str:
-    """Last line of the message of `error`; PETSc writes the cause there."""
+    """Last line of the message of `error`, or of the exception that caused `error`; PETSc writes the cause in
+    the last line."""
     cause = error.__cause__ or error
     return (str(cause) or type(cause).__name__).splitlines()[-1]

@@ -179,5 +179,5 @@ def test_deleted_working_directory_is_told_in_a_sentence(command):
     place = os.pathsep.join([str(command.directory / "patch"), os.environ.get("PYTHONPATH", "")])
     done = there.afresh("run", path, PYTHONPATH=place)
     assert (done.returncode, done.stderr) == (
-        3, "rodsweep: the working directory was deleted; change into one that exists\n",
+        3, "rodsweep: the working directory was deleted; change to an existing directory\n",
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Checks that PETSc can start in this process, without starting PETSc, which is collective over all ranks."""
+"""Tests whether PETSc can start in this process, without starting PETSc: a start involves all MPI ranks."""
 
 import os
 
@@ -7,18 +7,19 @@ from .debian import add_debian_modules, is_found
 
 
 def require_directory() -> None:
-    """Raises EnvironmentIncomplete if the working directory was deleted: MPI and PETSc need the directory to
-    start."""
+    """Raises EnvironmentIncomplete if the working directory was deleted: MPI and PETSc cannot start without a
+    working directory."""
     try:
         os.getcwd()
     except FileNotFoundError:
         raise EnvironmentIncomplete(
-            "the working directory was deleted; change into one that exists"
+            "the working directory was deleted; change to an existing directory"
         ) from None
 
 
 def require_solvers() -> None:
-    """Raises EnvironmentIncomplete if PETSc cannot start, InputError if numba's compiler is switched off."""
+    """Raises EnvironmentIncomplete if petsc4py or slepc4py is not found or the working directory was deleted,
+    InputError if numba's compiler is switched off."""
     import numba
 
     if numba.config.DISABLE_JIT:

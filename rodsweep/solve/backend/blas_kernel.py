@@ -1,7 +1,7 @@
-"""The BLAS libraries of this process, and the kernel of each.
+"""Names of the BLAS libraries of this process and of their kernels.
 
 A library such as OpenBLAS has a kernel for every kind of processor, and chooses a kernel at start. Kernels
-sum in different orders, so results of two kernels agree only within rounding. PETSc and NumPy may use
+sum in different orders, so the results of two kernels agree only within rounding. PETSc and NumPy may use
 different libraries.
 """
 
@@ -16,7 +16,8 @@ UNKNOWN_LIBRARY = "unknown"
 
 
 def blas() -> str:
-    """One line with name, version and kernel of PETSc's BLAS, and of NumPy's BLAS if the two differ."""
+    """One line with name, version and kernel of PETSc's BLAS library, and of NumPy's BLAS library if the two
+    differ."""
     found: dict[str, set[str]] = {"PETSc": set(), "NumPy": set(), "SciPy": set()}
     for library in threadpool_info():
         if library["user_api"] == "blas":
@@ -29,7 +30,8 @@ def blas() -> str:
 
 
 def _owner(path: str) -> str:
-    """Package that brought the library at `path`: NumPy, SciPy, or else PETSc (the system's library)."""
+    """Package to which the library at `path` belongs: NumPy, SciPy, or else PETSc (a library of the
+    system)."""
     names = {part.removesuffix(".libs") for part in Path(path).parts}
     wheels = (owner for owner in ("NumPy", "SciPy") if owner.lower() in names)
     return next(wheels, "PETSc")

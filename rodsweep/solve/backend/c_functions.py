@@ -1,7 +1,7 @@
-"""Links compiled code and libpetsc: callbacks made by numba, PETSc's functions for compiled code, arrays at
-memory addresses.
+"""Connects compiled code with libpetsc: C callbacks compiled by numba, PETSc's functions for compiled code,
+and arrays at memory addresses.
 
-The module has no knowledge of the rod.
+The module contains nothing about the rod.
 """
 
 import ctypes
@@ -38,21 +38,21 @@ INT = types.int32 if PETSc.IntType == np.int32 else types.int64
 
 
 def c_function(*arguments: Any) -> Callable[[Callable], Any]:
-    """Decorator that compiles a function with argument types `arguments` for calls from C. The function
-    returns PETSc's error code, 0 for success."""
+    """Decorator that compiles a function for calls from C. arguments: numba types of the function's
+    arguments. The function must return PETSc's error code, 0 for success."""
     return partial(c_callback, signature=types.int32(*arguments))
 
 
 def petsc_function(name: str) -> Any:
-    """The libpetsc function `int name(object, array*)` for compiled code. Code with this function can be
-    cached on disk, code with a ctypes function cannot.
+    """The libpetsc function `int name(object, array*)` for compiled code. Compiled code that calls a function
+    of this type can be cached on disk; code that calls a ctypes function cannot.
     """
     return types.ExternalFunction(name, typing.signature(types.int32, POINTER, POINTER))
 
 
 @intrinsic
 def pointer(context: Any, address: Any) -> Any:
-    """The integer `address` as a void pointer, in compiled code."""
+    """Converts the integer `address` to a void pointer, in compiled code."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.inttoptr(arguments[0], context.get_value_type(types.voidptr))
@@ -67,8 +67,8 @@ def floats(address: int, size: int) -> Any:
 
 @compiled
 def floats_in(address: int, shape: Any) -> Any:
-    """Array of doubles at `address`, of the given `shape`. `floats(...).reshape` would take as long as the
-    evaluation of f for a rod with ten nodes."""
+    """Array of doubles at the memory address `address`, of the given `shape`. `floats(...).reshape` would
+    take as long as the evaluation of f for a rod with ten nodes."""
     return numba.carray(pointer(address), shape, np.float64)
 
 
@@ -79,12 +79,13 @@ def integers(address: int, size: int) -> Any:
 
 @compiled
 def record_at(address: int, dtype: Any) -> Any:
-    """The record of type `dtype` at `address`; an assignment to a field writes to the memory there."""
+    """The record of NumPy type `dtype` at the memory address `address`; an assignment to a field writes to
+    this memory."""
     return numba.carray(pointer(address), (1,), dtype)[0]
 
 
 def call(name: str, *arguments: int) -> None:
-    """Calls the libpetsc function `name`, which takes only pointers; raises RuntimeError if its error code is
-    not 0."""
+    """Calls the libpetsc function `name` with pointers `arguments`; raises RuntimeError if the returned error
+    code is not 0."""
     if getattr(LIBRARY, name)(*map(ctypes.c_void_p, arguments)):
         raise RuntimeError(f"the PETSc function {name} failed")

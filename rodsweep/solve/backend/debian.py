@@ -15,9 +15,10 @@ LIBRARIES = Path("/usr/lib")
 
 
 def add_debian_modules(libraries: Path = LIBRARIES) -> None:
-    """Appends the directories of Debian's newest petsc4py and slepc4py for real numbers to `sys.path`.
+    """Appends to `sys.path` the directories of Debian's newest petsc4py and slepc4py built for real numbers.
 
-    Nothing is appended for a module that Python already finds, or where PETSC_DIR or SLEPC_DIR is set.
+    Nothing is appended for a module that Python already finds, or if the module's variable PETSC_DIR or
+    SLEPC_DIR is set.
     """
     for name in ("petsc", "slepc"):
         if f"{name.upper()}_DIR" in os.environ or is_found(f"{name}4py"):
@@ -27,14 +28,14 @@ def add_debian_modules(libraries: Path = LIBRARIES) -> None:
 
 
 def is_found(module: str) -> bool:
-    """Whether Python finds the module named `module`; the module is not imported."""
+    """Whether Python finds the module named `module`, tested without an import."""
     try:
         return find_spec(module) is not None
-    except (ImportError, ValueError):  # a module that was set to None, as the tests do
+    except (ImportError, ValueError):  # the tests set the module to None
         return False
 
 
 def _version(directory: Path) -> list[int]:
-    """Version numbers, [3, 18], of a path such as
+    """Version numbers in the name of the third parent directory: [3, 18] for
     petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages."""
     return [int(number) for number in re.findall(r"\d+", directory.parents[3].name)]

@@ -1,6 +1,6 @@
 """Pools of PETSc and SLEPc solvers that are reused from point to point and destroyed when replaced.
 
-Python's garbage collection would not free PETSc objects: petsc4py only sets collected objects aside.
+Python's garbage collection would not free PETSc objects: petsc4py only puts collected objects on a list.
 """
 
 from collections import OrderedDict
@@ -15,15 +15,15 @@ class KeptSettings:
     """Memory limit of a pool."""
 
     max_bytes: int = 100_000_000
-    """Memory, in bytes, above which a pool destroys objects before it creates another: dozens of solvers for
-    a few modes, or three solvers for 300 modes."""
+    """If the objects of a pool use more memory than this, in bytes, the pool destroys objects before it
+    creates the next: enough for dozens of solvers for a few modes, or three solvers for 300 modes."""
 
 
 KEPT = KeptSettings()
 
 
 class Destroyable(Protocol):
-    """An object for an `LruPool`: `destroy` frees its memory, `kept_bytes` estimates this memory."""
+    """An object for an `LruPool`: `destroy` frees the object's memory, `kept_bytes` estimates this memory."""
 
     @property
     def kept_bytes(self) -> int:
@@ -59,7 +59,7 @@ class LruPool(Generic[Key, Object]):
 
     def get(self, key: Key) -> Object:
         """The object for `key`, created if the pool has none; a later call with a different key may destroy
-        it."""
+        this object."""
         if key not in self._objects:
             while len(self._objects) >= self._limit or self.kept_bytes > KEPT.max_bytes:
                 self._objects.popitem(last=False)[1].destroy()
@@ -82,6 +82,7 @@ _pools: WeakSet[LruPool[Any, Any]] = WeakSet()
 
 
 def forget_all() -> None:
-    """Destroys the objects of all pools, after an exception in a solve, which may leave objects unusable."""
+    """Destroys the objects of all pools; called after an exception in a solve, which may leave objects
+    unusable."""
     for pool in list(_pools):
         pool.clear()

@@ -1,4 +1,5 @@
-"""Starts PETSc and SLEPc on import; reports the versions, options and sparse solvers of this installation."""
+"""Starts PETSc and SLEPc on import; reports versions, user options and the sparse solver of this
+installation."""
 
 from functools import cache
 
@@ -21,17 +22,17 @@ except (ImportError, ValueError) as error:  # ValueError: compiled for another N
 __all__ = ["PETSC_ERRORS", "PETSc", "SLEPc", "options", "sparse_package", "versions"]
 
 PETSC_ERRORS = (PETSc.Error, SystemError)
-"""Exceptions that a failure inside PETSc raises; some releases of petsc4py wrap a PETSc.Error into a
+"""Exceptions that a failure inside PETSc raises; some releases of petsc4py wrap a PETSc.Error in a
 SystemError."""
 
 SPARSE_PACKAGES = ("superlu", "umfpack", "klu", "mumps")
 """Names of PETSc's sparse LU packages with pivoting, the fastest first, as measured on the rod's matrices.
-PETSc's own LU has no pivoting."""
+PETSc's built-in LU has no pivoting."""
 
 
 @cache
 def sparse_package() -> str | None:
-    """First package in SPARSE_PACKAGES with which PETSc was built; None if PETSc has no such package."""
+    """First package in SPARSE_PACKAGES that this PETSc was built with; None if PETSc has no such package."""
     for name in SPARSE_PACKAGES:
         if PETSc.Sys.hasExternalPackage({"umfpack": "suitesparse", "klu": "suitesparse"}.get(name, name)):
             return name
@@ -49,7 +50,7 @@ def versions() -> dict[str, str]:
 
 
 def options(prefix: str = "") -> str:
-    """One line with the user's PETSc options whose names begin with `prefix`, from PETSC_OPTIONS or a
+    """One line with the user's PETSc options whose names begin with `prefix`, as set in PETSC_OPTIONS or a
     resource file."""
     given = sorted((k, v) for k, v in PETSc.Options().getAll().items() if k != "no_signal_handler")
     return " ".join(f"-{k} {v or ''}".strip() for k, v in given if k.startswith(prefix))

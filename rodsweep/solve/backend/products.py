@@ -1,7 +1,7 @@
 """Products of small dense matrices in compiled code, by SciPy's BLAS.
 
 At 50 unknowns dgemm is four times as fast as loops, and ten times as fast as factorisation and substitution
-by the same library; `solve.orbit.matrix.elimination` therefore consists of products.
+by the same library. Therefore `solve.orbit.matrix.elimination` uses products where possible.
 """
 
 from typing import Any
@@ -23,10 +23,11 @@ _dgemm = types.ExternalFunction("rodsweep_dgemm", typing.signature(types.void, *
 
 @compiled
 def product(a: Any, b: Any, c: Any, extents: Any, factors: Array) -> None:
-    """Matrix product C = factors[0] A B + factors[1] C by dgemm, in place, for matrices stored by rows.
+    """Matrix product C = factors[0] A B + factors[1] C by dgemm, written to C, for matrices stored by rows.
 
-    a, b, c: addresses of the first entries. extents: int32 (m, n, k, lda, ldb, ldc) for A (m, k) and B (k,
-    n), with the row lengths of A, B and C.
+    a, b, c: memory addresses of the first entries of A, B and C. extents: int32 (m, n, k, lda, ldb, ldc) for
+    A (m, k) and B (k, n); lda, ldb, ldc are the distances between rows of A, B and C in memory. (BLAS: C^T =
+    B^T A^T.)
     """
     plain = np.full(1, 78, np.uint8)  # "N"
     no = plain.ctypes.data
@@ -38,7 +39,8 @@ def product(a: Any, b: Any, c: Any, extents: Any, factors: Array) -> None:
 
 @compiled
 def square_product(A: Array, B: Array, C: Array, factor: float, keep: float) -> None:
-    """Matrix product C = factor A B + keep C, in place; A, B and C have shape (n, n) and are contiguous."""
+    """Matrix product C = factor A B + keep C, written to C; A, B and C have shape (n, n) and are
+    contiguous."""
     n = len(A)
     extents = np.full(6, n, np.int32)
     factors = np.array([factor, keep])

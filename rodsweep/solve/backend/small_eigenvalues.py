@@ -25,7 +25,7 @@ class SmallEigenvalueSettings(CompiledSettings):
     """Size of the work array of LAPACK's dgeev."""
 
     work: int = 12
-    """Length of the work array in units of n, for a matrix (n, n): dgeev needs 3 at least, and is faster with
+    """Length of the work array divided by n, for a matrix (n, n): dgeev needs at least 3, and is faster with
     more."""
     ranges: ClassVar = {"work": (2, math.inf)}
 

@@ -1,10 +1,10 @@
-"""All changes along a path of rods: pairs that cross the imaginary axis, and changes of the leading
-eigenvalue.
+"""Search for all changes along a path of rods: pairs that cross the imaginary axis, and changes of the
+leading eigenvalue.
 
 The crossings come from `rodsweep.determinant.certificate.covering`, which proves that the list is complete,
-the changes of the leading eigenvalue from `leading_eigenvalue`. They are merged into one list in increasing
-order of the parameter. The winding number confirms the number of unstable modes at both ends and between the
-crossings.
+the changes of the leading eigenvalue from `leading_eigenvalue`. Both lists are merged into one list in
+increasing order of the parameter. The winding number confirms the number of unstable modes at both ends and
+between the crossings.
 """
 
 import math
@@ -25,13 +25,13 @@ from .unstable_modes import ChangeKind, Crossing, ModeCounter
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TransitionSettings:
-    """Settings for the list of the changes along a path."""
+    """Settings of the search for all changes along a path."""
 
     anchor_distance: float = 1e-4
-    """Distance of additional anchors from the crossing of a pair that must lead, as a fraction of the
-    path."""
+    """If a pair that crosses the axis must lead but another eigenvalue leads in the list, anchors are added
+    at this distance on both sides of the crossing, as a fraction of the path's length."""
     merge_distance: float = 1e-5
-    """Relative distance below which undecided boxes of the covering are merged into one interval."""
+    """Undecided boxes of the covering with a smaller relative gap between them are merged."""
 
 
 TRANSITIONS = TransitionSettings()
@@ -39,25 +39,25 @@ TRANSITIONS = TransitionSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Transitions:
-    """Result of a search along a path: all changes, in increasing order of the parameter, with what is
-    proved."""
+    """Result of a search along a path: all changes, in increasing order of the parameter, and whether the
+    list is proved complete."""
 
     crossings: tuple[Crossing, ...] = ()
     searched: tuple[float, float] = (math.nan, math.nan)
     """Searched interval of the parameter; all other fields refer to it."""
     ended_early: bool = False
-    """Whether `searched` is shorter than requested; `why_not` says why."""
+    """Whether the searched interval is shorter than the requested interval; the reason is in `why_not`."""
     open_range: tuple[float, float] = (math.nan, math.nan)
-    """Smallest interval around all rods at which two further crossings are possible; nan if there is none."""
+    """Smallest interval with all parameter values of possible further crossings; nan if there are none."""
     unstable_at_start: int = -1
     unstable_at_end: int = -1
     oscillates_at_start: bool = False
     """Whether a complex pair leads at the start of the path."""
     proved: bool
-    """Whether the covering is complete, all counts agree, and no eigenvalue lies right of a leading
+    """Whether the covering is complete, all counts agree, and no eigenvalue lies to the right of a leading
     eigenvalue."""
     boxes: int = 0
-    """Number of evaluations of D by the covering."""
+    """Number of evaluations of D in the covering."""
     solves: int = 0
     """Number of solved eigenvalue problems."""
     why_not: str = ""
@@ -72,9 +72,9 @@ class Transitions:
 @dataclass(frozen=True, slots=True)
 class AxisCrossings:
     """Crossings of the imaginary axis along `path`. gaps: intervals of the parameter that may contain further
-    crossings. reach: where the search ended.
+    crossings. reach: end of the search.
 
-    boxes: number of evaluations of D by the covering.
+    boxes: number of evaluations of D in the covering.
     """
 
     path: Path
@@ -93,7 +93,7 @@ class AxisCrossings:
         return replace(self, crossings=crossings, gaps=gaps, reach=reach)
 
     def searched(self, start: float, stop: float) -> tuple[float, float]:
-        """The searched subinterval of the parameter interval from `start` to `stop`."""
+        """The searched part (low, high) of the requested parameter interval from `start` to `stop`."""
         if not self.reach.reason:
             return start, stop
         end = self.path.parameter.value(self.reach.p)
@@ -106,7 +106,8 @@ def transitions(
     """All changes along `path` for parameter values from `start` to `stop`, proved complete if `certify`.
 
     The search ends early at a rod whose eigenvalues cannot be computed, and for a nonuniform arm after more
-    than `most` crossings. Raises Unsolvable if nothing can be searched or no a-priori bound applies.
+    than `most` crossings. Raises Unsolvable if not even the first interval can be searched, or if no a-priori
+    bound applies.
     """
     low, high = sorted((path.variable(start), path.variable(stop)))
     problem = path_problem(path)
@@ -119,7 +120,7 @@ def transitions(
         found = found.up_to(reach) if reach.reason else found
         ends = found.searched(start, stop)
         counts = ModeCounter(problem, found.gaps, certify)
-        # Without load the operator is self-adjoint and negative: nothing is unstable, and no count is needed.
+        # Without load the operator is self-adjoint and negative: no mode is unstable, no count is needed.
         unstable = 0 if path.name == "F" and start == 0 else counts.first(*ends, found.crossings)
         oscillates = tracer.anchor(path.variable(ends[0])).oscillates
         ordered = sorted(changes + found.crossings, key=lambda c: c.at)
@@ -141,11 +142,11 @@ def transitions(
 def pair_crossings(
     path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
 ) -> Transitions:
-    """Crossings of the imaginary axis by pairs, without the leading eigenvalue: takes half the time of
-    `transitions`.
+    """Crossings of the imaginary axis by pairs between the parameter values `start` and `stop`, without the
+    leading eigenvalue: takes half the time of `transitions`.
 
     `proved` then means that the covering is complete and every count agrees. The search ends early, and
-    Unsolvable is raised, as in `transitions`.
+    Unsolvable is raised, under the same conditions as in `transitions`.
     """
     low, high = sorted((path.variable(start), path.variable(stop)))
     problem = path_problem(path)
@@ -159,7 +160,7 @@ def pair_crossings(
 
 
 def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...], at_end: int) -> Transitions:
-    """`Transitions` of counted crossings. unstable, at_end: number of unstable modes at the two ends."""
+    """`Transitions` of counted crossings. unstable, at_end: numbers of unstable modes at the two ends."""
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
     return Transitions(
         crossings=crossings,
@@ -172,7 +173,7 @@ def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...]
 
 
 def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, float]) -> Transitions:
-    """`counted` with the searched subinterval of the interval `asked`, and why the search ended early."""
+    """`counted` with the searched part of the requested interval `asked`, and why the search ended early."""
     searched = found.searched(*asked)
     reason = found.reach.reason
     end = found.path.parameter.value(found.reach.p)
@@ -187,7 +188,7 @@ def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, 
 
 
 def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, most: float) -> AxisCrossings:
-    """Crossings by the covering; for nonuniform arms by bisection between counts, up to `most`."""
+    """Crossings for path variables in `ends`: by the covering, for arms by counts, up to `most` crossings."""
     if not isinstance(problem, ArmPath):
         return _covered(problem.path, *ends)
     search = CrossingSearch(problem, certify)
@@ -208,14 +209,14 @@ def _covered(path: Path, low: float, high: float) -> AxisCrossings:
 
 
 def _range_of(gaps: list[tuple[float, float]]) -> tuple[float, float]:
-    """The smallest interval that contains all `gaps`; (nan, nan) without gaps."""
+    """The smallest interval that contains all `gaps`; (nan, nan) if there are no gaps."""
     return (min(a for a, _ in gaps), max(b for _, b in gaps)) if gaps else (math.nan, math.nan)
 
 
 def _pairs_missed_as_leaders(
     path: Path, crossings: tuple[Crossing, ...], oscillates: bool, unstable: int
 ) -> list[float]:
-    """Path variables of crossings whose pair must lead, while another eigenvalue leads in the list."""
+    """Path variables of the crossings whose pair must lead, but does not lead by the list of changes."""
     missed = []
     for crossing in crossings:
         if crossing.kind.changes_leader:
@@ -228,7 +229,7 @@ def _pairs_missed_as_leaders(
 
 
 def _hopf(path: Path, zero: LocatedZero) -> Crossing:
-    """The crossing at a zero of D on the imaginary axis; dRe w/dp decides between hopf and hopf_reverse."""
+    """The crossing at a zero of D on the imaginary axis; a hopf if Re w grows with the parameter."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
     there = determinant_along(complex(0.0, zero.eta_or_x), coefficients, path.direction)
     # dw/dp = -D_p/D_w; along a stiffness p = 1/k falls as the parameter rises.
@@ -239,7 +240,7 @@ def _hopf(path: Path, zero: LocatedZero) -> Crossing:
 
 
 def _gaps(path: Path, left: list[Box]) -> list[tuple[float, float]]:
-    """Disjoint intervals of the parameter that the undecided boxes `left` of the covering span."""
+    """Disjoint intervals of the parameter covered by the undecided boxes `left`."""
     gaps: list[tuple[float, float]] = []
     for a, b in sorted(sorted((path.variable(box.p_from), path.variable(box.p_to))) for box in left):
         if gaps and a <= gaps[-1][1] * (1 + TRANSITIONS.merge_distance):

@@ -1,4 +1,5 @@
-"""Interpolation of the leading eigenvalues between two rods of a path, the anchors."""
+"""Interpolation of the leading eigenvalues between two neighbouring anchors, rods of a path whose spectra are
+solved."""
 
 import math
 from dataclasses import dataclass
@@ -9,18 +10,18 @@ from ...arrays import Complex
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AnchorSettings:
-    """Settings for the anchors of a path of rods and the interpolation between two of them."""
+    """Settings of the anchors of a path of rods and of the interpolation between two anchors."""
 
     min_known_modes: int = 4
     """Minimum number of leading eigenvalues computed at an anchor of a path of arms; at least two more than
-    are unstable."""
+    the number of unstable modes."""
     place_accuracy: float = 1e-6
-    """Relative accuracy of the eigenvalues at an anchor of a path of arms, before Newton's method on D
-    refines them."""
+    """Relative accuracy of the eigenvalues at an anchor of a path of arms, before the refinement by Newton's
+    method on D."""
     explained: float = 0.25
     """Tolerance of the interpolation between two anchors. The cubic must stay above this fraction of the
-    smaller end value, so that no zero hides. The trapezoidal rule for the slopes must give the change within
-    this fraction."""
+    smaller end value, so that no zero is missed. The change computed from the slopes by the trapezoidal rule
+    must agree with the actual change within this fraction."""
 
 
 ANCHORS = AnchorSettings()
@@ -29,9 +30,9 @@ ANCHORS = AnchorSettings()
 @dataclass(frozen=True)
 class Anchor:
     """A rod of a path, at path variable p, with its leading eigenvalues w and their slopes dw/dp,
-    (ANCHOR_MODES,).
+    (ANCHOR_MODES,) each.
 
-    time: a relaxation time of the rod, smooth in p. lengthening: slope of `time`. w times `time` is of order
+    time: a relaxation time of the rod, smooth in p. lengthening: d time/dp. The product w time is of order
     one; without shear and rotational drag, w grows like nu^-2 for a nearly crushed rod.
     """
 
@@ -47,8 +48,8 @@ class Anchor:
         return bool(self.w[0].imag != 0)
 
     def partner(self) -> tuple[float, float] | None:
-        """((w1 - w2)^2 time^2, its slope by p) of the two leading eigenvalues w1, w2; None if w1 is real and
-        w2 not."""
+        """((w1 - w2)^2 time^2, its derivative by p) for the two leading eigenvalues w1, w2; None if w1 is
+        real and w2 is not."""
         if self.oscillates:
             gap, slope = self._times_time(2 * self.w[0].imag, 2 * self.slope[0].imag)
             # (w1 - w2)^2 is negative for a pair, positive for two real eigenvalues, and smooth through 0.
@@ -59,16 +60,16 @@ class Anchor:
         return gap**2, 2 * gap * slope
 
     def rival(self) -> tuple[float, float] | None:
-        """(Re(w1 - w) time, its slope by p), with w the first eigenvalue that is complex if w1 is real, or
-        real if w1 is complex; None if no such w is among the leading eigenvalues."""
+        """(Re(w1 - w) time, its derivative by p), where w is the first complex eigenvalue if w1 is real, and
+        the first real eigenvalue if w1 is complex; None if no such w is among the leading eigenvalues."""
         for w, slope in zip(self.w[1:], self.slope[1:], strict=True):
             if (w.imag != 0) != self.oscillates:
                 return self._times_time((self.w[0] - w).real, (self.slope[0] - slope).real)
         return None
 
     def _times_time(self, value: float, slope: float) -> tuple[float, float]:
-        """(value times `time`, its slope by p) from a value and its slope; the factor preserves zeros and
-        signs."""
+        """(value time, its derivative by p) of a quantity `value` with derivative `slope`; the factor `time`
+        preserves zeros and signs."""
         return float(value * self.time), float(slope * self.time + value * self.lengthening)
 
 
@@ -97,10 +98,11 @@ def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tupl
 
 
 def next_anchor(left: Anchor, right: Anchor) -> tuple[float, bool]:
-    """(where to add an anchor between `left` and `right`, whether two changes may hide between them).
+    """Returns (share, hides). share: position of an additional anchor as a fraction of the interval from
+    `left` to `right`; 0 if the slopes explain the end values and exclude a change. hides: whether two changes
+    may lie between.
 
-    Where: a fraction of the interval; 0 if the slopes explain the values and exclude a change. Both anchors
-    must have a real leading eigenvalue or both a pair.
+    The leading eigenvalue must be real at both anchors, or a pair at both anchors.
     """
     h = right.p - left.p
     for a, b in ((left.partner(), right.partner()), (left.rival(), right.rival())):

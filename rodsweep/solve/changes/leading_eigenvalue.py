@@ -2,11 +2,12 @@
 
 Such a change happens in two ways. At a double eigenvalue, D = D_w = 0, two real eigenvalues become a pair or
 a pair becomes two real eigenvalues. In an overtaking, a real eigenvalue and a pair exchange the lead without
-meeting. Anchors are rods whose leading eigenvalues come from the spectrum solver, certified on request.
-Between two anchors, cubic interpolation must explain two smooth quantities: the squared difference of the two
-leading eigenvalues, and the difference in real part between the leading eigenvalue and the next of the other
-kind. Otherwise an anchor is added between the two. Newton's method on D finds the changes, and the winding
-number proves that no eigenvalue lies right of them.
+becoming equal. Anchors are rods whose leading eigenvalues come from the spectrum solver, certified on
+request. Between two anchors, cubic interpolation must explain two smooth quantities: the squared difference
+of the two leading eigenvalues, and the difference in real part between the leading eigenvalue and the next
+eigenvalue of the opposite kind (real or complex). Otherwise an anchor is added between the two anchors.
+Newton's method on D finds the changes, and the winding number proves that no eigenvalue lies to the right of
+the changes.
 """
 
 import math
@@ -23,38 +24,41 @@ from .search_range import SearchedIntervals, SearchEnd
 from .unstable_modes import ChangeKind, Crossing
 
 ANCHOR_MODES = 4
-"""Number of leading eigenvalues computed at an anchor: the first two, and two that may overtake them. The
-number is no setting, because with fewer it would be unknown which eigenvalues meet."""
+"""Number of leading eigenvalues computed at an anchor: the first two, and two that may overtake the first
+two. The number is a constant, because with fewer eigenvalues it would be unknown which of them become
+equal."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeaderSettings:
-    """Settings for the search for changes of the leading eigenvalue: anchors, and Newton's method between
-    them."""
+    """Settings of the search for changes of the leading eigenvalue: anchors, and Newton's method between
+    anchors."""
 
     accuracy: float = 1e-6
-    """Relative accuracy of the eigenvalues at an anchor, before Newton's method on D refines them."""
+    """Relative accuracy of the eigenvalues at an anchor, before the refinement by Newton's method on D."""
     smallest_interval: float = 2e-4
-    """Smallest distance of two anchors, as a fraction of the path, between which an anchor is added."""
+    """An anchor is added between two anchors only if their distance, as a fraction of the path's length,
+    exceeds this."""
     smallest_hiding_interval: float = 1e-9
-    """Smallest distance of two anchors between which an anchor is added if two changes may hide there, as a
-    fraction of the path."""
+    """As `smallest_interval`, if two changes may lie between the two anchors."""
     max_overtaking_steps: int = 60
-    """Maximum number of Newton steps to the parameter value of an overtaking."""
+    """Maximum number of Newton steps to an overtaking."""
     carrying_steps: int = 8
-    """Number of steps in which an eigenvalue is followed from an anchor to the middle of an interval."""
+    """Number of steps in which an eigenvalue is followed from an anchor to the middle of the interval."""
     same_errors: float = 10.0
-    """Newton's result is rejected as a different eigenvalue if it is farther from the start, in units of the
-    start's error estimate."""
+    """The eigenvalue found by Newton's method is rejected as a different eigenvalue if its distance from the
+    start exceeds this multiple of the start's error estimate and `same` times |w|."""
     same: float = 1e-12
-    """Distance of Newton's result from the start, relative to the eigenvalue, that is always accepted: some
-    thousand rounding errors."""
+    """The eigenvalue w found by Newton's method is accepted if its distance from the start is below this
+    multiple of |w|: some thousand rounding errors."""
     smallest_step: float = 1e-12
-    """Relative length below which an interval is not divided: some thousand rounding errors of its ends."""
+    """Intervals with a smaller length, relative to the larger of their ends, are not divided: some thousand
+    rounding errors."""
     rounding: float = 4e-16
     """Relative rounding error of the path variable: two units in the last place."""
     converged: float = 4.0
-    """Newton's method for an overtaking stops at a step below this multiple of the error estimate."""
+    """Newton's method for an overtaking stops when the step is smaller than this multiple of the error
+    estimate."""
 
 
 LEADER = LeaderSettings()
@@ -62,7 +66,7 @@ LEADER = LeaderSettings()
 
 class LeaderExchange(NamedTuple):
     """Change of the leading eigenvalue at path variable p: a double real eigenvalue (frequency 0), or a real
-    eigenvalue and a pair with equal real parts. frequency: Im w of the pair, in 1/tau2."""
+    eigenvalue and a pair with equal real parts. error: of p. frequency: Im w of the pair, in 1/tau2."""
 
     p: float
     error: float
@@ -80,11 +84,12 @@ class Tracer:
         self.certify = certify
         self.anchors: dict[float, Anchor] = {}
         self.proved = certify
-        """Whether all anchors are certified, and counts prove that no eigenvalue lies right of any change."""
+        """Whether all anchors are certified, and counts prove that no eigenvalue lies to the right of any
+        change."""
 
     def anchor(self, p: float) -> Anchor:
-        """The anchor at path variable p, solved once; raises Unsolvable if its eigenvalues cannot be
-        computed."""
+        """The anchor at path variable p, solved at the first call; raises Unsolvable if the eigenvalues
+        cannot be computed."""
         if p not in self.anchors:
             self.anchors[p] = self._solve(p)
         return self.anchors[p]
@@ -108,9 +113,10 @@ class Tracer:
         return Anchor(p, w, slope, *self.problem.relaxation(p))
 
     def changes(self, edges: list[float]) -> tuple[list[Crossing], SearchEnd]:
-        """(all changes by increasing p, end of the search), for p from the first to the last of `edges`.
+        """Returns (changes, end of the search). changes: all changes by increasing p, for p from the first to
+        the last of `edges`.
 
-        Raises Unsolvable if the search does not reach beyond the first edge.
+        Raises Unsolvable if the search ends at the first edge.
         """
         found: list[Crossing] = []
         intervals = SearchedIntervals(edges)
@@ -123,8 +129,8 @@ class Tracer:
         return found, intervals.reach
 
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> list[Crossing]:
-        """The change between the anchors at a and b; an empty list if there is none. Divides the interval in
-        `intervals` if that is undecided."""
+        """The change between the anchors at a and b, in a list; an empty list if there is no change, or if
+        the test is undecided and the interval was divided into two entries of `intervals`."""
         left = self.anchor(a)
         right = self.anchor(b)
         share = 0.5
@@ -143,16 +149,16 @@ class Tracer:
                 return [change]
             if b - a <= LEADER.smallest_step * max(abs(a), abs(b)):
                 where = self.path.at(a)
-                raise Unsolvable(f"the change of the leading eigenvalue near {where} is not found")
+                raise Unsolvable(f"the change of the leading eigenvalue near {where} was not found")
         middle = a + share * (b - a)
         intervals.divide((a, middle), (middle, b))
         return []
 
     def _between(self, left: Anchor, right: Anchor) -> Crossing | None:
         """The change between an anchor with a leading pair and an anchor with a real leading eigenvalue. None
-        if it is not found, or if a count shows that other eigenvalues lead there."""
+        if Newton's method finds no change, or if a count shows that other eigenvalues lead at the change."""
         pair, real = (left, right) if left.oscillates else (right, left)
-        # Kinds are named in the direction of the parameter, which along a stiffness is that of falling p.
+        # Kinds are named in the direction of the parameter, along a stiffness the direction of falling p.
         if right.oscillates != self.path.inverse:
             double = ChangeKind.onset
             single = ChangeKind.pair_leads
@@ -163,7 +169,7 @@ class Tracer:
             found = find(pair, real)
             if found is None or not left.p <= found.p <= right.p:
                 continue
-            # Counted halfway to the next eigenvalue: none but those that meet may lie right of it.
+            # Counted halfway to the next eigenvalue: only the eigenvalues of the change may lie to the right.
             behind = max(left.w[meeting].real, right.w[meeting].real)
             count = self.problem.count((found.growth_rate + behind) / 2, found.p)
             # A different count means that other eigenvalues lead; an undecided one leaves the change
@@ -205,7 +211,7 @@ class Tracer:
             w_real, s_real, e_real = self.problem.eigenvalue(w_real, p)
             w_pair, s_pair, e_pair = self.problem.eigenvalue(w_pair, p)
             slope = s_real.real - s_pair.real
-            # One of the two has changed its kind: it is not the eigenvalue that was followed.
+            # An eigenvalue that changed between real and complex is not the one that was followed.
             if w_real.imag != 0 or w_pair.imag == 0 or slope == 0 or not math.isfinite(slope):
                 return None
             step = -(w_real.real - w_pair.real) / slope
@@ -222,7 +228,8 @@ class Tracer:
         return None
 
     def _carried(self, w: complex, start: float, stop: float) -> complex:
-        """The eigenvalue w at p = `start`, followed to p = `stop` in small steps by Newton's method on D."""
+        """The eigenvalue at p = `stop` that continues the eigenvalue w at p = `start`, followed in small
+        steps by Newton's method on D."""
         p = start
         for i in range(1, LEADER.carrying_steps + 1):
             w, slope, _ = self.problem.eigenvalue(w, p)

@@ -19,7 +19,7 @@ class PathProblem(ABC):
         self._spectra: dict[tuple[float, SpectrumRequest], Spectrum] = {}
 
     def spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
-        """The leading eigenvalues of the rod at p, as `request` says; equal requests are solved once."""
+        """The spectrum of the rod at p for `request`; each request is solved once and stored."""
         key = p, request
         if key not in self._spectra:
             self._spectra[key] = solve_spectrum(self.path.at(p), request)
@@ -28,7 +28,7 @@ class PathProblem(ABC):
 
     @abstractmethod
     def edges(self, low: float, high: float) -> list[float]:
-        """Path variables from `low` to `high`, dense enough that neighbouring rods differ little."""
+        """Path variables from `low` to `high`, so dense that neighbouring rods differ little."""
 
     @abstractmethod
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
@@ -36,22 +36,22 @@ class PathProblem(ABC):
 
     @abstractmethod
     def double(self, x: float, p: float, reach: float) -> LocatedZero:
-        """The double real eigenvalue near w = x and path variable p, whose path variable differs from p by at
-        most `reach`; nan if not found."""
+        """The double real eigenvalue near w = x at a path variable within `reach` of p; nan if it is not
+        found."""
 
     @abstractmethod
     def count(self, line: float, p: float) -> EigenvalueCount:
         """Number of eigenvalues with Re w > `line` of the rod at p."""
 
     def counted_amid(self, low: float, high: float) -> int | None:
-        """Number of unstable modes already proved for some path variable between `low` and `high`; None if it
-        is not.
+        """Number of unstable modes if it is already proved at a path variable near the middle of `low` and
+        `high`; else None.
         """
         return None
 
     @abstractmethod
     def relaxation(self, p: float) -> tuple[float, float]:
-        """(a relaxation time of the rod at p that is smooth in p, the derivative of the time by p)."""
+        """(relaxation time of the rod at p, derivative of this time by p); the time is smooth in p."""
 
 
 class UniformPath(PathProblem):
@@ -73,6 +73,6 @@ class UniformPath(PathProblem):
     def relaxation(self, p: float) -> tuple[float, float]:
         here = coefficients_at(p, self.path.origin, self.path.direction)
         rate = self.path.direction
-        # Along a path the eigenvalues may grow without bound; in units of such a time they stay moderate.
+        # Along a path the eigenvalues may grow without bound; divided by 1/time they stay moderate.
         time = here.nu * here.nu + here.c2 + here.gamma3  # never zero
         return time, 2 * here.nu * rate.nu + rate.c2 + rate.gamma3

@@ -1,7 +1,7 @@
 """Intervals of a path variable, searched from left to right, and the end of the search.
 
 If the eigenvalues of a rod cannot be computed or proved, the search ends before this rod; the results up to
-there are complete.
+this end are complete.
 """
 
 from collections.abc import Iterator
@@ -16,15 +16,16 @@ class SearchRangeSettings:
     """Settings for the end of a search along a path."""
 
     last_halvings: int = 4
-    """Number of halvings of the interval in which a search failed; its left halves are searched, too."""
+    """If the search of an interval fails, up to this many further searches cover the left half of what is
+    left of the interval."""
 
 
 SEARCH_RANGE = SearchRangeSettings()
 
 
 class SearchEnd(NamedTuple):
-    """The largest path variable p that was searched, and why the search ended there; the reason is empty at
-    the requested end."""
+    """The largest path variable p up to which the search is complete, and the reason why the search ended
+    there; the reason is empty at the requested end."""
 
     p: float
     reason: str = ""
@@ -33,8 +34,8 @@ class SearchEnd(NamedTuple):
 class SearchedIntervals:
     """Queue of the intervals of the path variable that are still to be searched, leftmost first.
 
-    reach: end of the search. Everything from the first of `edges` to `reach.p` is searched once the queue is
-    empty.
+    reach: end of the search. When the queue is empty, the range from the first of `edges` to `reach.p` has
+    been searched.
     """
 
     def __init__(self, edges: list[float]):
@@ -46,10 +47,9 @@ class SearchedIntervals:
         self._halvings = 0
 
     def __iter__(self) -> Iterator[tuple[float, float]]:
-        """Yields the intervals of the queue; raises Unsolvable if not even a first subinterval can be
-        searched."""
+        """Yields the intervals of the queue; raises Unsolvable if no interval could be searched."""
         while True:
-            # The first part of an interval that cannot be searched to its end often can.
+            # The left part of an interval whose search failed can often be searched.
             if not self._left and self.reach.reason and self._halvings < SEARCH_RANGE.last_halvings:
                 self._halvings += 1
                 middle = (self.reach.p + self._unsolvable) / 2
@@ -62,18 +62,19 @@ class SearchedIntervals:
             raise Unsolvable(self.reach.reason)
 
     def divide(self, *intervals: tuple[float, float]) -> None:
-        """Adds subintervals of the present interval to the queue; `intervals` is in increasing order."""
+        """Adds parts of the present interval to the queue; `intervals` is in increasing order."""
         self._left += intervals[::-1]
 
     def stop_at(self, p: float, reason: str) -> None:
-        """Ends the search at path variable `p`, up to which everything is searched; `reason` says why."""
+        """Ends the search at path variable `p`, up to which the search is complete; `reason`: why the search
+        ends."""
         self._left.clear()
         self._halvings = SEARCH_RANGE.last_halvings
         self.reach = SearchEnd(p, reason)
 
     def end_within(self, interval: tuple[float, float], reason: str) -> None:
         """Ends the search at the start of the present `interval`, whose search failed; its left half may be
-        tried later."""
+        searched later."""
         self._left.clear()
         self._unsolvable = interval[1]
         self.reach = SearchEnd(interval[0], reason)

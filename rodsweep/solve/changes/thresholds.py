@@ -74,8 +74,8 @@ class Thresholds:
 
 
 def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
-    """All changes of `rod` for forces from 0 to `request.F_max`; a failure is a status, never an
-    exception."""
+    """All changes of `rod` for forces from 0 to `request.F_max`; a failure is returned as a status, never
+    raised."""
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Thresholds:
@@ -86,14 +86,15 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
 
 
 def nothing_found(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:
-    """A result without changes: no search was necessary, or the search failed."""
+    """A result without changes, for a rod that needs no search or whose search failed. end: parameter value
+    at the end of the search."""
     found = Transitions(proved=status == ThresholdStatus.ok)
     return Thresholds(status=status, transitions=found, end=end, message=message)
 
 
 def judged(found: Transitions, accuracy: float, certify: bool, most: int) -> Thresholds:
-    """The changes `found` along a path, with the status of the most serious problem. most: maximum number of
-    changes in the list."""
+    """The result of a search with its status: the first of the problems tested below, or ok. accuracy,
+    certify: as requested. most: maximum number of changes in the list."""
     status = ThresholdStatus.ok
     if found.ended_early:
         status = ThresholdStatus.ended_early
@@ -110,7 +111,7 @@ def judged(found: Transitions, accuracy: float, certify: bool, most: int) -> Thr
 
 @cache
 def warm_up() -> None:
-    """Solves one rod, so that compiled code is loaded and pools are filled before a time is measured."""
+    """Solves one rod to load compiled code and to fill the pools before a time is measured."""
     solve_thresholds(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), ThresholdsRequest(40.0, 1e-8, True, 4))
 
 

@@ -1,7 +1,7 @@
 """Kinds of changes along a path of rods, and the number of unstable modes between the changes.
 
-The directions of the crossings of the imaginary axis give the number after every crossing; winding numbers
-confirm it at both ends and between.
+The directions of the crossings of the imaginary axis give the number of unstable modes after every crossing.
+Winding numbers confirm this number at both ends and between the crossings.
 """
 
 import math
@@ -21,29 +21,29 @@ class ChangeCountSettings:
     changes."""
 
     crushing_margin: float = 1e-6
-    """Relative distance below the crushing force at which a search ends; at F = k1 the rod is crushed."""
+    """A search ends at this relative distance below the crushing force; at F = k1 the rod is crushed."""
     meets_crushing: float = 1e-12
-    """Relative difference of F and the crushing force up to which both count as equal: on a grid of F and k1
-    the two may be equal but for rounding."""
+    """F and the crushing force are equal if their relative difference is at most this: on a grid of F and k1
+    the two may differ by rounding alone."""
     places: tuple[float, ...] = (0.5, 0.3, 0.7)
     """Positions between two crossings, as fractions of the interval, at which the unstable modes are counted,
     in this order, until a count is decided."""
     too_close: float = 1e-3
-    """Relative distance of two crossings below which the modes between are not counted, because a pair is too
-    near the imaginary axis."""
+    """Modes are not counted between two crossings with a relative distance below this, because a pair is then
+    too close to the imaginary axis."""
 
 
 CHANGE_COUNTS = ChangeCountSettings()
 
 
 def end_below_crushing(rod: Rod, F: float) -> float:
-    """Largest force of a search up to F, in k3/L^2: F, or a little less than the crushing force if F exceeds
-    it."""
+    """Largest force of a search up to F, in k3/L^2: F, or the end of the search below the crushing force if F
+    is larger."""
     return min(F, rod.crushing_force * (1 - CHANGE_COUNTS.crushing_margin))
 
 
 class ChangeKind(IntEnum):
-    """Kind of a change along a path, named as it happens with increasing parameter."""
+    """Kind of a change along a path, named for increasing parameter."""
 
     onset = 1
     hopf = 2
@@ -55,13 +55,13 @@ class ChangeKind(IntEnum):
 
     @property
     def changes_leader(self) -> bool:
-        """Whether the leading eigenvalue changes between real and complex. Otherwise a pair crosses the
-        imaginary axis."""
+        """Whether the leading eigenvalue changes between real and complex at this change. Otherwise a pair
+        crosses the imaginary axis."""
         return self in (ChangeKind.onset, ChangeKind.pair_leads, ChangeKind.real_again, ChangeKind.real_leads)
 
     @property
     def pair_leads_after(self) -> bool:
-        """Whether a complex pair leads after a change of the leading eigenvalue."""
+        """Whether this change is a change of the leading eigenvalue after which a complex pair leads."""
         return self in (ChangeKind.onset, ChangeKind.pair_leads)
 
 
@@ -71,7 +71,7 @@ class Crossing:
     frequency, in 1/tau2.
 
     unstable_after: number of unstable modes just after the change, -1 if unknown. frequency_error: error of
-    the frequency of a pair that crosses the imaginary axis, else nan.
+    the frequency of a pair that crosses the imaginary axis, nan for other changes.
     """
 
     at: float
@@ -88,7 +88,7 @@ class ModeCounter:
     numbers.
 
     gaps: intervals of the parameter that may contain crossings missing from the list. doubts: sentences on
-    counts that disagree or are undecided.
+    counts that are undecided or contradict the crossings.
     """
 
     def __init__(self, problem: "PathProblem", gaps: list[tuple[float, float]], certify: bool):
@@ -104,8 +104,8 @@ class ModeCounter:
         return -1 if number is None else number
 
     def amid(self, a: float, b: float) -> int:
-        """Number of unstable modes somewhere between the parameter values a and b, by the winding number; -1
-        if undecided at all positions tried."""
+        """Number of unstable modes at a position between the parameter values a and b, by the winding number;
+        -1 if the count is undecided at all positions tried."""
         known = self.problem.counted_amid(*sorted((self.path.variable(a), self.path.variable(b))))
         if known is not None:
             return known
@@ -116,8 +116,8 @@ class ModeCounter:
         return -1
 
     def first(self, start: float, stop: float, hopfs: list[Crossing]) -> int:
-        """Number of unstable modes at `start`, counted there or, if undecided, before the first crossing or
-        gap."""
+        """Number of unstable modes at `start`, or, if that count is undecided, at a position before the first
+        of `hopfs`, of `gaps` and of `stop`; -1 if undecided."""
         number = self.at(start)
         until = min([stop, *(c.at for c in hopfs), *(a for a, _ in self.gaps)])
         return number if number >= 0 else self.amid(start, until)
@@ -125,8 +125,9 @@ class ModeCounter:
     def along(
         self, ordered: list[Crossing], ends: tuple[float, float], unstable: int
     ) -> tuple[tuple[Crossing, ...], int]:
-        """(changes with `unstable_after` set, number of unstable modes at the end). ordered: changes by
-        increasing parameter. unstable: number at the start. Resets `doubts`.
+        """Returns (changes, at_end). changes: as `ordered`, with `unstable_after` set. at_end: number of
+        unstable modes at the end. ordered: changes by increasing parameter. unstable: number of unstable
+        modes at the start. Resets `doubts`.
         """
         self.doubts = []
         out: list[Crossing] = []
@@ -145,10 +146,10 @@ class ModeCounter:
 
     def _between(self, a: float, b: float, unstable: int) -> int:
         """Number of unstable modes just before b, from the number `unstable` just after a, confirmed by a
-        count between."""
+        count at a position between a and b."""
         inside = [gap for gap in self.gaps if gap[1] > a and gap[0] < b]
         if inside:
-            # A gap may hide crossings, so the number is counted anew behind it.
+            # A gap may hide crossings, so the modes are counted again after the gap.
             a = max(gap[1] for gap in inside)
         elif not self.certify:
             return unstable

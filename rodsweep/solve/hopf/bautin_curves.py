@@ -1,9 +1,9 @@
 """Curves of generalised Hopf points over three parameters.
 
 Generalised Hopf points, D(i eta) = 0 and Re c = 0, are isolated in a plane of two parameters and form a curve
-over three. Each step prescribes the parameter that changes fastest along the curve, so that folds in all
-parameters are possible. The line through the last two points is the predictor; the secant method then moves
-along the Hopf curve in the plane of the two free parameters, to Re c = 0.
+over three parameters. Each step prescribes the parameter that changes fastest along the curve, so that folds
+in all parameters are possible. The line through the last two points is the predictor. The secant method then
+moves along the Hopf curve in the plane of the two free parameters, to Re c = 0.
 """
 
 from collections.abc import Sequence
@@ -40,14 +40,14 @@ END_OTHERWISE = {
     CurveStop.lost: BautinEnd.not_found,
     CurveStop.full: BautinEnd.list_full,
 }
-"""`BautinEnd` for each `CurveStop` but `margin`, at which the curve reaches an end of a parameter's range."""
+"""`BautinEnd` for each `CurveStop` except `margin`: there the curve reaches an end of a parameter's range."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BautinCurvePoint:
     """A generalised Hopf point in the space of three parameters.
 
-    values, errors: the plane's two parameters, then the third, (3,). landau_imag: Im c, in 1/(tau2 L^2).
+    values, errors: the plane's two parameters, then the third one, (3,). landau_imag: Im c, in 1/(tau2 L^2).
     """
 
     values: Array
@@ -58,7 +58,7 @@ class BautinCurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class BautinCurve:
-    """Points of a curve in order, and why the curve ends at the first and at the last of them."""
+    """Points of a curve in order, and the reasons for its ends at the first and at the last point."""
 
     points: tuple[BautinCurvePoint, ...]
     ends: tuple[BautinEnd, BautinEnd]
@@ -74,7 +74,7 @@ class _CurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class BautinSpace:
-    """Curve problem for the follower: generalised Hopf points over three parameters, each with its range.
+    """Curve problem for the follower: generalised Hopf points over three parameters, each with a range.
 
     rod: values of the fixed parameters. asked: values of the third parameter at which points are stored.
     accuracy: relative accuracy of c. side: sign of the first step along the third parameter, 1 or -1.
@@ -87,13 +87,13 @@ class BautinSpace:
     side: float = 1.0
 
     def scaled(self, values: Array, frequency: float) -> Array:
-        """Coordinates v, (4,): parameter `values`, (3,), scaled to [0, 1], and log `frequency`."""
+        """Coordinates v, (4,): the parameters `values`, (3,), scaled to [0, 1], and log `frequency`."""
         places = [axis.scaled(float(value)) for axis, value in zip(self.axes, values, strict=True)]
         return np.array([*places, np.log(frequency)])
 
     def solved(self, guess: Array, held: int) -> _CurvePoint:
-        """The generalised Hopf point near `guess`, (4,), with parameter number `held` fixed; raises
-        Unsolvable."""
+        """The generalised Hopf point near `guess`, (4,), with the fixed parameter number `held` (0, 1 or 2);
+        raises Unsolvable."""
         free = [i for i in range(3) if i != held]
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
         plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
@@ -114,7 +114,7 @@ class BautinSpace:
         return _CurvePoint(self.scaled(found_values, point.frequency), found)
 
     def step(self, behind: Sequence[_CurvePoint], length: float) -> StepResult[_CurvePoint]:
-        """The next point after the points `behind`, predicted along their last chord; raises Unsolvable."""
+        """The next point after the points `behind`, predicted along the last chord; raises Unsolvable."""
         here = behind[-1].v
         tangent = np.array([0.0, 0.0, self.side, 0.0])
         if len(behind) > 1:
@@ -130,14 +130,14 @@ class BautinSpace:
         return StepResult(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
 
     def _within(self, here: Array, change: Array) -> tuple[_CurvePoint, bool]:
-        """(point near here + change, (4,), or on the end of a range before it; whether on an end).
+        """(point near here + change, (4,), or where the step leaves the ranges; whether it lies on an end).
 
         No point outside the ranges is solved: its parameters may describe no rod. Raises Unsolvable.
         """
         ahead = (here + change)[:3]
         beyond = np.where(ahead > 1, 1.0, np.where(ahead < 0, 0.0, np.nan))
         shares = (beyond - here[:3]) / np.where(change[:3] == 0, 1.0, change[:3])
-        # Held is the parameter that changes most: at a fold along another one this point is still unique.
+        # The parameter that changes most is fixed: at a fold in another parameter the point is unique.
         if np.isnan(shares).all():
             return self.solved(here + change, int(np.argmax(np.abs(change[:3])))), False
         which = int(np.nanargmin(shares))
@@ -146,13 +146,13 @@ class BautinSpace:
         return self.solved(guess, which), True
 
     def margins(self, place: _CurvePoint) -> Array:
-        """Distances of a point from both ends of the three ranges, (6,), negative on an end."""
+        """Distances of a point from both ends of the three ranges minus a tolerance, (6,)."""
         return np.ravel([place.v[:3], 1 - place.v[:3]], order="F") - BAUTIN.on_edge
 
     def located_zero(
         self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int
     ) -> _CurvePoint | None:
-        """The outer point itself: `_within` has already shortened the step to end on the edge."""
+        """The point `outer` itself: `_within` has already shortened the step to end on the edge."""
         return outer
 
     def closes(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
@@ -165,7 +165,7 @@ class BautinSpace:
 
     @staticmethod
     def _zero(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
-        """The zero of Re c near start + s way, (3,) each, by secant steps of s; raises Unsolvable."""
+        """The point with Re c = 0 near start + s way, (3,) each, by secant steps of s; raises Unsolvable."""
         # Secants, because the normal form does not give the derivatives of Re c.
         before = 0.0
         s = BAUTIN.first_secant
@@ -199,7 +199,7 @@ def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
 
 
 def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
-    """A generalised Hopf point of a plane as a point of a curve. third: third parameter of the plane."""
+    """A generalised Hopf point of a plane as a point of a curve. third: value of the third parameter."""
     return BautinCurvePoint(
         values=np.array([*point.values, third]),
         errors=np.array([*point.errors, 0.0]),
@@ -209,14 +209,14 @@ def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
 
 
 def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> bool:
-    """Whether `point`, at a requested value of the third parameter, is one of the points of `curve`."""
+    """Whether `point`, at a requested value of the third parameter, is equal to a point of `curve`."""
     v = space.scaled(point.values, point.frequency)
     others = [space.scaled(other.values, other.frequency) for other in curve.points]
     return any(float(np.abs(v - other).max()) < BAUTIN.same_point for other in others)
 
 
 def _followed(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
-    """Points from the start to `space.side`, requested third values included, and why the curve ends."""
+    """(points from `start` to the side `space.side`, with the requested third values; why the curve ends)."""
     if not 0 < start.v[2] + space.side * BAUTIN_STEPS.min_length < 1:
         return [start], BautinEnd.range_end
     curve = follow_curve(space, start, BAUTIN_STEPS, _report)
@@ -237,7 +237,7 @@ def _report(places: Sequence[_CurvePoint]) -> None:
 
 
 def _asked_between(space: BautinSpace, here: _CurvePoint, there: _CurvePoint) -> list[_CurvePoint]:
-    """Points at requested third values between two points; raises Unsolvable or ValueError."""
+    """Points at the requested third values between `here` and `there`; raises Unsolvable or ValueError."""
     a = here.v[2]
     b = there.v[2]
     inner = [z for z in map(space.axes[2].scaled, space.asked) if min(a, b) < z < max(a, b)]

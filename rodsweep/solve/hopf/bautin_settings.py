@@ -14,27 +14,28 @@ BAUTIN_STEPS = StepControl(
     max_ratio=1.5,
     max_solutions=2000,
 )
-"""Step length control along a curve. Lengths are in units of the parameters' ranges, the prediction error in
-units of the step."""
+"""Step length control along a curve. Each parameter's range has length 1; the prediction error is divided by
+the step length."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BautinSettings:
-    """Settings for the corrector and the ends of a curve of generalised Hopf points."""
+    """Settings of the corrector and of the ends of a curve of generalised Hopf points."""
 
     max_secants: int = 10
-    """Maximum number of secant steps to a generalised Hopf point; the step along the curve fails beyond
-    it."""
+    """Maximum number of secant steps to a generalised Hopf point; if more are necessary, the step along the
+    curve has failed."""
     first_secant: float = 1e-3
-    """First secant step along the Hopf curve, in units of the ranges."""
+    """First secant step along the Hopf curve; each parameter's range has length 1."""
     tolerance: float = 1e-12
-    """Secant step, in units of the ranges, at which the secant method has converged."""
+    """The secant method stops when the step is at most this; each parameter's range has length 1."""
     on_edge: float = 1e-12
-    """Distance from an end of a range, in units of the range, below which a point lies on this end."""
+    """A point lies on an end of a range if its distance from the end, as a fraction of the range, is
+    smaller."""
     min_loop_points: int = 5
-    """Number of points that a curve must exceed before it can be recognised as closed."""
+    """A curve can be recognised as closed only if it has more points than this."""
     same_point: float = 1e-6
-    """Distance of two points, in units of the ranges, below which they count as the same."""
+    """Two points are the same if their distance is smaller than this; each parameter's range has length 1."""
 
 
 BAUTIN = BautinSettings()

@@ -1,9 +1,10 @@
 """Normal form coefficients of a Hopf point, with error estimates from two meshes and from D.
 
 The Landau coefficient c is computed on two meshes. The value of the finer mesh is stored, and its difference
-from the coarser mesh is the error estimate, which overestimates the error by some decades. Rounding and the
-error of the Hopf point itself are added. The slope dw/dF is the slope of the root of D, free of mesh error;
-its difference from the slope on the finer mesh is the error estimate. Arms have the slope of the finer mesh.
+from the value of the coarser mesh is the error estimate, which overestimates the error by some decades. The
+effects of rounding and of the error of the Hopf point are added. The slope dw/dF is the slope of the root of
+D, free of mesh error; its difference from the slope on the finer mesh is the error estimate. For arms, the
+slope of the finer mesh is stored.
 """
 
 import math
@@ -21,8 +22,7 @@ from .normal_form import NORMAL_FORM, NormalForm, a_third_finer, elements_for, n
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoefficientSettings:
-    """Settings for the coefficients of a Hopf point and their error estimates, and for the cache of
-    searches."""
+    """Settings for the coefficients of a Hopf point and their errors, and for the cache of searches."""
 
     more_orders: int = 4
     """Increase of the element order from the first mesh to the second, which reduces the error of c by a
@@ -30,17 +30,18 @@ class CoefficientSettings:
     max_refinements: int = 4
     """Maximum number of meshes after the first."""
     coarsest: float = 1e-2
-    """Coarsest relative accuracy of the first mesh, on which the eigenvalue must still be identified."""
+    """Coarsest relative accuracy for which the first mesh is chosen: the eigenvalue must still be identified
+    on this mesh."""
     rounding: float = 1.5e-14
-    """Relative rounding error of c, in units of the condition number of the eigenvalue. Most rods have 1e-15;
+    """Relative rounding error of c, divided by the condition number of the eigenvalue. Most rods have 1e-15;
     the largest measured value is 9e-15, for nearly crushed rods that are soft in stretch and shear."""
     sensitivity: float = 20.0
-    """Bound on |dc/dF|/|c|, in units of |w''|/|w'| + 1/|F| + 1/|k1 - F|. The largest measured value is 10,
-    for high modes of rods soft in shear; where a window of flutter closes it is 1."""
+    """Bound on |dc/dF|/|c|, divided by |w''|/|w'| + 1/|F| + 1/|k1 - F|. The largest measured value is 10, for
+    high modes of rods soft in shear; where a flutter window closes the value is 1."""
     force_step: float = 1e-5
-    """Relative difference step in the force for the second derivative of w(F)."""
+    """Relative force step of the difference quotient for the second derivative of w(F)."""
     searches_kept: int = 8
-    """Number of searches for Hopf points in the cache; rods that differ in gamma1 only share a search."""
+    """Number of searches for Hopf points in the cache; rods that differ only in gamma1 share a search."""
 
 
 COEFFICIENT = CoefficientSettings()
@@ -50,9 +51,9 @@ COEFFICIENT = CoefficientSettings()
 class HopfCoefficients:
     """The normal form of one Hopf point, dZ/dt = growth_slope (F - F_H) Z + landau |Z|^2 Z, tip y = Re Z.
 
-    growth_slope in L^2/(k3 tau2), landau in 1/(tau2 L^2), their errors relative to their moduli;
-    amplitude_coefficient a in L, frequency_slope b in L^2/(k3 tau2), their errors relative to their own
-    values. All are NaN where the computation failed; `message` then has the cause.
+    growth_slope in L^2/(k3 tau2), landau in 1/(tau2 L^2), with errors relative to their moduli;
+    amplitude_coefficient a in L, frequency_slope b in L^2/(k3 tau2), with errors relative to their values.
+    All numbers are NaN if the computation failed; `message` then states the cause.
     """
 
     growth_slope: complex = complex(math.nan, math.nan)
@@ -69,13 +70,13 @@ class HopfCoefficients:
 
     @property
     def known(self) -> bool:
-        """Whether the coefficients were computed, and are not NaN."""
+        """Whether the coefficients were computed; otherwise they are NaN."""
         return not math.isnan(self.landau_error)
 
     @property
     def criticality(self) -> float:
-        """-1 supercritical, 1 subcritical, 0 if |Re c| is below the error of c; nan if the coefficients are
-        not known."""
+        """-1 if supercritical, 1 if subcritical, 0 if |Re c| is not larger than the error of c; nan if the
+        coefficients are not known."""
         if not self.known:
             return math.nan
         if abs(self.landau.real) <= self.landau_error * abs(self.landau):
@@ -84,12 +85,12 @@ class HopfCoefficients:
 
     @property
     def largest_error(self) -> float:
-        """The larger of the relative errors of c and dw/dF, from which a and b are computed."""
+        """The larger one of the relative errors of c and dw/dF, from which a and b are computed."""
         return max(self.landau_error, self.growth_slope_error)
 
 
 def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoefficients:
-    """The normal form coefficients at the Hopf point `hopf`, with c to a relative accuracy; raises
+    """The normal form coefficients at the Hopf point `hopf`, with c to the relative `accuracy`; raises
     Unsolvable.
 
     rod: the rod at the force of `hopf`. c is less accurate if its rounding error exceeds `accuracy`.
@@ -113,10 +114,10 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
     slope, bend = _slope(rod, w)
     if rod.standard:
         off = abs(fine.slope - slope) / abs(slope)
-    else:  # for an arm the root's slope is a difference quotient, less accurate than the mesh's slope
+    else:  # for an arm the root's slope is a difference quotient, less accurate than the slope on the mesh
         slope = fine.slope
         off = abs(fine.slope - coarse.slope) / abs(slope)
-    # c was computed at the force found: an error of this force moves c.
+    # c was computed at the force of `hopf`: an error of this force changes c.
     unit = bend / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F)
     moved = COEFFICIENT.sensitivity * hopf.error * unit
     landau_error = max(change, rounding) + moved
@@ -127,8 +128,7 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
 def _with_errors(
     normal: NormalForm, landau_error: float, slope_error: float, force_error: float
 ) -> HopfCoefficients:
-    """The coefficients of a normal form, with the errors that follow from the relative errors of c, dw/dF and
-    F."""
+    """The coefficients of `normal`, with errors that follow from the relative errors of c, dw/dF and F."""
     c = normal.c
     slope = normal.slope
     slope_off = slope_error * abs(slope)
@@ -154,7 +154,7 @@ def _with_errors(
 
 
 def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
-    """(dw/dF, |d^2w/dF^2|) of the root w of D of the rod."""
+    """(dw/dF, |d^2w/dF^2|) of the root of D of `rod` near w."""
     step = COEFFICIENT.force_step * abs(rod.F)
     problem = path_problem(Path(rod, "F"))
     _, slope, _ = problem.eigenvalue(w, rod.F)
@@ -163,6 +163,6 @@ def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
 
 
 def _rounding(normal: NormalForm) -> float:
-    """Relative rounding error of c, from the condition number of the eigenvalue."""
+    """Relative rounding error of c, from the condition number of the eigenvalue of `normal`."""
     sizes = straight_matrices(normal.form, TRANSVERSE).size_of_product(normal.p, normal.q)
     return COEFFICIENT.rounding * sizes / abs(normal.w)

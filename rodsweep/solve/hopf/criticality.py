@@ -1,7 +1,7 @@
-"""Task `criticality` for one rod: all Hopf points, each with the criticality of its branch of cycles.
+"""Task `criticality` for one rod: all Hopf points, with the criticality of the branch of cycles at each.
 
-Hopf points are found and proved complete as in `task: thresholds`. They are independent of gamma1: rods with
-different gamma1 alone share one search.
+Hopf points are found and proved complete as in `task: thresholds`. Hopf points are independent of gamma1:
+rods that differ only in gamma1 share one search.
 """
 
 import math
@@ -18,7 +18,7 @@ from .coefficient_errors import COEFFICIENT, HopfCoefficients, hopf_coefficients
 
 
 class CriticalityStatus(PointStatus):
-    """Status of the search for the Hopf points of one rod, and of their coefficients."""
+    """Status of the search for the Hopf points of one rod and of the computation of their coefficients."""
 
     ok = 0, "every Hopf point is found, with coefficients to the requested accuracy", True
     not_certified = (
@@ -44,7 +44,7 @@ class CriticalityStatus(PointStatus):
     )
     sign_undecided = (
         7,
-        "at a Hopf point the sign of Re c is within its error, as next to a generalised Hopf point: c is "
+        "the sign of Re c at a Hopf point is within its error, as happens near generalised Hopf points: c is "
         "correct, but the criticality is undecided; move a parameter slightly",
     )
     ended_early = (
@@ -59,7 +59,7 @@ class CriticalityRequest:
     """Request of task `criticality` for each rod.
 
     F_max: largest force, in k3/L^2. accuracy: relative accuracy of the coefficients. certify: whether the
-    list of Hopf points is proved complete.
+    list of Hopf points must be proved complete.
     """
 
     F_max: float
@@ -71,8 +71,7 @@ class CriticalityRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criticality:
-    """Result for one rod: all Hopf points up to the force `end`, with the coefficients of the first of
-    them."""
+    """Result for one rod: all Hopf points up to the force `end`; coefficients: of the first Hopf points."""
 
     status: CriticalityStatus
     transitions: Transitions
@@ -89,11 +88,11 @@ class Criticality:
 
 def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
     """All Hopf points of `rod` for forces up to `request.F_max`, with coefficients. The force of `rod` is
-    ignored; a failure is a status, never an exception."""
+    ignored; a failure is returned as a status, never raised."""
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Criticality:
-        # Without gamma1 and the force, rods that differ in these alone share the search.
+        # Without gamma1 and the force: rods that differ only in these two share the search.
         path = Path(replace(rod.linear, F=0.0), "F")
         found = _hopf_points(path, end, request.certify, request.crossings)
         coefficients = tuple(
@@ -113,7 +112,7 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
 
 @cache
 def warm_up() -> None:
-    """Solves one rod, so that compiled code is loaded and caches are filled before a time is measured."""
+    """Solves one rod to load compiled code and to fill caches before a time is measured."""
     solve_criticality(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), CriticalityRequest(40.0, 1e-8, True, 4))
 
 
@@ -123,7 +122,8 @@ def _hopf_points(path: Path, end: float, certify: bool, most: int) -> Transition
 
 
 def _coefficients(rod: Rod, hopf: Crossing, request: CriticalityRequest) -> HopfCoefficients:
-    """Coefficients of the Hopf point `hopf`; after a failure NaN, with the cause as message."""
+    """Coefficients of the Hopf point `hopf`; if the computation fails they are NaN, with the cause as
+    message."""
     try:
         return hopf_coefficients(replace(rod, F=hopf.at), hopf, request.accuracy)
     except FAILURES as error:
@@ -143,7 +143,8 @@ def _nothing(end: float, cause: str) -> Criticality:
 def _judged(
     found: Transitions, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
 ) -> tuple[CriticalityStatus, str]:
-    """(status of the most serious problem, message) of the Hopf points `found` and their coefficients."""
+    """Returns (status, message) from the Hopf points `found` and their coefficients. status: the first of the
+    problems listed below, or ok."""
     failures = "; ".join(filter(None, (c.message for c in coefficients)))
     known = [c for c in coefficients if c.known]
     worse = any(c.error > request.accuracy * abs(c.at) for c in found.crossings) or any(

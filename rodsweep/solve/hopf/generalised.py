@@ -1,8 +1,8 @@
-"""Generalised Hopf (Bautin) points: the criticality Re c changes its sign along a Hopf curve.
+"""Generalised Hopf (Bautin) points: points of a Hopf curve at which Re c changes its sign.
 
-The normal form gives the sign of Re c at every stored point of a Hopf curve. Between two neighbours of
-opposite sign D(i eta) = 0 and Re c = 0 have a common solution: Newton's method on D computes the Hopf point
-at a position between the neighbours; Brent's method finds the position at which Re c vanishes. Two sign
+The normal form gives the sign of Re c at every stored point of a Hopf curve. Between two neighbouring points
+with opposite signs, D(i eta) = 0 and Re c = 0 have a common solution: Newton's method on D computes the Hopf
+point at a position between the neighbours; Brent's method finds the position at which Re c vanishes. Two sign
 changes between the same neighbours are missed.
 """
 
@@ -28,17 +28,18 @@ class GeneralisedHopfSettings:
     """Settings for the location of generalised Hopf points on a Hopf curve."""
 
     coarsest: float = 1e-10
-    """Coarsest relative accuracy of c for locating generalised Hopf points, which are located to 1e-9."""
+    """Coarsest relative accuracy of c for locating generalised Hopf points, whose relative accuracy is
+    1e-9."""
     first_sign_accuracy: float = 1e-5
-    """Relative accuracy of c at first; if the sign of Re c is undecided, c is recomputed with the requested
-    accuracy."""
+    """Relative accuracy of c in the first computation; if the sign of Re c is undecided, c is recomputed with
+    the requested accuracy."""
     tolerance: float = 1e-13
     """Tolerance of Brent's method, as a fraction of the distance between two neighbours."""
     slope_step: float = 1e-3
-    """Difference step for the slope of Re c, as a fraction of the distance between two neighbours."""
+    """Difference step for the derivative of Re c, as a fraction of the distance between two neighbours."""
     max_zero_ratio: float = 1e-6
-    """Largest |Re c|/|c| accepted as a zero of Re c; a larger value means that Re c jumps from one sign to
-    the other."""
+    """A root found by Brent's method is a zero of Re c only if |Re c|/|c| is at most this; otherwise Re c
+    jumps from negative to positive values."""
 
 
 GENERALISED_HOPF = GeneralisedHopfSettings()
@@ -48,8 +49,9 @@ GENERALISED_HOPF = GeneralisedHopfSettings()
 class GeneralisedHopfPoint:
     """Generalised Hopf point: the point of a Hopf curve with Re c = 0.
 
-    values, errors: both parameters of the plane. frequency in 1/tau2, growth_slope = dw/dF in L^2/(k3 tau2),
-    landau_imag = Im c in 1/(tau2 L^2). after: index of the last stored point of the curve before this point.
+    values, errors: of both parameters of the plane. frequency in 1/tau2, growth_slope = dw/dF in L^2/(k3
+    tau2), landau_imag = Im c in 1/(tau2 L^2). after: index of the last stored point of the curve before this
+    point.
     """
 
     after: int
@@ -62,7 +64,7 @@ class GeneralisedHopfPoint:
 
 @dataclass(frozen=True, slots=True)
 class CurveCriticality:
-    """Signs of Re c along one Hopf curve, and its generalised Hopf points.
+    """Signs of Re c along one Hopf curve, and the generalised Hopf points of this curve.
 
     criticality: sign of Re c at every stored point, 0 if undecided, NaN if the normal form failed, (points,).
     points: generalised Hopf points. unlocated: number of sign changes without a located point.
@@ -82,21 +84,21 @@ class _HopfNormalForm:
 
     @property
     def share(self) -> float:
-        """Re c/|c|, a dimensionless function with the zeros of Re c."""
+        """Re c/|c|, a dimensionless function that vanishes where Re c vanishes."""
         return self.coefficients.landau.real / abs(self.coefficients.landau)
 
 
 def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> CurveCriticality:
-    """The sign of Re c at every stored point of the Hopf curve `curve`, and its generalised Hopf points.
+    """The sign of Re c at every stored point of the Hopf curve `curve`, and the generalised Hopf points.
 
-    accuracy: relative accuracy of c, at most `GENERALISED_HOPF.coarsest`. A failure of the normal form makes
-    the sign NaN at this point only.
+    accuracy: relative accuracy of c, reduced to `GENERALISED_HOPF.coarsest` if larger. If the normal form
+    fails at a point, the sign is NaN at this point only.
     """
     hopf = HopfCurve(Boundary(plane, curve.sign), curve.scaled, min(accuracy, GENERALISED_HOPF.coarsest))
     signs = np.array([hopf.sign(i) for i in range(len(curve.scaled))])
     points = []
     unlocated = 0
-    decided = np.flatnonzero(signs != 0)  # a change may lie within the error of a point
+    decided = np.flatnonzero(signs != 0)  # the sign may change within the error of a point
     for a, b in zip(decided[:-1], decided[1:], strict=True):
         if signs[a] * signs[b] < 0:
             found = hopf.located(int(a), int(b))
@@ -117,7 +119,7 @@ class HopfCurve:
     accuracy: float
 
     def sign(self, i: int) -> float:
-        """Sign of Re c at the stored point of index i: -1 or 1, 0 if undecided, NaN if the normal form
+        """Sign of Re c at the stored point of index i: -1 or 1; 0 if undecided, NaN if the normal form
         fails."""
         points = len(self.scaled)
         report(lambda: SolvePosition(f"criticality of a Hopf curve, point {i + 1} of {points}", i / points))
@@ -131,8 +133,8 @@ class HopfCurve:
             return math.nan
 
     def at(self, guess: Array, normal: Array, accuracy: float) -> _HopfNormalForm:
-        """The Hopf point and its normal form where the Hopf curve crosses the plane through `guess`, (3,),
-        with normal vector `normal`, (3,); raises Unsolvable."""
+        """The Hopf point at which the Hopf curve crosses the plane through `guess`, (3,), with normal vector
+        `normal`, (3,), and its normal form; raises Unsolvable."""
         there = self.boundary.point_near(guess, normal)
         if there is None:
             raise Unsolvable("no Hopf point is found between two points of the curve")
@@ -148,7 +150,7 @@ class HopfCurve:
 
     def located(self, first: int, last: int) -> GeneralisedHopfPoint | None:
         """The zero of Re c between the points of indices `first` and `last`, at which Re c has opposite
-        signs; None if Brent's method does not find it."""
+        signs; None if Brent's method finds no zero."""
         from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
         start = self.scaled[first]
@@ -166,13 +168,13 @@ class HopfCurve:
         slope = (beyond.share - before.share) / (2 * GENERALISED_HOPF.slope_step)
         if abs(here.share) > GENERALISED_HOPF.max_zero_ratio or slope == 0:
             return None
-        # Points of undecided sign may lie between the two, before or behind the zero.
+        # Points of undecided sign may lie between the two points, on both sides of the zero.
         passed = (self.scaled[first + 1 : last] - start) @ chord <= s * (chord @ chord)
         along = here.coefficients.landau_error / abs(slope) + GENERALISED_HOPF.tolerance
         return self.as_point(here, first + int(passed.sum()), chord * along)
 
     def as_point(self, here: _HopfNormalForm, after: int, moved: Array) -> GeneralisedHopfPoint:
-        """The generalised Hopf point `here`, with errors of both parameters.
+        """The generalised Hopf point at the Hopf point `here`, with errors of both parameters.
 
         after: index of the curve's stored point before this point. moved: position error along the chord,
         (3,).
@@ -180,7 +182,7 @@ class HopfCurve:
         there = here.there
         axes = self.boundary.plane.axes
         tangent = there.tangent
-        # An error along the chord is an error along the curve, longer by the angle between both.
+        # The error along the curve is the error along the chord over the cosine of their angle.
         way = tangent * float(np.linalg.norm(moved) ** 2 / (tangent @ moved))
         values = [axis.value(float(x)) for axis, x in zip(axes, there.v[:2], strict=True)]
         errors = [

@@ -1,8 +1,8 @@
-"""Subcritical Hopf point next to a force at which the straight rod is stable.
+"""Subcritical Hopf point near a force at which the straight rod is stable.
 
-The unstable cycles of a subcritical Hopf point coexist with the stable straight rod and bound its basin: a
-perturbation larger than the unstable cycle leaves the straight rod, mostly for a stable cycle on the same
-branch behind a fold.
+The unstable cycles of a subcritical Hopf point coexist with the stable straight rod and bound its basin of
+attraction. After a perturbation larger than the unstable cycle, the rod does not return to the straight
+state; mostly it approaches a stable cycle on the same branch beyond a fold.
 """
 
 from dataclasses import dataclass, replace
@@ -19,12 +19,13 @@ class HopfBesideSettings:
     """Settings for the search for a subcritical Hopf point near the force of a rod."""
 
     farthest_force: float = 1.5
-    """Hopf points are sought at forces from F/`farthest_force` to F `farthest_force`, with F the force of the
-    rod."""
+    """Hopf points are searched at forces from F/`farthest_force` to F `farthest_force`, where F is the force
+    of the rod."""
     accuracy: float = 1e-3
-    """Relative accuracy of the coefficient c; only its sign and its first digits are needed."""
+    """Relative accuracy of the coefficient c; only the sign and the first digits of c are needed."""
     largest_y: float = 0.5
-    """Largest tip y, in L, of an unstable cycle: for larger cycles the normal form is too inaccurate."""
+    """Hopf points whose unstable cycle has a larger tip y, in L, are ignored: the normal form is too
+    inaccurate."""
 
 
 HOPF_BESIDE = HopfBesideSettings()
@@ -43,11 +44,12 @@ class SubcriticalHopf:
 
 
 def subcritical_hopf_beside(rod: Rod) -> SubcriticalHopf | None:
-    """The subcritical Hopf point nearest to the force of `rod`; None if no candidate is subcritical.
+    """The nearest Hopf point to the force of `rod` that is subcritical; None if neither candidate is
+    subcritical.
 
-    The candidates are the first Hopf point above and the first below the force, where the tip y of their
-    unstable cycle is at most `HOPF_BESIDE.largest_y`. The straight rod must be stable. Raises Unsolvable if
-    the search for Hopf points or a coefficient fails.
+    The candidates are the first Hopf point above and the first Hopf point below the force, if the tip y of
+    the unstable cycle is at most `HOPF_BESIDE.largest_y`. The straight rod must be stable. Raises Unsolvable
+    if the search for Hopf points or a coefficient fails.
     """
     low = rod.F / HOPF_BESIDE.farthest_force
     high = end_below_crushing(rod, rod.F * HOPF_BESIDE.farthest_force)

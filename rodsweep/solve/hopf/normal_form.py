@@ -1,8 +1,8 @@
 """Normal form of a Hopf point: amplitude, frequency and motion of the cycles that bifurcate there.
 
-About the straight rod the mixed form (`rodsweep.discretization.straight.mixed_form`) is
+For deviations X from the straight rod the mixed form (`rodsweep.discretization.straight.mixed_form`) is
 M dX/dt = A X + B(X, X)/2 + C(X, X, X)/6. With a simple pair of eigenvalues w, conj w of (A, M),
-A q = w M q and p^H A = w p^H M, its small motions at a force F' near F are, to second order,
+A q = w M q and p^H A = w p^H M, small motions at a force F' near F are, to second order,
 
     X = z q + conj(z q) + Re(z^2 h20) + |z|^2 h11,      dz/dt = [w + lambda_F (F' - F)] z + c |z|^2 z,
     h20 = (2 i Im w M - A)^-1 B(q, q),                  h11 = -A^-1 B(q, conj q),
@@ -11,8 +11,8 @@ A q = w M q and p^H A = w p^H M, its small motions at a force F' near F are, to 
 A linear constitutive law has no cubic term. q is scaled to a tip deflection of 1/2, p to p^H M q = 1: with
 z = Z exp(i phase) the tip's y is Re z to second order, and |Z| its largest value in L.
 
-The mirror image of a motion is a motion too: q and p are transverse, h20 and h11 longitudinal. If w has a
-real part, away from a Hopf point, h20 and h11 belong to a cycle, on which |z| is constant.
+The mirror image of a motion is a motion: q and p are transverse, h20 and h11 longitudinal. Away from a Hopf
+point, where Re w is not 0, h20 and h11 are the coefficients for a cycle, on which |z| is constant.
 """
 
 from dataclasses import dataclass
@@ -38,40 +38,40 @@ class NormalFormSettings:
     """Settings for the normal form of a Hopf point: mesh and inverse iteration."""
 
     shift_offset: float = 1e-10
-    """Relative offset of the shift from the eigenvalue estimate; the offset keeps the shifted matrix
-    nonsingular."""
+    """Relative offset of the shift from the eigenvalue estimate; without an offset the shifted matrix might
+    be singular."""
     found: float = 1e-8
-    """Relative distance of shift and eigenvalue at which the inverse iteration has converged: two iterations
-    with this shift reach rounding error."""
+    """The inverse iteration stops when the relative distance of shift and eigenvalue is at most this: two
+    iterations with this shift reach rounding error."""
     max_shifts: int = 10
     """Maximum number of shifts of the inverse iteration."""
     accuracy_share: float = 0.1
-    """Factor on the requested accuracy of c for the mesh rule: the rule is made for eigenvalues, and the
-    error of c may be five times theirs."""
+    """The mesh rule, made for eigenvalues, is applied with the requested accuracy of c times this factor: the
+    error of c may be five times the error of the eigenvalue."""
     largest_order: int = 20
-    """Largest element order; a further element costs less than a higher order."""
+    """Largest element order; an additional element costs less than a higher order."""
     max_nodes: int = 2000
-    """Maximum number of nodes for a uniform rod; a rod that needs more raises Unsolvable."""
+    """Maximum number of nodes for a uniform rod; Unsolvable is raised for a rod that needs more nodes."""
     max_arm_nodes: int = 400
     """Maximum number of nodes for an arm, whose matrices are factorised without elimination by elements."""
 
 
 NORMAL_FORM = NormalFormSettings()
 ITERATIONS_PER_SHIFT = 2
-"""Number of inverse iterations with one shift. After two, the error of the mode is about the square of
-`NORMAL_FORM.found`, below rounding error; after one, it would exceed the stated error of c."""
+"""Number of inverse iterations with one shift. After two iterations the error of the mode is about the square
+of `NORMAL_FORM.found`, below rounding error; after one iteration it would exceed the stated error of c."""
 
 
 HARMONIC_WAVES = 2
-"""Wave number of h20 and h11, which determine c, in units of the wave number of q."""
+"""Wave number of h20 and h11, which determine c, divided by the wave number of q."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class NormalForm:
     """Normal form of a rod on a mesh, about the straight rod, for one eigenvalue w with Im w > 0.
 
-    w in 1/tau2, slope = dw/dF, c in 1/(tau2 L^2). q, p, h20 complex and h11 real, of the shape (unknowns,)
-    of `form`'s X. At a Hopf point w = i Im w but for the error of the mesh.
+    w in 1/tau2, slope = dw/dF, c in 1/(tau2 L^2). q, p, h20 (complex) and h11 (real): coefficients of the
+    state X of `form`, (unknowns,). At a Hopf point w = i Im w up to the error of the mesh.
     """
 
     form: MixedForm
@@ -90,28 +90,30 @@ class NormalForm:
 
     @property
     def supercritical(self) -> bool:
-        """Whether Re c < 0: the nonlinearity limits the growth, and cycles are stable if no other mode
+        """Whether Re c < 0: the nonlinearity then limits the growth, and cycles are stable if no further mode
         grows."""
         return self.c.real < 0
 
     @property
     def amplitude(self) -> float:
-        """a of a Hopf point: the largest tip y is |a| sqrt(|F' - F|/|F|) in L.
+        """Amplitude coefficient a of a Hopf point: the largest tip y is |a| sqrt(|F' - F|/|F|), in L.
 
-        a < 0 where the cycles are at F' < F.
+        a < 0 if the cycles exist at F' < F.
         """
         squared = -self.slope.real / self.c.real
         return float(np.sign(squared) * abs(self.F * squared) ** 0.5)
 
     @property
     def frequency_slope(self) -> float:
-        """b of a Hopf point: the frequency of the cycle at F' is Im w + b (F' - F), in 1/tau2."""
+        """Frequency slope b of a Hopf point: the frequency of the cycle at F' is Im w + b (F' - F), in
+        1/tau2."""
         return self.slope.imag - self.c.imag * self.slope.real / self.c.real
 
     def cycle(self, F: float) -> tuple[float, float]:
         """(squared largest tip y in L^2, frequency in 1/tau2) of the cycle at a force F near `self.F`.
 
-        At F the eigenvalue is taken as w + slope (F - self.F). If the square is negative, no cycle exists.
+        The eigenvalue at F is approximated by w + slope (F - self.F). If the square is negative, no cycle
+        exists.
         """
         w = self.w + self.slope * (F - self.F)
         squared = -w.real / self.c.real
@@ -120,7 +122,7 @@ class NormalForm:
     def motion(self, amplitude: float, phases: Array) -> Array:
         """State X of a cycle, to second order in `amplitude`, at `phases`, (n,), in rad: shape (n, unknowns).
 
-        amplitude: the largest tip y, in L; the tip reaches it at phase 0.
+        amplitude: the largest tip y, in L, which is reached at phase 0.
         """
         z = (amplitude * np.exp(1j * phases))[:, None]
         return 2 * (z * self.q).real + (z * z * self.h20).real + amplitude**2 * self.h11
@@ -133,7 +135,7 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     """
     transverse, longitudinal = (straight_matrices(form, part) for part in (TRANSVERSE, LONGITUDINAL))
     w, q, p = _modes(transverse, guess)
-    # The mode is transverse, so its quadratic fields are longitudinal: the other block is not needed.
+    # The mode is transverse, so its quadratic fields are longitudinal: the opposite blocks are not needed.
     h20 = -longitudinal.factors(2j * w.imag).solve(form.bilinear(q, q))
     h11 = -longitudinal.factors(0).solve(form.bilinear(q, q.conj())).real
     c = np.vdot(p, form.bilinear(q.conj(), h20) / 2 + form.bilinear(q, h11))
@@ -146,13 +148,13 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
 def accurate_normal_form(rod: Rod, w: complex, accuracy: float) -> NormalForm:
     """Normal form of the eigenvalue w of `rod`, on a mesh that gives c to the relative accuracy `accuracy`.
 
-    Raises Unsolvable if w is no eigenvalue to this accuracy, or if the mesh would have too many nodes.
+    Raises Unsolvable if the mesh has no eigenvalue equal to w within this accuracy, or too many nodes.
     """
     return normal_form_on(elements_for(rod, w, accuracy), rod, w, accuracy)
 
 
 def elements_for(rod: Rod, w: complex, accuracy: float) -> Elements:
-    """Elements on which the coefficient c of the eigenvalue w has the relative accuracy `accuracy`, by the
+    """Elements on which the coefficient c for the eigenvalue w has the relative accuracy `accuracy`, by the
     mesh rule for eigenvalues."""
     accuracy *= NORMAL_FORM.accuracy_share
     waves = HARMONIC_WAVES * wave_number(rod, w)
@@ -163,13 +165,13 @@ def elements_for(rod: Rod, w: complex, accuracy: float) -> Elements:
 
 
 def of_odd_order(elements: Elements) -> Elements:
-    """The elements with the order increased to an odd number; elements of even order cannot be eliminated one
-    by one."""
+    """The elements with an even order increased by 1; elements of even order cannot be eliminated one by
+    one."""
     return Elements(elements.edges, elements.order | 1)
 
 
 def a_third_finer(elements: Elements) -> Elements:
-    """Elements with a third more unknowns, of odd order."""
+    """Elements with about a third more unknowns than `elements`, of odd order."""
     order = ceil(elements.order * RESOLUTION.refinement_ratio)
     if order <= RESOLUTION.max_order:
         return of_odd_order(Elements(elements.edges, order))
@@ -181,8 +183,8 @@ def a_third_finer(elements: Elements) -> Elements:
 def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) -> NormalForm:
     """Normal form of the eigenvalue w of `rod` on the mesh `elements`.
 
-    Raises Unsolvable if w is no eigenvalue to the relative accuracy `accuracy`, or if the mesh has too many
-    nodes.
+    Raises Unsolvable if the mesh has no eigenvalue equal to w within the relative accuracy `accuracy`, or if
+    the mesh has too many nodes.
     """
     nodes = elements.nodes
     limit = NORMAL_FORM.max_nodes if rod.standard else NORMAL_FORM.max_arm_nodes
@@ -199,8 +201,8 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
 
 
 def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[complex, Complex, Complex]:
-    """(w, q, p) for the eigenvalue nearest to `guess`, with the transverse modes q and p scaled as the module
-    says.
+    """(w, q, p) for the eigenvalue nearest to `guess`; the transverse modes q and p are scaled as in the
+    module docstring.
 
     Two-sided inverse iteration, with the two-sided Rayleigh quotient as the next shift.
     """
@@ -208,7 +210,7 @@ def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[
     for _ in range(NORMAL_FORM.max_shifts):
         shift = w * (1 + NORMAL_FORM.shift_offset)
         factors = elements.factors(shift)
-        # Odd unknowns are the transverse ones. Longitudinal ones start at 0 and stay there.
+        # Odd unknowns are transverse. The longitudinal unknowns start at 0 and remain 0.
         q = p = np.where(elements.form.parity < 0, 1 + 0j, 0)
         for _ in range(ITERATIONS_PER_SHIFT):
             q = factors.solve(elements.times_M(q))
@@ -223,7 +225,7 @@ def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[
         raise Unsolvable(f"inverse iteration finds no eigenvalue near w = {guess:.6g}")
     if not w.imag > 0:
         raise Unsolvable(f"the eigenvalue near w = {guess:.6g} is real: no mode oscillates there")
-    # The tip of q is at y = 1/2, so that |z| is the largest tip y of z q + c.c.; <p, M q> = 1 saves every
-    # projection on q a denominator.
+    # The tip of q is at y = 1/2, so that |z| is the largest tip y of z q + c.c.; with <p, M q> = 1, a
+    # projection on q needs no denominator.
     scale = 2 * (elements.form.tip_y @ q)
     return w, q / scale, p * scale.conj() / np.vdot(p, Mq).conj()

@@ -1,8 +1,8 @@
 """Right and left modes of given eigenvalues on a sufficiently fine mesh, with error estimates.
 
-The result is that of the finer of two meshes; the difference of the two meshes is the error estimate. Near a
-double eigenvalue, where condition numbers grow like the inverse distance of the two eigenvalues, two meshes
-may agree by chance; an estimate of the rounding error is added there.
+The modes of the finer of two meshes are returned; the difference between the two meshes is the error
+estimate. Near a double eigenvalue, where condition numbers grow like the inverse distance of the two
+eigenvalues, two meshes may agree by chance; there an estimate of the rounding error is added.
 """
 
 from dataclasses import dataclass, replace
@@ -23,19 +23,19 @@ from .inverse_iteration import ModeVectors, mode_vectors
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModeMeshSettings:
-    """Settings for the meshes on which modes and condition numbers are computed."""
+    """Settings of the meshes on which modes and condition numbers are computed."""
 
     more_orders: int = 4
     """Increase of the element order from the first mesh to the second, which reduces the error of the modes
     by a factor of 100."""
     max_meshes: int = 4
-    """Maximum number of meshes after the first, each finer than the one before."""
+    """Maximum number of meshes after the first, each finer than its predecessor."""
     max_unknowns: int = 1500
     """Largest number of unknowns of a mesh; dense linear algebra on a larger mesh takes seconds."""
     finest_accuracy: float = 1e-24
-    """Smallest relative accuracy of eigenvalues for which the first mesh is chosen, whatever the request."""
+    """The first mesh is chosen for a relative accuracy of eigenvalues not smaller than this."""
     roundings: float = 2.0
-    """Relative rounding error of a condition number, in units of (rounding error of the eigenvalue)/(distance
+    """Relative rounding error of a condition number, divided by (rounding error of the eigenvalue)/(distance
     to the nearest eigenvalue); measured: median 0.6, maximum 3.4."""
 
 
@@ -43,7 +43,7 @@ MODE_MESH = ModeMeshSettings()
 
 
 def vector_accuracy(accuracy: float) -> float:
-    """Relative accuracy of eigenvalues for which the first mesh is chosen, if the modes need the relative
+    """Relative accuracy of eigenvalues for which the first mesh is chosen if the modes need the relative
     accuracy `accuracy`."""
     return max(mesh_accuracy(accuracy, True), MODE_MESH.finest_accuracy)
 
@@ -52,8 +52,8 @@ def converged_vectors(
     rod: Rod, eigenvalues: Complex, points: Array, wave: float, accuracy: float
 ) -> ModeVectors | None:
     """Modes of `eigenvalues` at `points`, (n,), from the mesh with the smallest error estimate. wave: wave
-    number that the mesh must resolve. None if even the second mesh is larger than
-    `ModeMeshSettings.max_unknowns`."""
+    number that the mesh must resolve. None if even the second mesh has more than
+    `ModeMeshSettings.max_unknowns` unknowns."""
     mesh = mesh_for(rod, wave, vector_accuracy(accuracy))
     gaps = np.array([gap(rod, complex(w)) for w in eigenvalues])
     coarse = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
@@ -81,8 +81,8 @@ def converged_vectors(
 
 
 def _compared(coarse: ModeVectors, fine: ModeVectors, gaps: Array) -> ModeVectors:
-    """The modes `fine` with their differences from the modes `coarse` as errors. gaps: distance of each
-    eigenvalue to its nearest neighbour, (modes,)."""
+    """The modes `fine` with their differences from the modes `coarse` as errors. gaps: distance from each
+    eigenvalue to the nearest other eigenvalue, (modes,)."""
     error = np.zeros(len(fine.condition))
     pairs = ((coarse.right, fine.right), (coarse.deformation, fine.deformation), (coarse.left, fine.left))
     for old, new in pairs:
@@ -90,7 +90,7 @@ def _compared(coarse: ModeVectors, fine: ModeVectors, gaps: Array) -> ModeVector
         change = np.abs(new - old).max(axis=2)
         relative = np.where(size > 0, change / np.where(size > 0, size, 1.0), change)
         error = np.maximum(error, relative.max(axis=0))
-    # For a normal operator, of condition number 1, rounding moves the eigenvalues but turns no vector.
+    # Rounding turns no eigenvector of a normal operator, whose condition numbers are 1.
     turned = (
         MODE_MESH.roundings
         * (1 - 1 / fine.condition**2)
@@ -102,8 +102,8 @@ def _compared(coarse: ModeVectors, fine: ModeVectors, gaps: Array) -> ModeVector
 
 
 def gap(rod: Rod, w: complex) -> float:
-    """Estimated distance from the eigenvalue w to the nearest other eigenvalue, 2 |D'/D''|; accurate if
-    small."""
+    """Estimated distance from the eigenvalue w to the nearest other eigenvalue, 2 |D'/D''|; accurate if the
+    distance is small."""
     if rod.standard:
         return distance_to_next_root(w, rod.coefficients)
     determinant = arm_determinant(rod)

@@ -1,7 +1,7 @@
 """Right and left modes of given eigenvalues on one mesh, by inverse iteration on the dense pencil.
 
-The shift is the eigenvalue; the pencil gives the right vector, its transpose the left vector. Normalisation
-as in `rodsweep.solve.modes.leading_modes`.
+The shift is the eigenvalue; the pencil gives the right mode, the transposed pencil the left mode. The
+normalisation is defined in `rodsweep.solve.modes.leading_modes`.
 """
 
 from dataclasses import dataclass, replace
@@ -20,13 +20,13 @@ from ...model.rod import Rod
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModeIterationSettings:
-    """Settings for the inverse iteration that computes the right and left mode of an eigenvalue."""
+    """Settings of the inverse iteration that computes the right and left mode of an eigenvalue."""
 
     iterations: int = 4
     """Number of inverse iterations per eigenvalue; two suffice unless the eigenvalue is nearly double."""
     conjugate: float = 1e-12
-    """Relative distance below which an eigenvalue counts as the complex conjugate of the one before in the
-    list."""
+    """An eigenvalue is the complex conjugate of its predecessor in the list if their relative distance is at
+    most this."""
 
 
 MODE_ITERATION = ModeIterationSettings()
@@ -34,7 +34,7 @@ MODE_ITERATION = ModeIterationSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModeVectors:
-    """Right and left modes computed on one mesh, evaluated at given points of the rod, with their errors.
+    """Right and left modes computed on one mesh, evaluated at given points of the rod, with errors.
 
     right, deformation and left are complex, (2, modes, points), NaN if the tip does not move.
     """
@@ -50,20 +50,20 @@ class ModeVectors:
     pairing: Complex
     """(psi_n, xi_n) in the Gamma inner product, complex, (modes,)."""
     condition: Array
-    """|psi| |xi|/|(psi, xi)| >= 1, (modes,): factor by which a perturbation of L, in the Gamma norm, moves
-    the eigenvalue; inf at the onset F*. For gamma3 = 0 the angle theta is no part of the state, and the norm
-    is the norm of y."""
+    """|psi| |xi|/|(psi, xi)| >= 1, (modes,): ratio of the change of the eigenvalue to the perturbation of L,
+    in the Gamma norm; inf at the onset F*. For gamma3 = 0 the state contains no theta, and the norm is the
+    norm of y."""
     rounding: Array
     """Rounding error of an eigenvalue of the mesh, from (A - w B) x, in 1/tau2, (modes,)."""
     mode_error: Array
-    """Largest error of Y, Theta, h2, Pi, Y+ and Theta+, each in units of its largest value, (modes,)."""
+    """Largest error of Y, Theta, h2, Pi, Y+ and Theta+, each divided by the largest value of the same field,
+    (modes,)."""
     condition_error: Array
     """Relative error of `condition`, (modes,). `condition_error` and `mode_error` are NaN until two meshes
     are compared."""
 
     def errors(self) -> dict[str, float]:
-        """Largest relative error over all modes of the "modes" and of the "condition numbers"; inf if
-        unknown."""
+        """Largest relative errors over all modes, by name ("modes", "condition numbers"); inf if unknown."""
         errors = {"modes": self.mode_error.max(), "condition numbers": self.condition_error.max()}
         return {name: inf if np.isnan(error) else float(error) for name, error in errors.items()}
 
@@ -88,7 +88,8 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
 
 
 def unknown_vectors(resolution: Resolution, modes: int, points: int) -> ModeVectors:
-    """Placeholder for modes that were not computed: all entries NaN. modes, points: numbers of both."""
+    """Placeholder for modes that were not computed: all entries NaN. modes, points: numbers of modes and
+    points."""
     shape = np.full((2, modes, points), np.nan + 0j)
     numbers = np.full(modes, np.nan)
     return ModeVectors(
@@ -128,17 +129,18 @@ def _vectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, A
 def null_vectors(A: NDArray, B: NDArray, w: complex) -> tuple[NDArray, NDArray]:
     """Right and left null vector of A - w diag(B), (unknowns,) each, with largest entry 1; real for real
     w."""
-    # The inverse is wanted although the matrix is singular to rounding: its error lies along the null vector.
+    # The matrix is singular to rounding, but the error of the inverse lies along the null vector.
     inverse = np.linalg.inv(A - np.diag((w if w.imag else w.real) * B))
     return _iterated(inverse, B), _iterated(inverse.T, B)
 
 
 def _iterated(inverse: NDArray, B: NDArray) -> NDArray:
     """Null vector of a nearly singular matrix by inverse iteration, (unknowns,), with largest entry 1.
+    inverse: of this matrix.
 
-    A larger growth in a step means a smaller residual of the result. At a double eigenvalue the inverse
-    almost annihilates its own last result, and the next step gives rounding errors: the better of the last
-    two is taken.
+    A larger growth in an iteration means a smaller residual of the result. At a double eigenvalue the inverse
+    almost annihilates its last result, and the next iteration gives rounding errors: of the last two results,
+    the result with the larger growth is returned.
     """
     x: NDArray = np.ones(len(B))
     before = x

@@ -4,10 +4,10 @@ Eigenvalues come from `rodsweep.solve.spectrum`, certified and with their own er
 `convergence`; numerical abscissa and transient growth from `transient_growth`. Each module chooses its own
 meshes; the reported mesh is the mesh of the modes.
 
-Normalisation: right modes have Y(1) = 1 and left modes Y+(1) = 1. Both are therefore equal at F = 0, where L
-is self-adjoint. The coefficient of mode n in a state xi is (psi_n, xi)/(psi_n, xi_n); `pairing` is the
-denominator. A left mode belongs to the eigenvalue w* of the adjoint (Appendix B), so that (psi_m, xi_n) = int
-gamma2 Y+_m* Y_n + gamma3 Theta+_m* Theta_n = 0 for m != n.
+Normalisation: right modes have Y(1) = 1 and left modes Y+(1) = 1. Right and left modes are therefore equal at
+F = 0, where L is self-adjoint. The coefficient of mode n in a state xi is (psi_n, xi)/(psi_n, xi_n);
+`pairing` is the denominator. A left mode belongs to the eigenvalue w* of the adjoint (Appendix B), so that
+(psi_m, xi_n) = int gamma2 Y+_m* Y_n + gamma3 Theta+_m* Theta_n = 0 for m != n.
 """
 
 from dataclasses import dataclass, replace
@@ -30,11 +30,11 @@ from .transient_growth import Growth, growth_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeadingModeSettings:
-    """Settings for the transient growth of the leading modes."""
+    """Settings for the transient growth, and for the test whether a rod is unstable."""
 
     growth_wave_number: float = 24.0
-    """Smallest wave number that the mesh for the growth resolves, that of the eighth mode without load:
-    growth at short times needs more modes than the request."""
+    """Smallest wave number that the mesh for the growth resolves, the wave number of the eighth mode without
+    load: growth at short times needs more modes than are requested."""
     significant_errors: float = 4.0
     """A rod is unstable if a growth rate exceeds this multiple of its error estimate."""
 
@@ -44,8 +44,8 @@ LEADING_MODES = LeadingModeSettings()
 
 @dataclass(frozen=True, slots=True)
 class ModesRequest:
-    """Request for the leading modes: number of modes, relative accuracy, number of Lobatto nodes at which the
-    modes are stored, and options."""
+    """Request for the leading modes. modes: number of modes. accuracy: relative. nodes: number of Lobatto
+    nodes at which the modes are stored. certify: whether the list of eigenvalues must be proved complete."""
 
     modes: int
     accuracy: float
@@ -60,7 +60,8 @@ class Modes:
     """Result for one rod: leading eigenvalues, modes and transient growth, in the order defined in
     `rodsweep.model`.
 
-    status: status of the spectrum, unless the modes or the growth failed or missed the requested accuracy.
+    status: status of the spectrum, unless the modes or the growth failed or do not have the requested
+    accuracy.
     """
 
     status: SpectrumStatus
@@ -72,7 +73,7 @@ class Modes:
 
 
 def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
-    """The leading `request.modes` modes of a rod; a failure is a status, never an exception."""
+    """The leading `request.modes` modes of a rod; a failure is returned as a status, never raised."""
     if rod.uniform and not rod.standard:
         return _from_equivalent(rod, request)
     spectrum = solve_spectrum(rod, SpectrumRequest(request.modes, request.accuracy, request.certify))
@@ -94,7 +95,7 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
 
 
 def _from_equivalent(rod: Rod, request: ModesRequest) -> Modes:
-    """Modes of a uniform rod of any law, from the equivalent linear rod; times are rescaled."""
+    """Modes of a uniform rod of nonlinear material, from the equivalent linear rod; times are rescaled."""
     linear, rate = rod.equivalent
     found = solve_modes(linear, request)
     spectrum = found.spectrum

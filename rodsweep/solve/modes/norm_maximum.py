@@ -1,4 +1,4 @@
-"""The maximum of the norm |exp(L t)| over an interval of times, and an upper bound of the norm there.
+"""The maximum of the norm |exp(L t)| over a time interval, and an upper bound of the norm in the interval.
 
 With the numerical abscissa a, N = |exp(L t)|, and t = t0 + r in an interval [t0, t1] of width h,
 
@@ -23,21 +23,21 @@ class NormMaximumSettings:
     """Settings for the search for the maximum of |exp(L t)| over time."""
 
     start_ratio: float = 2**0.25
-    """Ratio of neighbouring times of the first grid, which is geometric."""
+    """Ratio of neighbouring times of the first grid."""
     max_halvings: int = 40
-    """Maximum number of halvings of an interval of times; after them the bound is not improved further."""
+    """Maximum number of halvings of a time interval; after that the bound is not improved further."""
     max_open_intervals: int = 4000
-    """Maximum number of intervals in which a larger norm is possible; with more, the bound is not improved
-    further."""
+    """Maximum number of intervals in which a larger norm is possible; with more intervals, the bound is not
+    improved further."""
     batch: int = 128
-    """Number of times at which the propagator is evaluated in one call, which limits the memory."""
+    """Number of times at which the propagator is evaluated in one call; limits the memory."""
     largest_exponent: float = 300.0
-    """Largest argument of exp, at which exp does not overflow; larger arguments are cut to it."""
+    """Larger arguments of exp are replaced by this value, at which exp does not overflow."""
     max_peak_steps: int = 40
     """Maximum number of regula falsi steps to a maximum of the norm."""
     rise_left: float = 1e-14
-    """Tolerance of the search for a maximum: largest possible relative rise of the norm within the final
-    bracket. The relative error of the time is the square root of the tolerance."""
+    """Tolerance of the search for a maximum: largest possible relative increase of the norm within the final
+    bracket. The relative error of the time is about the square root of this tolerance."""
 
 
 NORM_MAXIMUM = NormMaximumSettings()
@@ -46,10 +46,11 @@ NORM_MAXIMUM = NormMaximumSettings()
 def largest_norm(
     propagator: Propagator, span: tuple[float, float], abscissa: float, floor: float, tolerance: float
 ) -> tuple[tuple[float, float], float]:
-    """((maximum of |exp(L t)|, its time), upper bound of |exp(L t)|) over the times span[0] to span[1].
+    """Returns ((maximum of |exp(L t)|, its time), upper bound of |exp(L t)|) for times from span[0] to
+    span[1].
 
-    tolerance: relative, of the bound. floor: norms below it are not searched for. abscissa: an upper bound,
-    at least 0, of the numerical abscissa.
+    tolerance: relative, of the bound. floor: smaller norms are not searched for. abscissa: an upper bound, at
+    least 0, of the numerical abscissa.
     """
     low, high = span
     count = max(2, int(np.ceil(np.log(high / low) / np.log(NORM_MAXIMUM.start_ratio))) + 1)
@@ -103,7 +104,7 @@ def _bound(h: Array, left: Array, right: Array, bend: Array, abscissa: float) ->
 
 def _peak(propagator: Propagator, low: float, high: float) -> tuple[float, float]:
     """(|exp(L t)|, t) at a maximum between the times `low` and `high`: the zero of the derivative, by the
-    Illinois regula falsi."""
+    Illinois regula falsi; the better end if the signs of the derivative show no maximum between."""
     at_low, rate_low = propagator.norm(low)
     at_high, rate_high = propagator.norm(high)
     if rate_low <= 0 or rate_high >= 0:
@@ -118,8 +119,8 @@ def _peak(propagator: Propagator, low: float, high: float) -> tuple[float, float
         if rate > 0:
             low = t
             rate_low = rate
-            # Illinois: an end that stays is weighted half, otherwise the bracket would shrink from one side
-            # only.
+            # Illinois: the weight of an end that stays is halved; otherwise the bracket would shrink from one
+            # side only.
             rate_high = rate_high / 2
         else:
             high = t

@@ -16,17 +16,17 @@ from .propagator import shifted_inverse
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AbscissaSettings:
-    """Settings for the shifts with which the numerical abscissa is computed from above."""
+    """Settings of the shifts with which the numerical abscissa is computed from above."""
 
     max_shifts: int = 60
-    """Maximum number of shifts; as long as the shift is below the numerical abscissa, the next is about twice
-    as large."""
+    """Maximum number of shifts; if a shift is below the numerical abscissa, the next shift is about twice as
+    large."""
     close_shift: float = 0.05
-    """Relative distance of the last shift above the numerical abscissa: small, so that shift + 1/eigenvalue
-    loses no digits to cancellation."""
+    """Relative distance of the last shift above the numerical abscissa: so small that shift + 1/eigenvalue
+    loses no digits by cancellation."""
     positive: float = 1e-9
-    """Ratio to the most negative eigenvalue of the shifted inverse above which a positive eigenvalue is not
-    rounding error."""
+    """The largest eigenvalue of the shifted inverse is positive, and not a rounding error, if it exceeds this
+    fraction of the modulus of the most negative eigenvalue."""
 
 
 ABSCISSA = AbscissaSettings()
@@ -36,13 +36,14 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     """sup Re (xi, L xi)/(xi, xi) over the domain of L, in 1/tau2: the largest growth rate at t = 0+.
 
     The largest eigenvalue of the Hermitian part (`rodsweep.model.adjoint`), approached by shifts from above.
-    nan if no shift lies above it, which is possible only for a rod without rotational drag and with g < 0.
+    nan if no shift lies above this eigenvalue, which is possible only for a rod without rotational drag and
+    with g < 0.
     """
     form = dense_form(rod, pencil)
     A = form.with_tip_terms(*hermitian_tip_coefficients(rod.F, tip_layer_ratio(rod)))
     B = form.B
     bound, _ = eigenvalue_box(rod) if rod.standard else hull_of(rod).box()
-    # Any shift above the abscissa will do; the bound of eigenvalues is only a first guess of it.
+    # Any shift above the abscissa is allowed; the bound of the eigenvalues is the first guess.
     shift = bound + 1 if bound < inf else rod.F**2 + 1
     for _ in range(ABSCISSA.max_shifts):
         H = shifted_inverse(A, B, shift)

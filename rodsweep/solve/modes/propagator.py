@@ -1,8 +1,8 @@
-"""exp(L t) on one mesh, represented by exp(L_k t) P_k, and data for bounds of its norm between two times.
+"""exp(L t) on one mesh, represented by exp(L_k t) P_k, and data for bounds of the norm between two times.
 
 P_k is the spectral projector of the k leading modes on the *whole* space; the remainder decays like exp(Re
-w_k t). Restricting the initial state to the span of the k leading modes, as is usual, converges only like a
-power of k: the optimal initial state satisfies the boundary conditions of the adjoint.
+w_k t). The usual restriction of the initial state to the span of the k leading modes would converge only like
+a power of k: the optimal initial state satisfies the boundary conditions of the adjoint.
 """
 
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ class PropagatorSettings:
     """Settings for exp(L t) and for its representation by the leading modes."""
 
     infinite: float = 1e-12
-    """Relative size of an eigenvalue of G below which the corresponding eigenvalue of L is infinite."""
+    """An eigenvalue of G smaller than this fraction of the largest belongs to an infinite eigenvalue of L."""
     taylor_terms: int = 16
     """Number of Taylor terms of exp for a matrix of norm 1/2; a multiple of 4."""
 
@@ -35,8 +35,9 @@ PROPAGATOR = PropagatorSettings()
 def shifted_inverse(A: Array, B: Array, shift: float) -> Array:
     """B^1/2 (A - shift B)^-1 B^1/2 on the n unknowns with a time derivative, (n, n).
 
-    Without a shift this is G, the inverse of L in coordinates with a Euclidean Gamma norm. It exists in every
-    limit; infinite eigenvalues of L are its zeros. For gamma3 = 0 state and norm are y alone.
+    For shift = 0 this matrix is G, the inverse of L in coordinates with a Euclidean Gamma norm. G exists in
+    every limit; its zero eigenvalues are the infinite eigenvalues of L. For gamma3 = 0 state and norm contain
+    y alone.
     """
     moving = B > 0
     root = np.sqrt(B[moving])
@@ -66,13 +67,13 @@ class Propagator:
         self.overlap: Array = np.zeros((0, 0))
 
     def keep(self, k: int) -> int:
-        """Represents exp(L t) from now on by k leading modes, Q exp(L_k t) (Z^T Q)^-1 Z^T, with orthonormal
-        real Q, Z.
+        """From now on exp(L t) is represented by k leading modes, Q exp(L_k t) (Z^T Q)^-1 Z^T, with
+        orthonormal real Q, Z.
 
         Q and Z are bases of the right and left invariant subspaces: at a double eigenvalue the eigenvectors
         are parallel, but the subspaces are well conditioned. The subspaces are nested, so L_k is upper
         triangular except for the 2 x 2 blocks of conjugate pairs. Returns the k used: at most the number of
-        modes of the mesh, and without splitting a conjugate pair.
+        modes of the mesh, and increased by 1 if k would split a conjugate pair.
         """
         k = min(k, len(self.w))
         # A complex pair must not be split, or the basis would not be real.
@@ -80,7 +81,7 @@ class Propagator:
             k += 1
         Q = _orthonormal(self.right[:, :k], self.w[:k])
         Z = _orthonormal(self.left[:, :k], self.w[:k])
-        # In the basis of nested invariant subspaces G is block triangular: what lies below is rounding error.
+        # In the basis of nested invariant subspaces G is block triangular: entries below are rounding errors.
         inside = np.tri(k, dtype=bool).T | np.diag(self.w[: k - 1].imag > 0, -1)
         self.generator = np.linalg.inv(np.where(inside, Q.T @ self.G @ Q, 0.0))
         self.overlap = Z.T @ Q
@@ -109,7 +110,7 @@ class Propagator:
         return size, np.maximum(-np.linalg.eigvalsh(half + np.swapaxes(half, 1, 2))[:, 0], 0.0)
 
     def left_over(self, m: int, time: float) -> float:
-        """|exp(L t) (P_k - P_m)|, the contribution at `time` of modes m + 1 to k; m < k must not split a
+        """|exp(L t) (P_k - P_m)|, the contribution of the modes m + 1 to k at `time`; m < k must not split a
         complex pair."""
         E = self.at(np.array([time]))[0]
         E[:m, :m] -= exponential(self.generator[:m, :m] * time) @ np.linalg.inv(self.overlap[:m, :m])
@@ -127,7 +128,7 @@ def _orthonormal(vectors: NDArray, w: NDArray) -> Array:
 def exponential(matrices: Array) -> Array:
     """exp of one small matrix or a stack of matrices, (..., k, k), by Taylor series, scaling and squaring.
 
-    Instead of exp the function squares exp - 1: in a block triangular matrix with slow and fast blocks, the
+    The function squares exp - 1 instead of exp: in a block triangular matrix with slow and fast blocks, the
     slow blocks then keep their digits, however many squarings the fast blocks need.
     """
     size = float(np.abs(matrices).sum(axis=-2).max())

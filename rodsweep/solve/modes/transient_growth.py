@@ -1,13 +1,13 @@
 """Largest transient growth of a perturbation of a stable straight rod in the Gamma norm, S = sup_t |exp(L
 t)|.
 
-With the numerical abscissa a, |exp(L t)| <= exp(a t), on a mesh as well as in the rod, because one form
-bounds both. Errors of a mesh at times t < log(S)/a therefore do not matter. The number of modes is sufficient
-if exp(a t) <= S at the first time at which the modes represent exp(L t). From then on
-`rodsweep.solve.modes.norm_maximum` bounds the norm, up to a time after which it only decays.
+With the numerical abscissa a, |exp(L t)| <= exp(a t), on a mesh and in the rod, because one quadratic form
+bounds both norms. Errors of a mesh at times t < log(S)/a therefore do not matter. The number of modes is
+sufficient if exp(a t) <= S at the first time at which the modes represent exp(L t). From this time on
+`rodsweep.solve.modes.norm_maximum` bounds the norm, up to a time after which the norm only decays.
 
-The accuracy is relative to S. For a just above 0 the growth S - 1 is like a^3 if shear dominates and like a^5
-if bending dominates, and occurs early; below the accuracy it is reported as S = 1 at t = 0.
+The accuracy is relative to S. For a just above 0 the growth S - 1 is proportional to a^3 if shear dominates
+and to a^5 if bending dominates, and occurs early; below the accuracy it is reported as S = 1 at t = 0.
 """
 
 from dataclasses import dataclass, replace
@@ -28,11 +28,11 @@ class GrowthSettings:
     """Settings for the number of modes and the meshes from which the transient growth is computed."""
 
     min_modes: int = 8
-    """Number of leading modes that represent exp(L t) at first."""
+    """Initial number of leading modes that represent exp(L t)."""
     more_modes: float = 0.5
-    """Increase of the number of modes if more are needed, as a fraction of the number."""
+    """Relative increase of the number of modes if more modes are needed."""
     truncation_margin: float = 4.0
-    """The modes left out contribute at most exp(-`truncation_margin`) of the accuracy."""
+    """The omitted modes contribute at most exp(-`truncation_margin`) times the accuracy."""
     search_share: float = 0.25
     """Tolerance of `largest_norm`, as a fraction of the requested accuracy."""
     min_search_tolerance: float = 2e-13
@@ -43,9 +43,10 @@ class GrowthSettings:
     """Ratio of the element orders of a further mesh and the mesh before: boundary layers at the tip need high
     orders."""
     max_meshes: int = 5
-    """Maximum number of meshes after the first, each finer than the one before."""
+    """Maximum number of meshes after the first, each finer than its predecessor."""
     max_unknowns: int = 400
-    """Largest number of unknowns of a further mesh; all modes of a larger mesh take more than a second."""
+    """Maximum number of unknowns of a further mesh; computing all modes of a larger mesh takes more than a
+    second."""
 
 
 GROWTH = GrowthSettings()
@@ -56,11 +57,11 @@ class Growth:
     """Transient growth of perturbations of a straight rod, with errors; NaN if not requested."""
 
     transient_growth: float = nan
-    """Largest growth sup_t |exp(L t)| in the Gamma norm. For an unstable rod the growth is inf, at the time
-    inf; if stability is undecided both are NaN."""
+    """Largest growth sup_t |exp(L t)| in the Gamma norm. For an unstable rod `transient_growth` and
+    `transient_time` are inf; if stability is undecided they are NaN."""
     transient_time: float = nan
-    """Time of the largest growth, in tau2, only as accurate as a flat maximum allows; 0 if the growth exceeds
-    1 by at most `growth_error`, and is then stated as 1."""
+    """Time of the largest growth, in tau2; inaccurate if the maximum is flat. 0 if the growth exceeds 1 by at
+    most `growth_error`; the growth is then stated as 1."""
     growth_error: float = nan
     """Relative error of `transient_growth`."""
     numerical_abscissa: float = nan
@@ -69,8 +70,8 @@ class Growth:
     """Absolute error of `numerical_abscissa`."""
 
     def errors(self, rate: float) -> dict[str, float]:
-        """Relative errors of growth and numerical abscissa, by name; that of the abscissa is relative to the
-        larger of |abscissa| and `rate`, in 1/tau2."""
+        """Relative errors of the growth and of the numerical abscissa, by name. The error of the abscissa is
+        divided by the larger of |abscissa| and `rate`, in 1/tau2."""
         scale = max(abs(self.numerical_abscissa), rate)
         return {"transient growth": self.growth_error, "numerical abscissa": self.abscissa_error / scale}
 
@@ -80,7 +81,7 @@ GROWTH_BY_STABILITY = {
     False: Growth(transient_growth=inf, transient_time=inf, growth_error=0.0),
     None: Growth(growth_error=0.0),
 }
-"""Growth by stability (True, False, None if undecided). None for a stable rod, whose growth must be
+"""`Growth` by stability (True, False, None if undecided); None for a stable rod, whose growth must be
 computed."""
 UNKNOWN_GROWTH = Growth(growth_error=inf)
 """Growth after a failed computation: NaN with infinite error."""
@@ -90,7 +91,8 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
     """Numerical abscissa and transient growth of a rod, from `mesh` and finer meshes. rate: modulus of the
     leading eigenvalue.
 
-    stable: whether the rod is stable, None if undecided; the growth then is NaN, and inf for an unstable rod.
+    stable: whether the rod is stable, None if undecided. The growth is inf for an unstable rod, NaN if
+    undecided.
     """
     best = UNKNOWN_GROWTH
     least = inf
@@ -107,7 +109,7 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
         abscissa = numerical_abscissa(rod, pencil)
         change = abs(abscissa - before)
         found = GROWTH_BY_STABILITY[stable]
-        # No growth at t = 0+ and none later: the norm of exp(L t) falls from 1.
+        # Without growth at t = 0+ there is no later growth: the norm of exp(L t) decreases from 1.
         if found is None and abscissa + change <= 0:
             found = Growth(transient_growth=1.0, transient_time=0.0, growth_error=0.0)
         if found is None:
@@ -133,8 +135,8 @@ def propagator_of(rod: Rod, pencil: AnyPencil) -> Propagator:
 
 
 def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accuracy: float) -> Growth:
-    """Largest growth from the propagator `fine`; the propagator `coarse` of a coarser mesh gives the error.
-    abscissa: an upper bound > 0 of the numerical abscissa."""
+    """Largest growth from the propagator `fine`; the error is estimated with the propagator `coarse` of a
+    coarser mesh. abscissa: an upper bound > 0 of the numerical abscissa."""
     if isnan(abscissa) or not fine.w[0].real < 0:  # a spurious eigenvalue of the mesh
         return UNKNOWN_GROWTH
     patience = log(1 / accuracy) + GROWTH.truncation_margin
@@ -145,7 +147,7 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
     k = GROWTH.min_modes
     while True:
         k = fine.keep(k)
-        # After this time the modes left out have decayed to the accuracy; before it more modes are needed.
+        # After this time the omitted modes have decayed to the accuracy; before, more modes are needed.
         first = patience / abs(fine.w[min(k, len(fine.w) - 1)].real)
         if not stop:
             stop, tail = _end(fine, first, patience)
@@ -161,8 +163,8 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
         k = min(int((1 + GROWTH.more_modes) * k), len(fine.w))
     hidden = max(ceiling, before) / best[0] - 1 + tail
     if best[0] > 1:
-        # Both meshes are compared at the peak and at the geometric mean of the peak's time and the earliest
-        # time that may matter; the coarser mesh with more modes if it has them.
+        # The meshes are compared at the peak and at the geometric mean of the peak's time and the earliest
+        # time that may matter; the coarser mesh uses more modes if possible.
         coarse.keep(int((1 + GROWTH.more_modes) * k))
         times = best[1], sqrt(best[1] * max(first, log(best[0]) / abscissa))
         hidden += max(abs(coarse.norm(t)[0] / fine.norm(t)[0] - 1) for t in times)
@@ -170,10 +172,10 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
 
 
 def _end(propagator: Propagator, first: float, patience: float) -> tuple[float, float]:
-    """(a time after which |exp(L t)| does not exceed its earlier values, relative amount by which it still
-    may).
+    """Returns (end, excess). end: a time after which |exp(L t)| does not exceed its earlier values. excess:
+    relative amount by which a later norm may nevertheless exceed them. first: earliest end.
 
-    Since |exp(L (t + r))| <= |exp(L t)| |exp(L r)|, any time with |exp(L t)| < 1 will do. Near a threshold
+    Since |exp(L (t + r))| <= |exp(L t)| |exp(L r)|, any time with |exp(L t)| < 1 is an end. Near a threshold
     such a time is very late. But once the leading pair dominates, the motion repeats itself and shrinks every
     half period. If the other modes contribute r at that time, no later norm exceeds all earlier norms by more
     than the fraction 2 r.
@@ -190,5 +192,5 @@ def _end(propagator: Propagator, first: float, patience: float) -> tuple[float, 
             return end, 0.0
         end *= 2
     alone = max(alone, first)
-    # The norm of a decaying pair repeats with half its period, so a maximum may come that much later.
+    # The norm of a decaying pair repeats with half its period, so a maximum may be half a period later.
     return alone + (pi / w[0].imag if m == 2 else 0.0), 2 * propagator.left_over(m, alone)

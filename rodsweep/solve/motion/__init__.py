@@ -1,1 +1,1 @@
-"""Time integration of the nonlinear rod by PETSc's TS, from a start state."""
+"""Time integration of the nonlinear rod by PETSc's TS, from an initial state."""

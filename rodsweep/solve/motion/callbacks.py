@@ -1,11 +1,11 @@
-"""Equations of the rod as C functions that PETSc calls without passing through Python.
+"""Equations of the rod as C functions that PETSc calls without Python.
 
 numba compiles the functions (`cfunc`) and ctypes registers them in libpetsc: through Python, a Newton
-iteration of 5 us takes 200 us. PETSc passes each function one pointer, to the record `context.CONTEXT`. The
-memory behind this record belongs to a `Workspace`, which must outlive the TS.
+iteration of 5 us would take 200 us. PETSc passes each function one pointer, to the record `context.CONTEXT`.
+The memory of this record belongs to a `Workspace`, which must outlive the TS.
 
-The equation is dz/dt - f(z) = 0, fully implicit. An additive splitting is slower: even with the full Jacobian
-of the step implicit and only the remainder explicit, k1 Pi^2 forces 500 to 1500 steps per period.
+The equation is dz/dt - f(z) = 0, fully implicit. An additive splitting is slower: even if the full Jacobian
+of the step is implicit and only the remainder explicit, k1 Pi^2 forces 500 to 1500 steps per period.
 """
 
 from collections.abc import Mapping
@@ -45,7 +45,7 @@ _object_state = petsc_function("PetscObjectStateGet")
 
 @c_function(POINTER, types.float64, POINTER, POINTER, POINTER, POINTER)
 def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
-    """PETSc's implicit function R = Udot - f(U), or R = Udot if the context's `without_rate` is set."""
+    """PETSc's implicit function R = Udot - f(U), or R = Udot if `without_rate` is set in the context."""
     c = record_at(context, CONTEXT)
     n = c.unknowns
     at = context + OUTPUTS
@@ -87,8 +87,8 @@ def no_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
 def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     ts: int, t: float, U: int, Udot: int, shift: float, A: int, B: int, context: int
 ) -> int:
-    """PETSc's matrix B = shift - J, with J = df/dU at the state that the context's `matrix_due` names. PETSc
-    keeps the LU factors of an unchanged B."""
+    """PETSc's matrix B = shift - J, with J = df/dU at the state selected by `matrix_due` in the context.
+    PETSc keeps the LU factors of an unchanged B."""
     c = record_at(context, CONTEXT)
     n = c.unknowns
     at = context + OUTPUTS
@@ -99,7 +99,7 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     if c.matrix_due == UP_TO_DATE and c.shift == shift and untouched:
         return 0
     J = floats(c.jacobian, n * n).reshape(n, n)
-    # The Jacobian is the expensive part; a new shift alone reuses it.
+    # The Jacobian is the expensive part; if only the shift is new, the Jacobian is reused.
     if c.matrix_due == AT_ITERATE:
         read_array(U, at)
         write_rate_jacobian(floats(outputs[0], n), J, roots_of(c), rod_of(c), matrices_of(c))
@@ -121,7 +121,7 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
 
 
 class Workspace:
-    """Arrays and context record that the callbacks of one TS use, for one mesh and any rod."""
+    """Arrays and context record used by the callbacks of one TS, for one mesh and any rod."""
 
     def __init__(self, mesh: Mesh) -> None:
         n = plane_layout(mesh.nodes).unknowns
@@ -149,8 +149,8 @@ class Workspace:
         """Sets the rod and the two tolerances of Newton's method, both rms values over the unknowns of a
         stage.
 
-        error: estimated error of a stage at which Newton's method stops. floor: size of a Newton step below
-        which stagnation counts as rounding error.
+        error: Newton's method stops when the estimated error of a stage is at most this. floor: if a Newton
+        step smaller than this stagnates, the stagnation is attributed to rounding errors.
         """
         self._rod = arrays_of(beam)  # the callbacks read these arrays by address as well
         self._set({name: array.ctypes.data for name, array in self._rod.items()})
@@ -164,18 +164,18 @@ class Workspace:
         take_steps(self.context)
 
     def predict_as(self, variant: str) -> None:
-        """Sets the extrapolation points of the stages for the ARKIMEX type `variant`; none if the type is not
-        in the table."""
+        """Sets the extrapolation points of the stages for the ARKIMEX type `variant`; no points if the type
+        is not in the table."""
         self._arrays["points"][:] = points_of(variant)
 
     def attach(self, ts: "PETSc.TS", matrix: "PETSc.Mat") -> None:
-        """Registers the callbacks in `ts`, whose options must be set already."""
+        """Registers the callbacks in `ts`, whose options must already be set."""
         context = self.context.ctypes.data
         B = matrix.handle
         snes = ts.getSNES()
         if ts.getType() == "arkimex":
-            # Without an explicit part PETSc 3.20 and newer would take the problem for a DAE, with a first
-            # slope of its own.
+            # Without an explicit part PETSc 3.20 and newer would treat the problem as a DAE, with a separate
+            # computation of the first slope.
             call("TSSetRHSFunction", ts.handle, 0, no_explicit_part.address, context)
             self.predict_as(ts.getARKIMEXType())
             self.context["middle"] = STAGE_PREDICTOR.middle

@@ -1,4 +1,4 @@
-"""Krylov-Schur for nonuniform arms, on elements with boundaries at the jumps of every coefficient."""
+"""Krylov-Schur solver for nonuniform arms, on elements with boundaries at the jumps of every coefficient."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from .shift_invert import KRYLOV, LoadedPencil, ShiftInvertSolver
 
 
 class ArmSolver(ShiftInvertSolver):
-    """Krylov-Schur for all nonuniform arms on one mesh."""
+    """Krylov-Schur solver for all nonuniform arms on one mesh."""
 
     matrices: PencilMatrices
     """Matrices of the arm that was solved last."""
@@ -43,8 +43,8 @@ class ArmSolver(ShiftInvertSolver):
         return LoadedPencil(finite_eigenvalues(rod, self.nodes), shift)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k) each, from eigenvectors of the last solved arm,
-        (unknowns, k).
+        """(y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the arm that was solved
+        last, (unknowns, k).
         """
         return fields_of_vectors(vectors, self.matrices.scale)
 
@@ -53,5 +53,5 @@ _kept = LruPool(ArmSolver, KRYLOV.max_arm_solvers)
 
 
 def arm_solver(mesh: ArmMesh) -> ArmSolver:
-    """The Krylov-Schur solver for a mesh; it is kept and reused for later arms on this mesh."""
+    """The Krylov-Schur solver for `mesh`; the solver is stored and reused for later arms on this mesh."""
     return _kept.get(mesh)

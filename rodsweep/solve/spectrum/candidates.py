@@ -1,7 +1,7 @@
-"""One attempt at the leading eigenvalues of a rod on one mesh, and its comparison with a count.
+"""One attempt at the leading eigenvalues of a rod on one mesh, and the comparison with a count.
 
 The mesh gives approximate eigenvalues, Newton's method on D refines them, and the winding number of D shows
-whether an eigenvalue is missing. `rodsweep.solve.spectrum.search` decides on the next attempt.
+whether an eigenvalue is missing. `rodsweep.solve.spectrum.search` chooses the next attempt.
 """
 
 from dataclasses import dataclass
@@ -23,34 +23,34 @@ from .problem import TransverseProblem
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CandidateSettings(CompiledSettings):
-    """Settings for the eigenvalues of a mesh, and for the vertical lines right of which eigenvalues are
-    counted.
+    """Settings for the eigenvalues of a mesh, and for the vertical lines to the right of which eigenvalues
+    are counted.
     """
 
     max_waves_per_node: float = 2.0
-    """Largest wave number |q| of an eigenvalue that a mesh can represent, in units of its number of nodes."""
+    """A mesh represents eigenvalues with wave number |q| <= `max_waves_per_node` * (elements * order)."""
     wide_gap: float = 0.2
-    """Gap between the real parts of two successive eigenvalues of a stable rod, relative to |Re w| of the
-    left one, beyond which a wider gap is not preferred for the line of a count."""
+    """For the line of a count, gaps between successive real parts wider than this, divided by |Re w| of the
+    left eigenvalue, are treated as equally wide (stable rods)."""
     wide_gap_of_flutter: float = 0.05
-    """`wide_gap` of an unstable rod. It is smaller, because eigenvalues far to the left converge last and
-    need a finer mesh."""
+    """`wide_gap` of an unstable rod; smaller, because eigenvalues far to the left converge last and need a
+    finer mesh."""
     last_line_distance: float = 0.05
-    """Distance by which the last line tried lies left of the last eigenvalue found, in units of its |w|."""
+    """Distance from the last eigenvalue w found to the last line, which lies to the left of w, divided by
+    |w|."""
     leader_line_distance: float = 0.5
-    """Distance of the first line for counting a followed leading eigenvalue, left of it, in units of its |w|.
-    A distant line needs fewer nodes; a line at `last_line_distance` follows in case another eigenvalue lies
-    between."""
+    """Distance from a followed leading eigenvalue w to the first line for a count, to the left of w, divided
+    by |w|. A distant line needs fewer nodes. A line at `last_line_distance` follows in case another
+    eigenvalue lies between w and the first line."""
     min_gap: float = 1e-6
-    """Relative gap below which two real parts are treated as equal: no line is drawn between them."""
+    """Two real parts with a smaller relative gap are treated as equal: no line is drawn between them."""
     max_lines: int = 3
-    """Maximum number of lines of one rod right of which eigenvalues are counted until a count succeeds."""
+    """Maximum number of lines tried for the count of one rod."""
     proof_line_errors: float = 3.0
-    """Distance of the line of a proof without a count left of the last wanted eigenvalue, in units of the
-    error of this eigenvalue."""
+    """Distance from the last wanted eigenvalue w to the line of a proof without a count: this multiple of the
+    error of w plus `proof_line_distance` * |w|, to the left."""
     proof_line_distance: float = 1e-9
-    """Further distance of the line of a proof left of the last wanted eigenvalue, besides
-    `proof_line_errors`, in units of |w|."""
+    """See `proof_line_errors`."""
 
 
 CANDIDATES = CandidateSettings()
@@ -78,26 +78,26 @@ class Candidates:
 
 @dataclass(frozen=True, slots=True)
 class CountComparison:
-    """Number of eigenvalues right of a line: `count` from D, `found_count` of the eigenvalues found."""
+    """Numbers of eigenvalues to the right of a line: `count` from D; `found_count`: number of found
+    eigenvalues."""
 
     count: EigenvalueCount
     found_count: int
     is_clear: bool
-    """Whether every found eigenvalue is farther from the line of the count than twice its error."""
+    """Whether the distance of every found eigenvalue from the line of the count is more than twice its
+    error."""
 
     @property
     def agrees(self) -> bool:
-        """Whether the count and the found eigenvalues give the same number, and every found eigenvalue is
-        clear of the line.
-        """
+        """Whether `count` and `found_count` are equal, and every found eigenvalue is clear of the line."""
         return self.is_clear and self.count.number == self.found_count
 
 
 def candidates_on(
     problem: TransverseProblem, mesh: AnyMesh, wanted: int, vectors: bool, tight: bool
 ) -> Candidates:
-    """The eigenvalues of a mesh nearest the shift of `problem`, refined to roots of D; spurious eigenvalues
-    are dropped.
+    """The eigenvalues of a mesh nearest to the shift of `problem`, refined to roots of D; spurious
+    eigenvalues are dropped.
 
     wanted: number of eigenvalues requested. vectors: whether eigenvectors are returned. tight: whether the
     eigenvalues of the mesh converge to rounding error before the refinement on D. After an error inside
@@ -119,10 +119,10 @@ def candidates_on(
 
 
 def compare_with_count(problem: TransverseProblem, found: Roots, modes: int) -> CountComparison:
-    """Number of eigenvalues right of a vertical line, by a proof or a count, compared with the eigenvalues
-    found.
+    """Number of eigenvalues to the right of a vertical line, by a proof or a count, compared with the
+    eigenvalues found.
 
-    The line lies left of the leading `modes` and of all unstable eigenvalues.
+    The line lies to the left of the leading `modes` and of all unstable eigenvalues.
     """
     w: Any = found.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = found.error.tolist()
@@ -139,8 +139,8 @@ def compare_with_count(problem: TransverseProblem, found: Roots, modes: int) -> 
 
 
 def line_for_proof(last: complex, error: float) -> float:
-    """Real part <= 0 of the line of a proof without a count, left of the last wanted eigenvalue and all
-    unstable ones.
+    """Real part <= 0 of the line of a proof without a count, to the left of the last wanted eigenvalue and of
+    all unstable eigenvalues.
 
     last, error: the last wanted eigenvalue and its absolute error.
     """
@@ -150,17 +150,18 @@ def line_for_proof(last: complex, error: float) -> float:
 
 
 def _right_of(line: float, w: list[complex], errors: list[float]) -> tuple[int, bool]:
-    """(number of eigenvalues w right of a line, whether each is farther from the line than twice its
-    error)."""
+    """Returns (number, clear). number: number of eigenvalues w to the right of `line`. clear: whether the
+    distance of each w from the line is more than twice its error."""
     clear = all(abs(value.real - line) > 2 * error for value, error in zip(w, errors, strict=True))
     return sum(value.real > line for value in w), clear
 
 
 def lines_for_count(w: list[complex], modes: int) -> list[float]:
-    """Real parts of the lines for a count, best first: middles of gaps left of the first `modes` eigenvalues.
+    """Real parts of the lines for a count, best first: middles of gaps to the left of the first `modes`
+    eigenvalues.
 
-    w: eigenvalues in descending order. Gaps wider than `wide_gap` are equally good, and the first of them
-    comes first. The last line lies left of all eigenvalues found.
+    w: eigenvalues in descending order. Gaps wider than `wide_gap` are equally good; the rightmost of these
+    comes first. The last line lies to the left of all eigenvalues found.
     """
     wide = CANDIDATES.wide_gap_of_flutter if w[0].real > 0 else CANDIDATES.wide_gap
     target = min(w[modes - 1].real, 0.0)

@@ -1,4 +1,5 @@
-"""Krylov-Schur for uniform rods on equal elements, with matrices affine in the coefficients of the rod."""
+"""Krylov-Schur solver for uniform rods on equal elements, with matrices affine in the coefficients of the
+rod."""
 
 import math
 
@@ -27,7 +28,7 @@ def _fill(A: NDArray, coefficients: NDArray, terms: NDArray, shift: NDArray) -> 
 
 
 class UniformSolver(ShiftInvertSolver):
-    """Krylov-Schur for all uniform rods on one mesh of equal elements."""
+    """Krylov-Schur solver for all uniform rods on one mesh of equal elements."""
 
     def __init__(self, resolution: Resolution):
         self.pencil: Pencil = assemble_pencil(resolution.elements, resolution.order)
@@ -59,17 +60,17 @@ class UniformSolver(ShiftInvertSolver):
         return LoadedPencil(finite_eigenvalues(rod, self.nodes), shift, deflection_ratio)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k) each, from eigenvectors of the last solve, (unknowns,
+        """(y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve, (unknowns,
         k)."""
         return fields_of_vectors(vectors, self.pencil.scale(rod))
 
 
 def _as_filament(rod: Rod) -> tuple[Rod, float]:
-    """(equivalent rod, deflection_ratio). `rod` has the eigenvalues of the equivalent rod over
-    deflection_ratio^2, and its y times `deflection_ratio`.
+    """(equivalent rod, deflection_ratio). Eigenvalues of `rod` = eigenvalues of the equivalent rod /
+    deflection_ratio^2; y of `rod` = y of the equivalent rod * deflection_ratio.
 
-    A partial beam (k2 = inf, gamma3 = 0) moves like the filament under the force F nu, with times scaled by
-    nu^2. Near crushing the matrices of the beam itself are too badly scaled.
+    A partial beam (k2 = inf, gamma3 = 0) is equivalent to the filament under the force F nu, with times
+    scaled by nu^2. Near crushing the matrices of the beam are too badly scaled.
     """
     if rod.c2 == 0 and rod.rotational_drag == 0 and rod.nu != 1:
         return Rod(F=rod.F * rod.nu, k1=math.inf, k2=math.inf, gamma3=0.0), rod.nu
@@ -80,5 +81,5 @@ _kept = LruPool(UniformSolver, KRYLOV.max_uniform_solvers)
 
 
 def uniform_solver(resolution: Resolution) -> UniformSolver:
-    """The Krylov-Schur solver for a resolution; it is kept and reused for later rods of this resolution."""
+    """The Krylov-Schur solver for a mesh `resolution`; the solver is stored and reused for later rods."""
     return _kept.get(resolution)

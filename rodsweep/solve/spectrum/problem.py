@@ -1,7 +1,7 @@
-"""The transverse eigenvalue problem of one rod, as the search for leading eigenvalues uses it.
+"""The transverse eigenvalue problem of one rod, as used by the search for leading eigenvalues.
 
 For a uniform rod of linear material, D has a closed form and the pencil is affine in the coefficients. For
-every other arm, D is computed from propagators and the pencil is assembled anew.
+every other arm, D is computed from propagators and the pencil is assembled for each arm.
 """
 
 from abc import ABC, abstractmethod
@@ -41,8 +41,9 @@ from .shift_invert import KRYLOV
 class TransverseProblem(ABC):
     """Meshes, solver and determinant D of one rod.
 
-    shift: target of Krylov-Schur, right of most spectra, in 1/tau2. has_bound: whether an a-priori bound of
-    the eigenvalues exists. is_count_slow: whether one count costs more than several eigenproblems.
+    shift: target of Krylov-Schur, to the right of most spectra, in 1/tau2. has_bound: whether an a-priori
+    bound of the eigenvalues exists. is_count_slow: whether one count takes longer than several eigenvalue
+    problems.
     """
 
     rod: Rod
@@ -50,20 +51,21 @@ class TransverseProblem(ABC):
     has_bound: bool
     is_count_slow: ClassVar[bool]
     spare_eigenvalues: int = 0
-    """Number of eigenvalues requested from the first mesh beyond the modes, to make a proof without a count
-    possible."""
+    """Number of eigenvalues requested from the first mesh in addition to the modes, for a proof without a
+    count."""
 
     @abstractmethod
     def mesh_for(self, modes: int, accuracy: float) -> Any:
-        """The mesh expected to give `modes` leading eigenvalues to the relative `accuracy`."""
+        """The mesh expected to give `modes` leading eigenvalues with relative error below `accuracy`."""
 
     def finer_mesh(self, mesh: AnyMesh) -> AnyMesh:
-        """The mesh with about a third more unknowns that follows `mesh` in a refinement."""
+        """The next finer mesh after `mesh`, with about a third more unknowns."""
         return finer_mesh(self.rod, mesh)
 
     @abstractmethod
     def next_mesh_for(self, mesh: Any, waves: Array, accuracy: float) -> Any:
-        """The mesh to try after `mesh`, chosen for the wave numbers of the leading modes found, (modes,)."""
+        """The mesh to try after `mesh`. waves: wave numbers of the leading modes found, (modes,). accuracy:
+        relative."""
 
     def solver(self, mesh: AnyMesh) -> UniformSolver | ArmSolver:
         """The Krylov-Schur solver for a mesh."""
@@ -78,15 +80,15 @@ class TransverseProblem(ABC):
 
     @abstractmethod
     def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
-        """Proved number of eigenvalues with Re w > line. found: roots of D, which make the count of an arm
-        faster.
+        """Proved number of eigenvalues with Re w > line. found: known roots of D, which make the count of an
+        arm faster.
         """
 
     def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
-        """(whether it is proved that `found` has all eigenvalues right of a line, number of evaluations of
-        D).
+        """Returns (proved, evaluations). proved: whether it is proved that `found` contains all eigenvalues
+        to the right of `line`. evaluations: number of evaluations of D.
 
-        The proof needs no count. It never succeeds for a uniform rod, whose count is fast.
+        The proof needs no count. For a uniform rod, whose count is fast, no proof is tried.
         """
         return False, 0
 
@@ -112,9 +114,7 @@ class UniformProblem(TransverseProblem):
         return resolution_for(expected_wave_number(modes, self._wave), accuracy)
 
     def next_mesh_for(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
-        """The mesh that resolves the largest of the wave numbers `waves`, (modes,), but at least the next
-        finer mesh.
-        """
+        """The mesh for the largest of the wave numbers `waves`, (modes,), but at least the next finer mesh."""
         asked = resolution_for(float(waves.max()), accuracy)
         return max(asked, finer_resolution(mesh), key=lambda each: each.unknowns)
 
@@ -127,9 +127,9 @@ class UniformProblem(TransverseProblem):
 
 
 class ArmProblem(TransverseProblem):
-    """The transverse eigenvalue problem of an arm that varies along its length.
+    """The transverse eigenvalue problem of an arm that is not a uniform rod of linear material.
 
-    to_prove: number of leading modes to be proved complete; 0 without a proof.
+    to_prove: number of leading modes to be proved complete; 0 if no proof is requested.
     """
 
     is_count_slow = True
@@ -157,10 +157,8 @@ class ArmProblem(TransverseProblem):
         return roots_of_arm(np.where(wanted, raw, np.inf), self._determinant, self._hull, most_waves, largest)
 
     def _of_proof(self, raw: Complex) -> tuple[NDArray[np.bool_], float]:
-        """(mask of the eigenvalues `raw` that the proof will need, (n,); largest |w| at which the proof needs
-        D).
-
-        The largest |w| is 0 if it is unknown.
+        """Returns (mask, size). mask: which of the eigenvalues `raw` the proof will need, (n,). size: largest
+        |w| at which the proof needs D; 0 if unknown.
         """
         wanted = np.isfinite(raw)
         if not self._to_prove or not self.has_bound or wanted.sum() < self._to_prove:

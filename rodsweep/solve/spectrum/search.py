@@ -1,8 +1,9 @@
 """Search for the leading eigenvalues of one rod: few unknowns, the requested accuracy, no missing eigenvalue.
 
-One attempt (`rodsweep.solve.spectrum.candidates`) solves for a number of eigenvalues nearest a shift, on one
-mesh, and refines them by Newton's method on D. The mesh error, the error of the roots of D and the count of
-eigenvalues determine the next attempt. The search ends when all three are sufficient.
+One attempt (`rodsweep.solve.spectrum.candidates`) solves for a number of eigenvalues nearest to a shift, on
+one mesh, and refines them by Newton's method on D. The mesh error, the error of the roots of D and the count
+of eigenvalues determine the next attempt. The search ends when mesh error, root error and count are
+satisfactory.
 """
 
 from dataclasses import dataclass, replace
@@ -23,24 +24,22 @@ __all__ = ["Search", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
 
 @dataclass(frozen=True, slots=True)
 class JudgedCandidates:
-    """Candidates, their comparison with a count if one was requested, and their largest error over its
-    limit."""
+    """Candidates, with the comparison with a count if requested, and with their largest error."""
 
     candidates: Candidates
     comparison: CountComparison | None
     error_over_limit: float
-    """Largest error over its limit; the candidates are accepted below `SEARCH.max_error_over_limit`."""
+    """Largest ratio of an error to the allowed error; accepted if at most `SEARCH.max_error_over_limit`."""
 
     @property
     def grade(self) -> tuple[bool, float]:
-        """Sort key, best candidates first: those with a decided count precede, then the smaller error."""
+        """Sort key, best candidates first: candidates with an undecided count come last; then by increasing
+        error."""
         return self.comparison is not None and self.comparison.count.number is None, self.error_over_limit
 
 
 def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    """The leading `request.modes` eigenvalues of a rod. A failed solve gives a status; no exception is
-    raised.
-    """
+    """The leading `request.modes` eigenvalues of a rod; a failure is returned as a status, never raised."""
 
     def failed(cause: str) -> Spectrum:
         forget_all()
@@ -52,8 +51,8 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
 
 def _from_equivalent(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    """Spectrum of a uniform rod of nonlinear material, from the equivalent linear rod with its eigenvalues
-    rescaled.
+    """Spectrum of a uniform rod of nonlinear material, from the equivalent linear rod, with rescaled
+    eigenvalues.
     """
     linear, rate = rod.equivalent
     found = solve_spectrum(linear, request)
@@ -68,7 +67,7 @@ def warm_up() -> None:
 class Search:
     """Search for the leading eigenvalues of one rod: the next mesh, the best candidates, the failures so far.
 
-    wanted: number of eigenvalues in the first request; default: the modes and `spare_eigenvalues`.
+    wanted: number of eigenvalues in the first request; by default, the modes plus `spare_eigenvalues`.
     """
 
     def __init__(self, rod: Rod, request: SpectrumRequest, wanted: int | None = None):
@@ -83,13 +82,13 @@ class Search:
         self.best: JudgedCandidates | None = None
         self.stalled = self.failures = 0
         self.disagreement: CountComparison | None = None
-        """The last count that disagrees with the eigenvalues found."""
+        """The comparison of the last count that disagrees with the eigenvalues found."""
         self.unresolved = False
-        """Whether neither a mesh nor a count could decide which eigenvalue leads."""
+        """Whether on the last mesh neither the eigenvalues nor a count showed which eigenvalue leads."""
         self.why = f"no mesh of at most {RESOLUTION.max_unknowns} unknowns resolves the requested modes"
 
     def outcome(self) -> Spectrum:
-        """The spectrum, from attempts on meshes until the candidates are accepted or improve no more."""
+        """The spectrum, from attempts on meshes until the candidates are accepted or no longer improve."""
         for turn in range(SEARCH.max_meshes):
             if self.mesh.unknowns > RESOLUTION.max_unknowns or self.failures > SEARCH.max_failures:
                 break
@@ -110,12 +109,13 @@ class Search:
         return self.conclude()
 
     def judge(self, found: Candidates) -> JudgedCandidates | None:
-        """The candidates if no eigenvalue is missing; else None, and the mesh or `wanted` is raised."""
+        """The candidates if no eigenvalue is missing; else None, after a finer mesh or more eigenvalues were
+        chosen for the next attempt."""
         if len(found.roots.w) < self.modes:
-            # Too few converged, or converged to no root, or SLEPc failed: a finer mesh.
+            # Too few eigenvalues converged to roots of D, or SLEPc failed: a finer mesh.
             self.failures += bool(found.failure)
             self.why = found.failure or self.why
-            # Where hardly any is a root the mesh is too coarse: further eigenvalues would be no roots either.
+            # If few eigenvalues are roots, the mesh is too coarse: further eigenvalues would be no roots.
             if len(found.roots.w) >= SEARCH.min_resolved_fraction * self.modes:
                 self.wanted += self.modes
             self.mesh = self.problem.finer_mesh(self.mesh)
@@ -137,7 +137,7 @@ class Search:
         return JudgedCandidates(found, comparison, self.error_over_limit(found, comparison))
 
     def error_over_limit(self, found: Candidates, comparison: CountComparison | None) -> float:
-        """The largest error of candidates over its limit, as stored in `JudgedCandidates.error_over_limit`.
+        """The largest ratio of an error of the candidates to the allowed error.
 
         Eigenvectors, and eigenvalues without a proof, also need a mesh whose eigenvalues are close to the
         roots of D.
@@ -150,27 +150,28 @@ class Search:
         return max(error, coarseness / (self.request.accuracy if self.with_vectors else allowed))
 
     def request_missing(self, number: int, here: int) -> None:
-        """Requests more eigenvalues or a finer mesh: a count gives `number` eigenvalues where `here` were
-        found.
+        """Requests more eigenvalues or a finer mesh, because a count gives `number` eigenvalues to the right
+        of the line, of which `here` were found.
         """
         if number <= here:  # spurious eigenvalues, or a line within the errors
             self.mesh = self.problem.finer_mesh(self.mesh)
             return
         more = number + SEARCH.spare_modes
-        if more <= self.wanted:  # the missing ones are further from the shift, or unresolved
+        if more <= self.wanted:  # missing eigenvalues are far from the shift or unresolved
             more = self.wanted + number - here + SEARCH.spare_modes
             self.mesh = self.problem.finer_mesh(self.mesh)
         self.request_more(more)
 
     def needs_beyond_axis(self, found: Candidates) -> bool:
-        """Whether eigenvalues with Re w <= 0 are needed too, for a count or for a list without a proof."""
+        """Whether eigenvalues with Re w <= 0 are needed in addition to `found`, for a count or for a list
+        without a proof."""
         if not (self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all()):
             return False
         return len(found.roots.w) < SEARCH.max_unproved_modes or self.problem.is_countable
 
     def request_beyond_axis(self, number: int) -> None:
-        """Requests more eigenvalues, because all `number` found ones grow and a count needs decaying ones
-        too.
+        """Requests more eigenvalues, because all `number` eigenvalues found grow and a count also needs
+        decaying modes.
         """
         self.unresolved = True
         if number < self.wanted:
@@ -188,8 +189,7 @@ class Search:
         self.wanted = wanted
 
     def keep_if_better(self, judged: JudgedCandidates) -> None:
-        """Stores the candidates if they are the best so far; counts attempts in succession without
-        progress."""
+        """Stores the candidates if they are the best so far; counts successive attempts without progress."""
         best = self.best
         better = best is None or judged.grade < (best.grade[0], SEARCH.progress_ratio * best.error_over_limit)
         self.stalled = 0 if better else self.stalled + 1
@@ -201,7 +201,7 @@ class Search:
             self.best = judged
 
     def conclude(self) -> Spectrum:
-        """The spectrum of the best candidates, or a failed spectrum whose status says why there are none."""
+        """The spectrum of the best candidates; without candidates, a failed spectrum with the reason."""
         if self.best is not None:
             return _result(self.best, self.problem, self.request)
         if self.disagreement is not None:

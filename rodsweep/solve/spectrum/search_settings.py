@@ -8,33 +8,33 @@ class SearchSettings:
     """Settings of the search for the leading eigenvalues of one rod: meshes, attempts and accepted errors."""
 
     spare_modes: int = 1
-    """Number of eigenvalues requested from the mesh beyond the number that the winding number counts."""
+    """A repeated request asks for this number of eigenvalues more than the winding number counts."""
     min_unknowns_per_mode: int = 6
     """Minimum number of unknowns of a mesh per requested eigenvalue."""
     max_unproved_modes: int = 50
-    """Number of growing modes found beyond which no more modes are requested if no count is possible: each
-    doubling costs several times as much, and nothing is proved in the end."""
+    """If all modes found grow and no count is possible, more modes are requested only while fewer than this
+    number are found: each doubling takes several times as long, and nothing is proved in the end."""
     min_resolved_fraction: float = 0.5
-    """Fraction of the requested modes. If at least this many roots of D, but too few, come from a mesh, the
-    next attempt requests more eigenvalues; with fewer roots it only refines the mesh."""
+    """If the roots of D from a mesh are at least this fraction of the requested modes, but too few, the next
+    attempt requests more eigenvalues; with fewer roots the next attempt only refines the mesh."""
     max_meshes: int = 16
     """Maximum number of attempts, each on one mesh. Only pulled rods with little rotational drag need most of
-    these."""
+    these attempts."""
     max_failures: int = 3
     """Maximum number of attempts that end with an error inside PETSc, SLEPc or LAPACK."""
     max_stalled_refinements: int = 2
-    """Number of successive mesh refinements without `progress_ratio` after which the error is taken to be
-    rounding error."""
+    """After this number of successive refinements without progress, the error is taken to be rounding
+    error."""
     progress_ratio: float = 0.5
-    """Largest ratio of the error of an attempt to the best error before that counts as progress."""
+    """An attempt is progress if its error is smaller than this fraction of the smallest earlier error."""
     max_error_over_limit: float = 0.5
-    """Largest error estimate of an accepted spectrum, in units of the requested accuracy. It is below 1
-    because an estimate may be too small."""
+    """A spectrum is accepted if error estimate <= `max_error_over_limit` * requested accuracy. The factor is
+    below 1 because an estimate may be too small."""
     max_stalled_error_over_limit: float = 0.8
-    """`max_error_over_limit` of a spectrum whose error further meshes do not reduce."""
+    """As `max_error_over_limit`, for a spectrum whose error further meshes do not reduce."""
     largest_displacement: float = 1e-3
-    """Largest relative distance between eigenvalues of the mesh and the roots of D to which they converge.
-    Beyond it the mesh may have missed an eigenvalue."""
+    """Largest relative distance between an eigenvalue of the mesh and the root of D to which it converges. At
+    a larger distance the mesh may have missed an eigenvalue."""
     unbounded_displacement: float = 1e-6
     """`largest_displacement` for a rod without an a-priori bound of its eigenvalues, where convergence is the
     only evidence."""

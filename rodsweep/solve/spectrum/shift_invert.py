@@ -1,10 +1,10 @@
-"""Krylov-Schur of SLEPc for the eigenvalues of a pencil nearest a real shift, by shift-and-invert.
+"""SLEPc's Krylov-Schur method for the eigenvalues of a pencil nearest to a real shift, by shift-and-invert.
 
 The matrices of a solver are created once and filled with new values for every rod. The shift is part of the
 values: the pencil (A - shift B, B) is solved about 0, so that a diagonal B is combined with a dense A without
 copies. B is singular; its null vectors belong to infinite eigenvalues, which shift-and-invert maps to zero
-and never returns. The factorisation pivots: LAPACK's for small matrices or if PETSc has no other package,
-otherwise a sparse one.
+and never returns. The LU factorisation pivots: LAPACK's LU for small matrices or if PETSc has no sparse
+package with pivoting, otherwise the sparse LU.
 """
 
 from abc import ABC, abstractmethod
@@ -22,48 +22,47 @@ from ..backend.petsc import PETSc, SLEPc, sparse_package
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KrylovSettings:
-    """Settings of Krylov-Schur by shift-and-invert, and of the solver objects that are kept for later
-    rods."""
+    """Settings of Krylov-Schur by shift-and-invert, and of the solver objects stored for later rods."""
 
     shift_above_growth: float = 1.05
-    """Shift in units of the growth rate of the most amplified wave. This growth rate is above most
-    spectra."""
+    """Shift divided by the growth rate of the most amplified wave. This growth rate is above most spectra."""
     max_dense_unknowns: int = 300
-    """Number of unknowns up to which the matrix is factorised as dense: as fast as a sparse factorisation
-    there, with smaller rounding errors."""
+    """Matrices with up to this number of unknowns are factorised as dense: as fast as the sparse
+    factorisation, with smaller rounding errors."""
     loose_tolerance: float = 1e-4
     """Krylov tolerance for eigenvalues that are refined on D."""
     loose_spare_vectors: int = 5
-    """Number of Krylov vectors beyond the wanted eigenvalues, for eigenvalues that are refined on D."""
+    """Number of Krylov vectors in addition to the wanted eigenvalues, for eigenvalues that are refined on
+    D."""
     tight_tolerance: float = 1e-14
-    """Krylov tolerance for eigenvalues and eigenvectors that are not refined on D: the mesh is then the only
-    error."""
+    """Krylov tolerance for eigenvalues and eigenvectors that are not refined on D: only the error of the mesh
+    remains."""
     tight_spare_vectors: int = 13
-    """Number of Krylov vectors beyond the wanted eigenvalues, for eigenvalues and eigenvectors that are not
-    refined on D."""
+    """Number of Krylov vectors in addition to the wanted eigenvalues, for eigenvalues and eigenvectors that
+    are not refined on D."""
     max_restarts: int = 200
     """Maximum number of restarts of the Krylov space."""
     vectors_for_infinity: int = 2
-    """Number of Krylov vectors beyond the finite eigenvalues. Applying shift-and-invert once, or twice for k2
-    = inf, removes all components of infinite eigenvalues. A larger Krylov space would add only rounding
-    errors, on which LAPACK may fail (trexc)."""
+    """Maximum number of Krylov vectors is the number of finite eigenvalues plus this. Applying
+    shift-and-invert once, or twice for k2 = inf, removes all components of infinite eigenvalues. A larger
+    Krylov space would add only rounding errors, on which LAPACK may fail (trexc)."""
     first_vector_width: float = 3.3
-    """Width of the first Krylov vector, a bump of displacement at the tip, in units of the distance between
-    nodes. Every mode moves the tip, and the bump is as smooth as the wanted modes. It saves two Krylov steps
-    of eleven."""
+    """Width of the first Krylov vector, a displacement concentrated at the tip, divided by the distance
+    between nodes. Every mode moves the tip, and the vector is as smooth as the wanted modes, which saves two
+    Krylov steps of eleven."""
     first_vector_rotation: float = 0.1
-    """Rotation of the first Krylov vector in units of its displacement. Without rotation only rounding errors
+    """Ratio of rotation and displacement in the first Krylov vector. Without rotation only rounding errors
     would excite modes of pure rotation, in rods whose displacement and rotation are uncoupled."""
     max_uniform_solvers: int = 24
-    """Maximum number of solvers of uniform rods that are kept for later rods, one a resolution, if their
-    memory allows; a sweep needs few."""
+    """Maximum number of stored solvers of uniform rods, one per mesh, if their memory allows; a sweep needs
+    few."""
     max_arm_solvers: int = 8
-    """Maximum number of solvers of arms that are kept for later arms, one a mesh."""
+    """Maximum number of stored solvers of arms, one per mesh."""
     stored_dense_matrices: int = 9
-    """Number of dense matrices that a solver of a small pencil stores: A, its factors, and its constant
+    """Number of dense matrices that a solver of a small pencil stores: A, its factors, and constant
     matrices."""
     stored_numbers_per_entry: int = 11
-    """Number of stored numbers per nonzero entry of a large pencil: A with its pattern, its factors, and its
+    """Number of stored numbers per nonzero entry of a large pencil: A with its pattern, its factors, and
     constant matrices."""
 
 
@@ -74,7 +73,7 @@ SPECTRUM_PREFIX = "spectrum_"
 
 
 class PencilPattern(Protocol):
-    """Sparsity pattern and nodes of a pencil, as `ShiftInvertSolver` needs them."""
+    """Sparsity pattern and nodes of a pencil, for `ShiftInvertSolver`."""
 
     @property
     def rows(self) -> NDArray[np.int32]:
@@ -86,7 +85,7 @@ class PencilPattern(Protocol):
 
     @property
     def positions(self) -> Array:
-        """Material coordinate u of all nodes, the clamp included, (nodes + 1,)."""
+        """Material coordinate u of all nodes, including the clamp, (nodes + 1,)."""
 
     @property
     def nodes(self) -> int:
@@ -98,11 +97,11 @@ class PencilPattern(Protocol):
 
 
 class LoadedPencil(NamedTuple):
-    """Numbers of the rod whose matrices a solver holds.
+    """Data of the rod whose matrices a solver contains.
 
-    finite_eigenvalues: number of finite eigenvalues. shift: in units of the eigenvalues of the pencil.
-    deflection_ratio: the rod has the eigenvalues of the pencil over deflection_ratio^2, and the y of the
-    pencil times deflection_ratio.
+    finite_eigenvalues: number of finite eigenvalues. shift: in the units of the pencil's eigenvalues.
+    deflection_ratio: eigenvalues of the rod = eigenvalues of the pencil / deflection_ratio^2; y of the rod =
+    y of the pencil * deflection_ratio.
     """
 
     finite_eigenvalues: int
@@ -111,7 +110,7 @@ class LoadedPencil(NamedTuple):
 
 
 class ShiftInvertSolver(ABC):
-    """Krylov-Schur for pencils of one sparsity pattern; `solve` may be called any number of times.
+    """Krylov-Schur solver for pencils of one sparsity pattern; `solve` may be called any number of times.
 
     mass: mass at the nodes without the clamp, (nodes,), for the first Krylov vector.
     """
@@ -163,16 +162,16 @@ class ShiftInvertSolver(ABC):
 
     @abstractmethod
     def load(self, rod: Rod, shift: float) -> LoadedPencil:
-        """Fills PETSc's matrices A - shift B and B with the values for a rod."""
+        """Fills PETSc's matrices A - shift B and B with the values for `rod`."""
 
     @abstractmethod
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k) each, from eigenvectors of the last solve, (unknowns,
+        """(y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve, (unknowns,
         k)."""
 
     def solve(self, rod: Rod, shift: float, wanted: int, tight: bool = False) -> Complex:
-        """Eigenvalues of a rod nearest the shift, complex, unsorted, (k,), in 1/tau2; k >= `wanted` if enough
-        converge.
+        """Eigenvalues of a rod nearest to the shift, complex, unsorted, (k,), in 1/tau2; k >= `wanted` if
+        enough eigenvalues converge.
 
         tight: whether the eigenvalues converge to rounding error on the mesh, instead of the few digits that
         Newton's method on D needs. Raises PETSc.Error.
@@ -209,11 +208,10 @@ class ShiftInvertSolver(ABC):
 
     @property
     def kept_bytes(self) -> int:
-        """Estimated memory of a solver, in bytes: matrices with their factors, Krylov space and projected
-        matrices.
+        """Estimated memory of a solver, in bytes: matrices with factors, Krylov space and projected matrices.
 
-        Dropping a solver frees 0.5 to 0.9 of this estimate, measured with up to 640 Krylov vectors; pencils
-        are kept.
+        Destroying a solver frees 0.5 to 0.9 of this estimate, measured with up to 640 Krylov vectors; pencils
+        stay in memory.
         """
         n = len(self.line) - 1
         krylov = self.eps.getDimensions()[1] + 1

@@ -35,18 +35,18 @@ class SpectrumErrorSettings:
     """Settings for the rounding errors of eigenvalues, which are added to the error from D."""
 
     rounding: float = 6.0
-    """Rounding error of an eigenvalue of a uniform rod, in units of the spacing of doubles at |w|: the
+    """Rounding error of an eigenvalue of a uniform rod, divided by the spacing of doubles at |w|: the
     rounding of w itself and of the coefficients of D."""
     rounding_of_arms: float = 24.0
     """`rounding` for an arm, whose D is computed with propagators. Every propagator rounds the coefficients
-    of its element, and D may magnify this error. Of 3960 eigenvalues of random arms, compared with 34 digits,
-    one is off by 1.6 times its stated error."""
+    of its element, and D may amplify these errors. Of 3960 eigenvalues of random arms, compared with 34
+    digits, the largest error is 1.6 times the stated error."""
 
 
 SPECTRUM_ERRORS = SpectrumErrorSettings()
 
 NumberPerRod = Any
-"""A number of one rod, or an array of such numbers for n rods solved together, (n,)."""
+"""A number of one rod, or an array, (n,), of the numbers of n rods solved together."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,23 +55,23 @@ class Spectrum:
     (n,)."""
 
     status: NumberPerRod
-    """A `SpectrumStatus`, or the integer values of n of them, (n,)."""
+    """A `SpectrumStatus`, or an array of n integer values of `SpectrumStatus`, (n,)."""
     eigenvalues: Complex
     """Eigenvalues w, complex, (modes,), in 1/tau2, in the order defined in `rodsweep.model`."""
     error_estimate: Array
-    """Absolute error estimates |D/D'| of the eigenvalues, (modes,), in 1/tau2: at least a tenth of the error,
-    and at most ten times the larger of the error and the effect of rounding of the force or of w."""
+    """Absolute error estimates |D/D'| of the eigenvalues, (modes,), in 1/tau2. Bounds: estimate >= error/10,
+    and estimate <= 10 max(error, effect of rounding of the force or of w)."""
     unstable_count: NumberPerRod = -1
     """Number of eigenvalues with Re w > 0; -1 if unknown. The number is proved if a certificate was
     requested."""
     certified: NumberPerRod = False
-    """Whether it is proved that no eigenvalue is missing right of the last mode."""
+    """Whether it is proved that no eigenvalue is missing to the right of the last mode."""
     elements: NumberPerRod = 0
     """Number of elements of the mesh, 0 without a mesh."""
     order: NumberPerRod = 0
     """Order of the elements, 0 without a mesh."""
     seconds: NumberPerRod = 0.0
-    """Wall-clock time of the solve in seconds; for several rods their mean."""
+    """Wall-clock time of the solve in seconds; for several rods, the mean time per rod."""
     vectors: Complex | None = None
     """Eigenmodes (Y, Theta), complex, (2, modes, vector_nodes), scaled to Y(1) = 1; None if not requested."""
     message: NumberPerRod = ""
@@ -90,7 +90,7 @@ class Spectrum:
 
 @dataclass(frozen=True, slots=True)
 class FollowedPoints:
-    """Leading eigenvalues w and their absolute errors, (n, modes), at the next n points of a stretch.
+    """Leading eigenvalues w and their absolute errors, (n, modes), at n successive points of a sweep.
 
     unstable_count: number of unstable modes, (n,). accepted: whether the point is certified and accurate,
     (n,).
@@ -107,8 +107,8 @@ def vectors_on_nodes(
 ) -> Complex | None:
     """Eigenmodes (Y, Theta) on the Lobatto nodes, complex, (2, modes, vector_nodes); None if `found` is None.
 
-    found: eigenvectors on `mesh`, (unknowns, k). A mode is NaN if its Y(1) vanishes and cannot be scaled to
-    1.
+    found: eigenvectors on `mesh`, (unknowns, k). A mode with Y(1) = 0 cannot be scaled to Y(1) = 1 and is
+    NaN.
     """
     if found is None:
         return None
@@ -120,10 +120,9 @@ def vectors_on_nodes(
 
 
 def errors_with_rounding(w: Complex, error: Array, rod: Rod) -> Array:
-    """Absolute errors of eigenvalues: `error`, the error of the root of D, plus the rounding error of w
-    itself.
+    """Absolute errors of eigenvalues: `error` of the root of D plus the rounding error of w.
 
-    w, error: any equal shape. rod: the rod, or any rod of the path of these eigenvalues.
+    w, error: of any equal shape. rod: the rod, or any rod of the path of these eigenvalues.
     """
     rounding = SPECTRUM_ERRORS.rounding if rod.standard else SPECTRUM_ERRORS.rounding_of_arms
     return error + rounding * ROUND_OFF * np.abs(w)

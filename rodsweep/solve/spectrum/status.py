@@ -10,7 +10,7 @@ class SpectrumStatus(PointStatus):
     not_certified = (
         1,
         "the eigenvalues are accurate, but no a-priori bound applies or the winding number could "
-        "not be proved, so an unstable mode may be missing; `certify: false` accepts this",
+        "not be proved, so an unstable mode may be missing; `certify: false` accepts such eigenvalues",
     )
     undecided = (
         2,

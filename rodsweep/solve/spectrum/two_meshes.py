@@ -1,8 +1,9 @@
 """Leading eigenvalues of one rod by SLEPc alone: Krylov-Schur on two meshes, without the determinant D.
 
-The finer mesh gives the eigenvalues, their differences from the coarser mesh give the errors. Krylov-Schur
-finds the eigenvalues nearest a shift above the growth rate of the most amplified wave. The number of
-requested eigenvalues is doubled until the leading eigenvalues stay the same. No result is certified.
+The finer mesh gives the eigenvalues; the differences from the eigenvalues of the coarser mesh give the
+errors. Krylov-Schur finds the eigenvalues nearest to a shift above the growth rate of the most amplified
+wave. The number of requested eigenvalues is doubled until the leading eigenvalues stay the same. No result is
+certified.
 """
 
 from dataclasses import dataclass, replace
@@ -29,17 +30,18 @@ class TwoMeshSettings:
     max_finer_meshes: int = 8
     """Maximum number of meshes after the first; each has a third more unknowns than its predecessor."""
     spare_eigenvalues: int = 2
-    """Number of eigenvalues beyond the wanted modes in the first request on a mesh."""
+    """Number of eigenvalues requested first on a mesh, in addition to the wanted modes."""
     unchanged_tolerance: float = 1e-9
-    """Relative change of the leading eigenvalues, after a doubled request, below which the doubling ends."""
+    """The doubling ends if the leading eigenvalues change relatively by less than this after a doubled
+    request."""
     unchanged_rounding_tolerance: float = 3e-11
-    """Absolute change below which the doubling ends too, in units of the shift plus F^2. It is a hundred
-    times `rounding`, because rounding differs between releases of SLEPc and between processors."""
+    """The doubling also ends if the leading eigenvalues change by less than this times (shift + F^2). A
+    hundred times `rounding`, because rounding differs between releases of SLEPc and between processors."""
     mesh_error_factor: float = 3.0
-    """Safety factor on the difference between two meshes, which estimates the error of the finer mesh."""
+    """Error of the finer mesh divided by the difference between the two meshes (safety factor)."""
     rounding: float = 3e-13
-    """Rounding error of an eigenvalue, in units of |w| plus the shift plus F^2. F^2 is included because the
-    first eigenvalue of a pulled rod is exponentially small against F^2."""
+    """Rounding error of an eigenvalue, divided by |w| + shift + F^2. F^2 is included because the first
+    eigenvalue of a pulled rod is exponentially small compared with F^2."""
     min_unknowns_per_mode: int = 3
     """Minimum number of unknowns of a mesh per requested eigenvalue: a third of the unknowns have no time
     derivative, and the highest modes of a mesh are not resolved."""
@@ -49,8 +51,7 @@ TWO_MESHES = TwoMeshSettings()
 
 
 def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    """The leading `request.modes` eigenvalues of a rod. A failed solve gives a status; no exception is
-    raised.
+    """The leading `request.modes` eigenvalues of a rod; a failure is returned as a status, never raised.
 
     No result is proved; `request.certify` is ignored.
     """
@@ -84,17 +85,17 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
     if best is None:
         most = RESOLUTION.max_unknowns
         raise Unsolvable(f"no mesh of at most {most} unknowns gives the requested number of eigenvalues")
-    # If rounding dominates, the error of either mesh may exceed the difference of both.
+    # If rounding dominates, the error may exceed the difference between the two meshes.
     return replace(best, error_estimate=TWO_MESHES.mesh_error_factor * best.error_estimate)
 
 
 def _scale(problem: TransverseProblem) -> float:
-    """Sum of the shift and F^2, in 1/tau2: eigenvalues have rounding errors relative to this rate."""
+    """Sum of |shift| and F^2, in 1/tau2: rounding errors of eigenvalues are proportional to this rate."""
     return abs(problem.shift) + problem.rod.F**2
 
 
 class _MeshEigenvalues(NamedTuple):
-    """Eigenvalues w of a mesh, (k,), sorted as defined in `rodsweep.model`, and the index of each in SLEPc's
+    """Eigenvalues w of a mesh, (k,), sorted as defined in `rodsweep.model`, and their indices in SLEPc's
     list, (k,).
     """
 
@@ -106,12 +107,12 @@ def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEige
     """Sorted eigenvalues of a mesh. The requested number is doubled until the leading `modes` no longer
     change.
 
-    Empty if the mesh is too coarse for a doubled request.
+    The result is empty if the mesh is too coarse for a doubled request.
     """
     solver = problem.solver(mesh)
     wanted = modes + TWO_MESHES.spare_eigenvalues
-    # The solver finds the eigenvalues nearest the shift, which need not lead: ask for more until the leading
-    # ones stay.
+    # The solver finds the eigenvalues nearest to the shift, which need not lead: more are requested until
+    # the leading eigenvalues stay the same.
     before = np.empty(0, complex)
     while True:
         raw = solver.solve(problem.rod, problem.shift, wanted, tight=True)
@@ -133,12 +134,12 @@ def _worst(found: Spectrum) -> float:
 
 
 def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
-    """Absolute errors of the sorted eigenvalues w, (k,), from the eigenvalues `coarser` of a coarser mesh,
-    (l,), unsorted.
+    """Absolute errors of the sorted eigenvalues w, (k,), from the unsorted eigenvalues `coarser`, (l,), of a
+    coarser mesh.
 
     scale: `_scale`. Two meshes may agree on one eigenvalue by chance. Each eigenvalue therefore gets the
-    largest relative difference among itself and its two neighbours. Near a double eigenvalue rounding errors
-    grow.
+    largest relative difference of itself and its two neighbours. Near a double eigenvalue the stated rounding
+    errors are larger.
     """
     apart = np.abs(w[:, None] - coarser).min(axis=1) / np.abs(w)
     padded = np.pad(apart, 1)
@@ -154,8 +155,8 @@ def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
 def _spectrum(
     problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, found: _MeshEigenvalues, error: Array
 ) -> Spectrum:
-    """The spectrum of one mesh, with the status from the errors. error: absolute error of each eigenvalue
-    found, (k,).
+    """The spectrum of one mesh, with the status from the errors. error: absolute error of each found
+    eigenvalue, (k,).
     """
     w = found.w
     modes = request.modes

@@ -1,1 +1,1 @@
-"""Changes of stability along a path of arms that have no closed form of D."""
+"""Stability changes along a path of arms, whose D has no closed form."""

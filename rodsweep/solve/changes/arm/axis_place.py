@@ -1,5 +1,5 @@
-"""Places of a path of arms with the eigenvalues beside the imaginary axis, and whether two crossings may hide
-between two places."""
+"""Eigenvalues near the imaginary axis at places, selected arms of a path, and the test whether a pair may
+cross the axis twice between two places."""
 
 import math
 from dataclasses import dataclass
@@ -15,12 +15,13 @@ from .path import ArmPath
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AxisPlaceSettings:
-    """Settings for the places of a search for crossings."""
+    """Settings of the places of a search for crossings."""
 
     many: float = 16.0
-    """Expected number of growing modes beyond which a place knows the modes beside the axis alone."""
+    """If more modes than this are expected to grow at a place, only the modes near the imaginary axis are
+    computed."""
     max_known_modes: int = 200
-    """Largest number of leading eigenvalues known at a place."""
+    """Maximum number of leading eigenvalues computed at a place."""
 
 
 AXIS_PLACES = AxisPlaceSettings()
@@ -29,9 +30,10 @@ NONE_BESIDE: Complex = np.empty(0, complex)
 
 @dataclass(frozen=True)
 class AxisPlace:
-    """A place p: eigenvalues w and their slopes, (modes,) each, and the number of unstable modes.
+    """The place at path variable p: eigenvalues w and their slopes dw/dp, (modes,) each, and the number of
+    unstable modes.
 
-    The eigenvalues are the leading ones, or those beside the axis, one of each pair.
+    The eigenvalues are the leading eigenvalues, or the eigenvalues near the imaginary axis, one of each pair.
     """
 
     p: float
@@ -40,8 +42,8 @@ class AxisPlace:
     unstable: int
 
     def nearest(self, growing: bool) -> tuple[float, float] | None:
-        """(distance from the axis, its slope by p) of the pair nearest to the axis on one side; None without
-        a pair."""
+        """(distance from the imaginary axis, derivative by p of this distance) of the nearest pair to the
+        right (if `growing`) or to the left of the axis; None if no pair is known there."""
         pairs = [i for i, w in enumerate(self.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
         if not pairs:
             return None
@@ -51,12 +53,12 @@ class AxisPlace:
 
     @property
     def highest(self) -> float:
-        """Largest |w|; 0 without eigenvalues."""
+        """Largest |w| at this place; 0 if no eigenvalues are known."""
         return float(np.abs(self.w).max(initial=0.0))
 
 
 class AxisPlaces:
-    """The known places of a path, by p."""
+    """The places of a path at which eigenvalues have been computed; known: the places by p."""
 
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
@@ -64,16 +66,17 @@ class AxisPlaces:
         self.known: dict[float, AxisPlace] = {}
 
     def are_many(self, p: float) -> bool:
-        """Whether a place at p knows the modes beside the axis alone."""
+        """Whether at p only the modes near the imaginary axis are computed, because many modes are expected
+        to grow."""
         return self.certify and self.problem.expected_growing(p) > AXIS_PLACES.many
 
     def at(self, p: float, beside: Complex | None = None) -> AxisPlace:
-        """The place at p; raises Unsolvable if eigenvalues or count cannot be computed.
+        """The place at p; raises Unsolvable if the eigenvalues or the count cannot be computed.
 
-        beside: approximate eigenvalues beside the axis, (n,), one of each pair, if known.
+        beside: approximate eigenvalues near the imaginary axis, (n,), one of each pair, if available.
         """
         if p not in self.known:
-            # The neighbour's count tells how many modes are needed: all unstable ones and a pair beyond.
+            # The neighbour's count gives the number of modes: the unstable modes and one more pair.
             near = min(self.known.values(), key=lambda place: abs(place.p - p), default=None)
             growing = 0 if near is None else near.unstable
             found = self._place_beside(p, beside) if self.are_many(p) else None
@@ -81,7 +84,8 @@ class AxisPlaces:
         return self.known[p]
 
     def modes_beside(self, p: float, highest: float, known: Complex) -> Complex:
-        """Eigenvalues beside the axis at p, (n,), as `ArmPath.beside_axis`; known: some of them, (k,).
+        """Eigenvalues near the imaginary axis at p with Im w up to `highest`, (n,), as `ArmPath.beside_axis`.
+        known: some of these eigenvalues, (k,).
 
         Raises Unsolvable if no elements resolve the arm.
         """
@@ -91,7 +95,8 @@ class AxisPlaces:
             raise Unsolvable(f"{self.problem.path.at(p)}: {unresolved}") from None
 
     def _place_beside(self, p: float, beside: Complex | None) -> AxisPlace | None:
-        """The place at p by a count and the modes beside the axis; None if the count is undecided."""
+        """The place at p from a count and the modes near the imaginary axis; None if the count is undecided.
+        beside: approximations of these modes, if available."""
         guesses = self.modes_beside(p, math.inf, NONE_BESIDE) if beside is None else beside
         refined = [self.problem.eigenvalue(guess, p) for guess in guesses.tolist()]
         w = np.array([one[0] for one in refined], complex)
@@ -100,12 +105,13 @@ class AxisPlaces:
         return None if number is None else AxisPlace(p, w, slopes, number)
 
     def _place_of_leaders(self, p: float, growing: int) -> AxisPlace:
-        """The place at p by its leading modes, two more than grow; growing: how many may grow."""
+        """The place at p from the leading modes, at least two more than the unstable modes. growing: expected
+        number of unstable modes."""
         modes = max(ANCHORS.min_known_modes, 2 + growing)
         found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
         while modes < _needed(found) <= AXIS_PLACES.max_known_modes:
             if self.certify and found.unstable_count < 0:
-                break  # a count that fails does not succeed with more modes
+                break  # more modes do not help a failed count
             modes = _needed(found)
             found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
         if found.unstable_count < 0:
@@ -121,14 +127,15 @@ class AxisPlaces:
 
 
 def _needed(found: Spectrum) -> int:
-    """Two more modes than are unstable; without a count the growing modes found are taken."""
+    """Number of modes to be computed: two more than the unstable modes, or, without a count, than the growing
+    modes found."""
     growing = int((found.eigenvalues.real > 0).sum())
     return 2 + max(found.unstable_count, growing)
 
 
 def next_count_place(left: AxisPlace, right: AxisPlace) -> float:
-    """Fraction of the interval at which to count next, because a pair may touch the axis; 0 if no pair
-    can."""
+    """Position of the next count as a fraction of the interval from `left` to `right`, because a pair may
+    touch the axis between; 0 if no pair can touch the axis."""
     h = right.p - left.p
     for growing in (False, True):
         a = left.nearest(growing)
@@ -137,7 +144,7 @@ def next_count_place(left: AxisPlace, right: AxisPlace) -> float:
             continue
         if a is None or b is None:
             value, slope = a or b or (0.0, 0.0)
-            # Of a pair that is known at one end only, its own slope must tell whether it came from the axis.
+            # The slope of a pair known at one end only shows whether the pair came from the axis.
             towards = slope > 0 if a is None else slope < 0
             if towards and value < abs(slope) * h:
                 return 0.5

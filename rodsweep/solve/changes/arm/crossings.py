@@ -1,8 +1,8 @@
-"""Crossings of the imaginary axis along a path of arms. No covering proves their list complete.
+"""Crossings of the imaginary axis along a path of arms. No covering proves that the list is complete.
 
-The unstable modes are counted at places along the path. Between places whose counts differ by one pair,
-Newton's method on D finds the crossing. Between places with equal counts, the slopes of the pairs nearest to
-the axis must exclude two crossings; otherwise a place is added between.
+The unstable modes are counted at places along the path. Between two places whose counts differ by one pair,
+Newton's method on D finds the crossing. Between two places with equal counts, the slopes of the pairs nearest
+to the axis must exclude two crossings; otherwise a place is added between the two.
 """
 
 import math
@@ -19,32 +19,33 @@ from .path import ArmPath
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmCrossingSettings:
-    """Settings for the crossings along a path of arms."""
+    """Settings of the search for crossings along a path of arms."""
 
     beyond_the_list: float = 2.0
     smallest_first: float = 1e-3
-    """Intervals are halved before a search if more modes than the list holds, times the first factor, are
-    expected to grow at their right ends, down to this length in units of the path."""
+    """An interval is halved before its search if more modes than `beyond_the_list` times the length of the
+    list are expected to grow at its right end, unless it is shorter than `smallest_first` times the path."""
     most_at_once: int = 6
-    """Largest number of pairs by which the counts of two places may differ for a search of all crossings
-    between."""
+    """All crossings between two places are searched at once if the counts differ by at most this many
+    pairs."""
     higher: float = 4.0
-    """Height up to which modes beside the axis are searched at a crossing, in units of the heights known."""
+    """Modes near the axis at a crossing are searched up to this multiple of the largest known |w|."""
     same_errors: float = 10.0
     same_frequency: float = 1e-6
-    """Two crossings are equal if they differ by less: in p in units of their errors, in frequency
-    relative."""
+    """Two crossings are equal if their parameter values differ by less than `same_errors` times the sum of
+    their errors, and their frequencies by less than `same_frequency` times the frequency."""
     smallest_interval: float = 1e-6
-    """Length of an interval, in units of the path, that is not divided further: two crossings inside stay
-    undecided."""
+    """Intervals shorter than this fraction of the path are not divided: whether two crossings lie inside
+    remains undecided."""
     smallest_step: float = 1e-12
-    """Relative length of an interval without a place between its ends, up to some thousand roundings."""
+    """An interval with a smaller length, relative to the larger of its ends, has no place between its ends:
+    some thousand rounding errors."""
     count_distance: float = 1e-5
-    """Distance from a crossing, in units of the path, of the counts on both its sides."""
+    """Distance from a crossing, as a fraction of the path, at which the modes are counted on both sides."""
     max_steps: int = 20
     """Maximum number of Newton steps for one crossing."""
     converged: float = 4.0
-    """Newton step, in units of the error of p, at which a crossing has converged."""
+    """Newton's method for a crossing stops when the step is at most this multiple of the error of p."""
     rounding: float = 4e-16
     """Relative rounding error of the path variable: two units in the last place."""
 
@@ -53,9 +54,9 @@ ARM_CROSSINGS = ArmCrossingSettings()
 
 
 class CrossingSearch:
-    """The search for crossings along a path.
+    """Search for crossings along a path.
 
-    found: crossings by their p. gaps: intervals of p that may contain two undecided crossings.
+    found: crossings by path variable p. gaps: intervals of p that may contain two crossings.
     """
 
     def __init__(self, problem: ArmPath, certify: bool):
@@ -65,10 +66,12 @@ class CrossingSearch:
         self.gaps: list[tuple[float, float]] = []
 
     def crossings(self, edges: list[float], most: float) -> tuple[list[Crossing], SearchEnd]:
-        """All crossings from the first of `edges` up to the reach of the search, in increasing order of p.
+        """Returns (crossings, end of the search): all crossings from the first of `edges` to that end, in
+        increasing order of p.
 
-        The search ends behind the first crossing beyond `most`: where dozens of modes grow, each further one
-        costs more than all before. Raises Unsolvable if the search does not reach beyond the first edge.
+        The search ends after the first crossing beyond `most`: where dozens of modes grow, each further
+        crossing takes longer than all earlier crossings. Raises Unsolvable if the search ends at the first
+        edge.
         """
         intervals = SearchedIntervals(edges)
         self.places.at(edges[0])
@@ -87,14 +90,15 @@ class CrossingSearch:
         return [self.found[p] for p in sorted(self.found)], intervals.reach
 
     def _is_too_long(self, a: float, b: float, most: float, length: float) -> bool:
-        """Whether the list is likely to be full before b, where a count is expensive."""
+        """Whether the list of `most` crossings is likely to be full before b, where a count is expensive.
+        length: of the path."""
         if b in self.places.known or b - a < ARM_CROSSINGS.smallest_first * length:
             return False
         expected = self.problem.expected_growing(b)
         return self.places.are_many(b) and expected > ARM_CROSSINGS.beyond_the_list * 2 * most
 
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> None:
-        """Searches one interval: keeps its crossing, or divides the interval."""
+        """Searches the interval (a, b): stores the crossings found, or divides the interval."""
         left = self.places.at(a)
         right = self.places.at(b)
         # Equal counts leave room for a pair that crosses and returns.
@@ -124,9 +128,10 @@ class CrossingSearch:
         self, crossings: list[Crossing], left: AxisPlace, right: AxisPlace, length: float
     ) -> list[tuple[float, float]] | None:
         """The intervals between crossings, in increasing order of p; None if the counts just before and just
-        behind a crossing do not confirm it.
+        after a crossing do not confirm the crossing. length: of the path.
 
-        The modes beside the axis at a crossing serve both places where many modes grow.
+        Where many modes grow, the modes near the axis at a crossing serve the counts before and after the
+        crossing.
         """
         parts: list[tuple[float, float]] = []
         start = left.p
@@ -147,17 +152,17 @@ class CrossingSearch:
 
     def _between(self, left: AxisPlace, right: AxisPlace) -> list[Crossing]:
         """Crossings between two places, in increasing order of p, that explain the change of the number of
-        unstable modes; empty if not found."""
+        unstable modes; empty if not all are found."""
         change = (right.unstable - left.unstable) // 2
         many = self.places.are_many(right.p)
-        # Where modes are followed a bisection parts several crossings first.
+        # Where modes are followed, bisection first separates several crossings.
         if abs(change) > (ARM_CROSSINGS.most_at_once if many else 1):
             return []
         if many:
             self.problem.make_family(left.p, right.p, max(left.highest, right.highest))
         grows = change > 0
         found: dict[float, Crossing] = {}
-        # The pairs that cross are stable on one side and unstable on the other; the nearest to the axis are
+        # The pairs that cross are stable on one side and unstable on the other; pairs near the axis are
         # tried first.
         for start, growing in ((left, not grows), (right, grows)):
             pairs = [i for i, w in enumerate(start.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
@@ -170,10 +175,10 @@ class CrossingSearch:
         return []
 
     def _newton(self, start: AxisPlace, i: int, ends: tuple[float, float], grows: bool) -> Crossing | None:
-        """Newton's method for the p at which eigenvalue i of a place lies on the imaginary axis; None without
-        convergence.
+        """Newton's method for the p at which eigenvalue number i of the place `start` lies on the imaginary
+        axis; None without convergence.
 
-        ends: interval of p. grows: whether the pair's growth rate increases with p.
+        ends: allowed interval of p. grows: whether the growth rate of the pair increases with p.
         """
         p = start.p
         w = complex(start.w[i])
@@ -189,7 +194,7 @@ class CrossingSearch:
             w, slope, error = self.problem.eigenvalue(guess, p)
             blur = error / abs(slope.real) + ARM_CROSSINGS.rounding * abs(p)
             if abs(w.real / slope.real) <= ARM_CROSSINGS.converged * blur:
-                # Where nothing is resolved there is no root of D.
+                # With such an error no root of D is resolved.
                 unresolved = self.places.are_many(p) and not blur <= ARM_CROSSINGS.count_distance * (
                     ends[1] - ends[0]
                 )
@@ -197,18 +202,19 @@ class CrossingSearch:
         return None
 
     def _crossing(self, p: float, w: complex, slope: complex, blur: float, grows: bool) -> Crossing | None:
-        """The crossing of the pair w at p; None if its growth rate changes in the opposite direction."""
-        # Newton's method may find another pair of the interval, going the other way.
+        """The crossing of the pair w at p; None if the growth rate changes in the opposite direction, or if w
+        is no pair. slope: dw/dp. blur: error of p."""
+        # Newton's method may find another pair, which crosses in the opposite direction.
         if w.imag <= 0 or (slope.real > 0) != grows:
             return None
         kind = ChangeKind.hopf if grows != self.problem.path.inverse else ChangeKind.hopf_reverse
         error_of_p = blur + abs(w.real / slope.real)
         at, error = self.problem.path.value(p, error_of_p)
-        error_of_w = (abs(slope.real) + abs(slope.imag)) * error_of_p  # its own, and that by p
+        error_of_w = (abs(slope.real) + abs(slope.imag)) * error_of_p  # at fixed p, and by the error of p
         return Crossing(at, kind, w.imag, 0.0, error, frequency_error=error_of_w)
 
 
 def _same(one: Crossing, other: Crossing) -> bool:
-    """Whether two crossings are equal within their errors, of F and of the frequency."""
+    """Whether two crossings are equal within the errors of the parameter and of the frequency."""
     apart = abs(one.at - other.at) <= ARM_CROSSINGS.same_errors * (one.error + other.error)
     return apart and abs(one.frequency - other.frequency) <= ARM_CROSSINGS.same_frequency * one.frequency

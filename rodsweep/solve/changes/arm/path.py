@@ -1,4 +1,5 @@
-"""The transverse eigenvalue problem along a path of nonuniform arms, and that of any path."""
+"""The transverse eigenvalue problem along a path of nonuniform arms, and the choice of the problem for any
+path."""
 
 import math
 from contextlib import suppress
@@ -26,23 +27,25 @@ from ..path_problem import PathProblem, UniformPath
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmPathSettings:
-    """Intervals of a path of arms."""
+    """Settings for the intervals of a path of arms and for following eigenvalues."""
 
     edges: int = 12
     """Number of equal intervals into which a path of arms is first divided."""
     points_between: int = 4
-    """Steps in which eigenvalues are followed through each of these intervals."""
+    """Number of steps in which eigenvalues are followed through each of these intervals."""
     followed_modes: int = 4
-    """Leading eigenvalues that are proved complete at each step; all unstable ones are, too."""
+    """Number of leading eigenvalues that are proved complete at each step, besides all unstable
+    eigenvalues."""
     spare_pair: int = 2
-    """Number of modes solved for beyond those requested, of an arm with many unstable modes."""
+    """Number of modes solved for in addition to the requested modes, for an arm with many unstable modes."""
     most_growing: float = 16.0
-    """Expected number of unstable modes beyond which none are followed: 13 are followed at most."""
+    """If more unstable modes than this are expected, no modes are followed: at most 13 are followed."""
     headroom: float = 4.0
-    """Largest |w| of a family for crossings, in units of the |w| known; half of it serves eigenvalues."""
+    """Largest |w| of a family of arms for crossings, divided by the largest known |w|; twice the known |w|
+    suffices for the eigenvalues."""
     amid: float = 0.25
-    """Largest distance of a counted place from the middle of an interval, in units of the interval's length,
-    at which the count stands for a count in the middle."""
+    """The count at a path variable replaces a count in the middle of an interval if its distance from the
+    middle is less than this fraction of the interval's length."""
 
 
 ARM_PATH = ArmPathSettings()
@@ -51,28 +54,30 @@ ARM_PATH = ArmPathSettings()
 class ArmPath(PathProblem):
     """Path of arms that vary along the length or have a nonlinear law, with D from propagators.
 
-    The leading eigenvalues are followed along the path once, and from the nearest step to every requested p.
+    The leading eigenvalues are followed along the path once, and then from the nearest step to every
+    requested p.
     """
 
     def __init__(self, path: Path):
         super().__init__(path)
         self._followed: FollowedArms | None = None
         self._solutions: dict[float, Spectrum] = {}
-        """Spectra that are solved, not followed, by p; each with as many modes as were requested last."""
+        """Spectra by p that were solved, not followed; each with the number of modes requested last."""
         self._counts: dict[float, int] = {}
-        """Numbers of unstable modes that are proved, by p."""
+        """Proved numbers of unstable modes, by p."""
         self._families: list[ArmFamily] = []
         self._along = ArmAlongPath(path, self._family)
 
     def _family(self, p: float) -> ArmFamily | None:
-        """The family of arms whose interval contains p; None without such a family."""
+        """The family of arms whose interval contains p; None if there is no family."""
         made = next((one for one in self._families if one.low <= p <= one.high), None)
         if made is None and self._followed is not None and self.expected_growing(p) <= ARM_PATH.most_growing:
             return self._followed.family(p)
         return made
 
     def make_family(self, low: float, high: float, highest: float) -> None:
-        """Makes a family of the arms from low to high for eigenvalues up to |w| = highest, if possible."""
+        """Creates the family of arms from `low` to `high` for eigenvalues up to |w| = `highest`, if
+        possible."""
         W = ARM_PATH.headroom * highest
         if any(one.low <= low and high <= one.high and highest * 2 <= one.W for one in self._families):
             return
@@ -89,8 +94,8 @@ class ArmPath(PathProblem):
         return edges.tolist()
 
     def expected_growing(self, p: float) -> float:
-        """Estimate of the number of unstable modes at p: half the number of waves that grow by the local
-        dispersion relation.
+        """Estimate of the number of unstable modes at p: the integral over the arm of the largest wave number
+        that grows by the local dispersion relation, divided by pi.
 
         For 14 arms with 4 to 132 unstable modes the estimate was 0.9 to 1.9 times the true number.
         """
@@ -99,7 +104,7 @@ class ArmPath(PathProblem):
         return float(weights @ np.sqrt(np.maximum(rod.F * local.c3 * local.g, 0.0))) / math.pi
 
     def followed(self, p: float, modes: int) -> Spectrum | None:
-        """The leading eigenvalues at p, proved complete, if following gives them; else None."""
+        """The `modes` leading eigenvalues at p, proved complete, if they can be followed to p; else None."""
         if self._followed is None or self.expected_growing(p) > ARM_PATH.most_growing:
             return None
         found = self._followed.spectrum(p, modes)
@@ -118,17 +123,17 @@ class ArmPath(PathProblem):
         return self._spectra[key]
 
     def _solved(self, p: float, request: SpectrumRequest) -> Spectrum:
-        """The leading eigenvalues at p, of an earlier solve at p with enough modes, or of a new solve.
+        """The leading eigenvalues at p, from an earlier solve at p with enough modes, or from a new solve.
 
-        Beside a crossing a request for many modes is followed by a request for one pair more, so that this
-        pair is solved at once.
+        Near a crossing a request for many modes is followed by a request for one more pair; this pair is
+        therefore included in the first solve.
         """
         earlier = self._solutions.get(p)
         # A few modes more at first save a second solve where the next request needs one pair more.
         if earlier is None or len(earlier.eigenvalues) < request.modes or earlier.status != SpectrumStatus.ok:
             spare = ARM_PATH.spare_pair if request.modes > ARM_PATH.followed_modes else 0
             earlier = super().spectrum(p, replace(request, modes=request.modes + spare))
-            # The modes beyond those requested may be harder: they must not spoil the answer.
+            # The additional modes may be harder to solve; they must not spoil the requested modes.
             if spare and earlier.status != SpectrumStatus.ok:
                 earlier = super().spectrum(p, request)
             self._solutions[p] = earlier
@@ -167,8 +172,8 @@ class ArmPath(PathProblem):
     def counted(self, p: float, known: Complex, error: Array) -> int | None:
         """Number of unstable modes at p by a count; None if undecided.
 
-        known: eigenvalues beside the axis, (n,), one of each pair, which make the count faster; error: the
-        error of each, (n,).
+        known: eigenvalues near the imaginary axis, (n,), one of each pair, which make the count faster.
+        error: errors of these eigenvalues, (n,).
         """
         if p not in self._counts:
             roots = KnownRoots(np.append(known, known.conj()), np.append(error, error))
@@ -179,9 +184,10 @@ class ArmPath(PathProblem):
         return self._counts[p]
 
     def beside_axis(self, p: float, highest: float, known: Complex) -> Complex:
-        """Eigenvalues at p beside the imaginary axis up to a height, (n,), one of each pair.
+        """Eigenvalues at p near the imaginary axis with |Im w| up to `highest`, (n,), one of each pair.
 
-        known: some of them, (k,), which come first. Raises FloatingPointError if no elements resolve the arm.
+        known: some of these eigenvalues, (k,), which come first. Raises FloatingPointError if no elements
+        resolve the arm.
         """
         rod = self.path.at(p)
         return modes_near_axis(arm_determinant(rod), min(highest, hull_of(rod).box()[1]), known)
@@ -191,5 +197,6 @@ class ArmPath(PathProblem):
 
 
 def path_problem(path: Path) -> PathProblem:
-    """The problem of a path: of uniform rods, or of arms."""
+    """The eigenvalue problem along `path`: `UniformPath` for uniform rods of linear material, else
+    `ArmPath`."""
     return UniformPath(path) if path.rod.standard else ArmPath(path)

@@ -1,1 +1,1 @@
-"""Rows and boundaries of a phase diagram."""
+"""Rows and boundary curves of a phase diagram."""

@@ -1,4 +1,4 @@
-"""Boundaries of a phase diagram: the curves through the stability changes of its rows.
+"""Boundaries of a phase diagram: the curves through the stability changes found on its rows.
 
 The curves are traced from the changes of all rows (`rodsweep.solve.changes.diagram.boundary_curves`).
 """
@@ -19,21 +19,23 @@ from .boundary_curves import BoundaryCurve, trace
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChangeBoundarySettings:
-    """Settings for the assignment of the changes on rows to curves."""
+    """Settings for the assignment of the changes found on rows to boundary curves."""
 
     same_coordinate: float = 1e-12
-    """Two scaled coordinates with a smaller difference are equal."""
+    """Two scaled coordinates are equal if their difference is smaller than this."""
     same_eigenvalue: float = 1e-3
-    """Relative difference of the eigenvalues below which a change may lie on a curve beside it."""
+    """A change lies on a curve only if the eigenvalue of the curve at the same height differs by less than
+    this, relatively."""
     max_secants: int = 20
     """Maximum number of secant steps to a point of a curve at a given height."""
     coincident_ends: float = 1e-6
-    """Two curves with ends at a smaller distance, eigenvalue included, are the same: curves do not cross."""
+    """Two curves are the same if two of their end points (coordinates and log |eigenvalue|) are closer than
+    this: curves do not cross."""
     change_distance: float = 1e-7
-    """A change at a smaller distance from a curve, in units of the axis, lies on the curve."""
+    """A change at a smaller distance from a curve lies on the curve; both axes have length 1."""
     beside: float = 0.1
-    """Distance beside the ends of a chord, in units of the axis, at which its curve may still have a point:
-    steps are shorter."""
+    """A chord of a curve is searched for a change only if the change is at most this far beyond the chord's
+    ends along the first axis, which has length 1: steps are shorter."""
 
 
 CHANGE_BOUNDARIES = ChangeBoundarySettings()
@@ -41,7 +43,7 @@ CHANGE_BOUNDARIES = ChangeBoundarySettings()
 
 @dataclass(frozen=True, slots=True)
 class Seed:
-    """A change on a row as the start of a curve: values of both parameters, and the eigenvalue."""
+    """A change on a row as the starting point of a curve: values of both parameters, and the eigenvalue."""
 
     values: tuple[float, float]
     sign: float
@@ -51,7 +53,8 @@ class Seed:
 
 
 def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rate: float) -> Seed | None:
-    """The seed of a change; None for an overtaking, because no curve is made of overtakings."""
+    """The seed of a change with values of both parameters; None for an overtaking, because no boundary
+    consists of overtakings."""
     if kind in (ChangeKind.hopf, ChangeKind.hopf_reverse, ChangeKind.restabilization):
         return Seed(values, 0.0, frequency)
     if kind in (ChangeKind.onset, ChangeKind.real_again):
@@ -61,32 +64,33 @@ def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rat
 
 @dataclass(frozen=True, slots=True)
 class _ChangeBoundaries:
-    """The curves through the changes of all rows of a plane."""
+    """The boundary curves through the changes of all rows of a plane, as a problem for `boundary_search`."""
 
     plane: Plane
     seeds: list[Seed]
 
     def next_seed(self, left: Sequence[int]) -> int:
-        """The first change on no curve."""
+        """Index of the change at which the next curve starts: the first of the changes `left`, which lie on
+        no curve."""
         return left[0]
 
     def missing_units(self, seed: int) -> list[int]:
-        """No unit of work: a curve takes milliseconds and is traced at once."""
+        """No work items: a curve is traced in milliseconds, at once."""
         return []
 
     def curve(self, seed: int) -> BoundaryCurve | None:
-        """The curve from a change."""
+        """The curve through change number `seed`; None if it is not found."""
         one = self.seeds[seed]
         x, y = (a.scaled(v) for a, v in zip(self.plane.axes, one.values, strict=True))
         return trace(one.sign, self.plane, (x, y), one.eigenvalue)
 
     def distance(self, curve: BoundaryCurve, seed: int) -> float:
-        """Distance along the first axis of a change from a curve, at the height of the change."""
+        """Distance of change number `seed` from `curve`, along the first axis at the height of the change."""
         return _distance(self.plane, curve, self.seeds[seed])
 
     def same(self, one: BoundaryCurve, other: BoundaryCurve) -> bool:
-        """Whether two curves share an end: beside a crushed rod a change may not be found on its own
-        curve."""
+        """Whether two curves are the same because they share an end; near a crushed rod a change may not be
+        found on its own curve."""
         ends = one.scaled[[0, -1], None] - other.scaled[None, [0, -1]]
         return (
             one.sign == other.sign
@@ -95,20 +99,21 @@ class _ChangeBoundaries:
 
 
 def curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries[BoundaryCurve]:
-    """Curves through all changes; each curve is followed once, and every change is then found on a curve."""
+    """Boundary curves through all changes; each curve is followed once, and the changes on the curve start no
+    further curve."""
     problem = _ChangeBoundaries(plane, seeds)
     return boundary_search(problem, range(len(seeds)), CHANGE_BOUNDARIES.change_distance).boundaries
 
 
 def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
-    """Distance along the first axis of a change from the curve at the height of the change; inf if not
-    near."""
+    """Distance of a change from the curve along the first axis, at the height of the change; inf if the curve
+    has no point near the change."""
     if curve.sign != seed.sign:
         return math.inf
     x, y = (a.scaled(v) for a, v in zip(plane.axes, seed.values, strict=True))
     points = curve.scaled
     side = points[:, 1] - y
-    # A change on a point of the curve must not fall between two pieces by rounding.
+    # A change on a point of the curve must not fall between two chords by rounding.
     side[np.abs(side) < CHANGE_BOUNDARIES.same_coordinate] = 0.0
     if len(points) == 1:
         return float(abs(points[0, 0] - x)) if abs(side[0]) < CHANGE_BOUNDARIES.change_distance else math.inf
@@ -129,9 +134,10 @@ def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
 
 
 def _at_height(boundary: Boundary, a: Array, b: Array, y: float) -> Array | None:
-    """The point (x, y, h) of a curve at height y between two of its points; None if not found.
+    """The point (x, y, h) of a curve at height y between its points a and b, (3,) each; None if not found.
 
-    Newton's method starts from the chord; if this guess is too far, secants along the curve follow.
+    Newton's method starts from the chord. If this guess is too far from the curve, secant steps along the
+    curve follow.
     """
     share = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
     for _ in range(CHANGE_BOUNDARIES.max_secants):

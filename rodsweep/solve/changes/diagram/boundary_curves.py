@@ -1,8 +1,8 @@
 """Curves in a plane of rods on which the spectrum changes: Hopf points, and double real eigenvalues.
 
 A boundary (`determinant.boundary`) is followed through its folds (`boundary_problem`). A fold is a point
-where a coordinate is extremal on the curve, for example where a window of flutter closes: the tangent has
-no component along that axis.
+where a coordinate is extremal on the curve, for example where a flutter window closes: the tangent has no
+component along the axis of this coordinate.
 """
 
 import math
@@ -21,7 +21,7 @@ from .boundary_problem import BOUNDARY_STEPS, CHANGE_CURVES, BoundaryEnd, Bounda
 
 @dataclass(frozen=True, slots=True)
 class Fold:
-    """Extremum of coordinate `axis` (0 or 1) on a curve: both parameters with errors, eigenvalue in
+    """Extremum of coordinate `axis` (0 or 1) on a curve: values and errors of both parameters, eigenvalue in
     1/tau2."""
 
     axis: int
@@ -37,8 +37,8 @@ class BoundaryCurve:
 
     sign: 0 on a curve of Hopf points, else the sign of the double eigenvalue.
 
-    values: of both parameters, (points, 2). frequency, growth_rate: of the eigenvalue, in 1/tau2, (points,).
-    ends: reasons for the ends at the first and the last point.
+    values: both parameters of each point, (points, 2). frequency, growth_rate: Im and Re of the eigenvalue,
+    in 1/tau2, (points,). ends: reasons for the ends at the first and at the last point.
     """
 
     sign: float
@@ -48,7 +48,7 @@ class BoundaryCurve:
     folds: tuple[Fold, ...]
     ends: tuple[BoundaryEnd, BoundaryEnd]
     scaled: Array
-    """Scaled coordinates and h = log|eigenvalue| of each point, (points, 3)."""
+    """Scaled coordinates x, y and h = log|eigenvalue| of each point, (points, 3)."""
 
     @property
     def hopf(self) -> bool:
@@ -56,7 +56,8 @@ class BoundaryCurve:
 
 
 def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: float) -> BoundaryCurve | None:
-    """The curve of a sign through a start in scaled coordinates with |w| = |eigenvalue|; None if not found.
+    """The boundary curve with `sign` through `start` (scaled coordinates) and |w| = |eigenvalue|; None if no
+    point of a curve is found there.
 
     The curve is followed in both directions until it leaves the plane, closes, or reaches a crushed rod.
     """
@@ -74,13 +75,14 @@ def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: flo
         back = follow_curve(curve, BoundaryPoint(first.v, -first.tangent), BOUNDARY_STEPS, lambda _: report())
         passed = [*back.solutions[:0:-1], *passed]
     points = np.array([point.v for point in passed])
-    # Between coincident points, as on an edge, the chord has no direction.
+    # The chord of coincident points, as on an edge, has no direction.
     apart = np.abs(np.diff(points, axis=0)).max(axis=1) > CHANGE_CURVES.coincident_points
     return _curve(curve, points[np.append(apart, True)], (curve.end_of(back), curve.end_of(ahead)))
 
 
 def _curve(curve: ChangeCurveProblem, points: Array, ends: tuple[BoundaryEnd, BoundaryEnd]) -> BoundaryCurve:
-    """The curve through points, (points, 3), with the folds between them and the reasons for its ends."""
+    """The curve through points, (points, 3), with the folds between the points. ends: reasons for its two
+    ends."""
     boundary = curve.boundary
     folds = []
     if len(points) > 1:
@@ -101,7 +103,8 @@ def _curve(curve: ChangeCurveProblem, points: Array, ends: tuple[BoundaryEnd, Bo
 
 
 def _fold(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: int) -> Fold | None:
-    """The point between two where the tangent has no component along an axis; None if not found."""
+    """The fold between the points a and b, where the tangent has no component along `axis`; None if not
+    found."""
     boundary = curve.boundary
     noise = _tangent_noise(curve.boundary)
     chord = b.v - a.v
@@ -117,7 +120,7 @@ def _fold(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: i
         length = zero_along_step(
             component, ends, size, CHANGE_CURVES.fold_accuracy, CHANGE_CURVES.fold_accuracy
         )
-        # The tangent turns by the difference of the ends over the chord, so its error moves the fold.
+        # Along the chord the component changes by the difference of `ends`: its error moves the fold.
         along = (abs(component(length)) + noise) * size / abs(ends[1] - ends[0])
     except Unsolvable:
         return None
@@ -125,14 +128,14 @@ def _fold(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: i
 
 
 def _tangent_noise(boundary: Boundary) -> float:
-    """Error of the tangents of a boundary."""
+    """Error of the components of a boundary's unit tangents."""
     if not boundary.plane.standard:
         return CHANGE_CURVES.arm_tangent
     return CHANGE_CURVES.double_tangent if boundary.sign else CHANGE_CURVES.hopf_tangent
 
 
 def _as_fold(boundary: Boundary, there: BoundarySolution, axis: int, along: float) -> Fold:
-    """The fold at a point of a boundary. along: error of the point in the direction of the curve."""
+    """The fold of coordinate `axis` at a point of a boundary. along: error of the point along the curve."""
     axes = boundary.plane.axes
     first, second = (a.value(float(x)) for a, x in zip(axes, there.v[:2], strict=True))
     units = [abs(a.parameter_slope(x)) for a, x in zip(axes, (first, second), strict=True)]

@@ -1,7 +1,7 @@
-"""A boundary of the spectrum in a plane of rods as a problem for the follower.
+"""A boundary of the spectrum in a plane of rods as a curve problem for the follower.
 
-A point of the curve has its unit tangent. A curve ends at an edge of the plane, at a crushed rod, or where it
-closes.
+Each point of the curve has a unit tangent. A curve ends at an edge of the plane, at a crushed rod, or where
+it closes.
 """
 
 from collections.abc import Sequence
@@ -25,34 +25,37 @@ BOUNDARY_STEPS = StepControl(
     max_ratio=1.5,
     max_solutions=5000,
 )
-"""Arc lengths of steps; each axis of the plane has length 1. They are short enough for a smooth drawn
-curve."""
+"""Arc lengths of the continuation steps; each axis of the plane has length 1. Steps are short enough for a
+smooth drawn curve."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChangeCurveSettings:
-    """Points, ends and folds of a boundary curve."""
+    """Settings for points, ends and folds of a boundary curve."""
 
     beside_an_edge: float = 1e-9
-    """Largest distance beyond one edge of the plane for a point on another edge."""
+    """A point on an edge may lie beyond a second edge of the plane by at most this."""
     coincident_points: float = 1e-9
-    """Two points of a curve at a smaller distance are one, as at a start on the border of the plane."""
+    """Two neighbouring points of a curve at a smaller distance are merged, as at a start on an edge of the
+    plane."""
     fold_accuracy: float = 1e-13
-    """Convergence tolerance at a fold: component of the tangent, and bracket as a fraction of the step."""
+    """Convergence tolerance at a fold: largest component of the tangent, and smallest bracket as a fraction
+    of the step."""
     hopf_tangent: float = 1e-12
-    """Error of the tangent to a curve of Hopf points, by rounding."""
+    """Rounding error of the unit tangent to a curve of Hopf points."""
     double_tangent: float = 1e-11
-    """Error of the tangent to a curve of double eigenvalues, by differences in the Jacobian of D_w."""
+    """Error of the unit tangent to a curve of double eigenvalues, from finite differences in the Jacobian of
+    D_w."""
     arm_tangent: float = 3e-10
-    """Error of the tangent to a curve of arms, by differences of D, which deviate from the closed form by up
-    to 8e-11 for uniform rods."""
+    """Error of the unit tangent to a curve of arms, from differences of D, which deviate from the closed form
+    by up to 8e-11 for uniform rods."""
     min_loop_points: int = 4
-    """Fewest points of a closed curve."""
+    """Minimum number of points of a closed curve."""
 
 
 CHANGE_CURVES = ChangeCurveSettings()
 CRUSHED_MARGIN = 4
-"""Index of the margin that is negative for a crushed rod, behind the four edges of the plane."""
+"""Index of the margin that is negative for a crushed rod; the four edges of the plane have indices 0 to 3."""
 
 
 class BoundaryEnd(IntEnum):
@@ -67,40 +70,43 @@ class BoundaryEnd(IntEnum):
 
 
 class BoundaryPoint(NamedTuple):
-    """A point v = (x, y, h) of a curve, and the unit tangent in the direction of the curve, (3,) each."""
+    """A point v = (x, y, h) of a curve, (3,), and the unit tangent in the direction of the curve, (3,)."""
 
     v: Array
     tangent: Array
 
     @classmethod
     def on(cls, there: BoundarySolution, way: Array) -> "BoundaryPoint":
-        """A point of a boundary; the tangent is oriented to a side, (3,)."""
+        """The point `there` of a boundary; the tangent is oriented so that its product with `way`, (3,), is
+        positive."""
         tangent = there.tangent
         return cls(there.v, tangent if tangent @ way > 0 else -tangent)
 
 
 @dataclass(frozen=True, slots=True)
 class ChangeCurveProblem:
-    """A boundary as a problem for the follower."""
+    """A boundary of the spectrum as a curve problem for the follower."""
 
     boundary: Boundary
 
     def step(self, behind: Sequence[BoundaryPoint], length: float) -> StepResult[BoundaryPoint]:
-        """The point a step along the tangent; raises Unsolvable."""
+        """One continuation step: predicts a point at distance `length` along the last tangent and corrects it
+        to the curve. behind: points so far. Raises Unsolvable."""
         v, tangent = behind[-1]
         there = BoundaryPoint.on(self.near(v + length * tangent, tangent), tangent)
         # The turn of the tangent alone controls the step length.
         return StepResult(there, 0.0, float(there.tangent @ tangent))
 
     def near(self, guess: Array, normal: Array) -> BoundarySolution:
-        """The point in the plane through a guess with a normal, both (3,); raises Unsolvable."""
+        """The point of the boundary near `guess`, in the plane through `guess` with normal `normal`, both
+        (3,); raises Unsolvable."""
         there = self.boundary.point_near(guess, normal)
         if there is None:
             raise Unsolvable("no point of the boundary is near")
         return there
 
     def margins(self, point: BoundaryPoint) -> Array:
-        """Distances from the four edges of the plane, and 1 for a rod that is not crushed, else -1; (5,)."""
+        """Distances of a point from the four edges of the plane, and 1 or, for a crushed rod, -1; (5,)."""
         x, y = map(float, point.v[:2])
         on_plane = 0 <= x <= 1 and 0 <= y <= 1
         # Outside the plane the parameters may describe no rod.
@@ -110,8 +116,8 @@ class ChangeCurveProblem:
     def located_zero(
         self, behind: Sequence[BoundaryPoint], outer: BoundaryPoint, margin: int
     ) -> BoundaryPoint | None:
-        """The point on the edge that a step crosses; None for a crushed rod, or if the point lies beyond a
-        second edge."""
+        """The point on the edge `margin` crossed by the step from the last of `behind` to `outer`; None for a
+        crushed rod, or if the point lies beyond a second edge."""
         if margin == CRUSHED_MARGIN:
             return None
         axis, limit = divmod(margin, 2)
@@ -126,7 +132,7 @@ class ChangeCurveProblem:
         return BoundaryPoint.on(found, behind[-1].tangent)
 
     def closes(self, behind: Sequence[BoundaryPoint], there: BoundaryPoint) -> bool:
-        """Whether the curve returns to its first point within the step."""
+        """Whether the curve passes its first point within the step from the last of `behind` to `there`."""
         first = behind[0]
         last = behind[-1]
         step = float(np.linalg.norm(there.v - last.v))
@@ -138,8 +144,8 @@ class ChangeCurveProblem:
     def end_of(self, followed: Curve[BoundaryPoint]) -> BoundaryEnd:
         """The reason for the end of a followed curve.
 
-        No solution is found beyond a point on an edge where a parameter cannot go further, as gamma3 below 0,
-        nor for a crushed rod, which may be closer than the shortest step.
+        No solution is found beyond a point on an edge where the range of a parameter ends, such as gamma3 =
+        0, nor for a crushed rod, which may be closer than the shortest step.
         """
         if followed.end is CurveStop.closed:
             return BoundaryEnd.closed

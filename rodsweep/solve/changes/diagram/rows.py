@@ -1,7 +1,7 @@
-"""Rows of a phase diagram: the class of the rod at each value along one axis, and all changes.
+"""Rows of a phase diagram: the class of the rod at each value along one axis, and all changes along the row.
 
-All changes along a row are found first (`along_path`). They determine the class of every point without a
-solve at the point, and a boundary is as accurate as Newton's method.
+All changes along a row are found first (`along_path`). The changes determine the class of every point without
+a solve at the point, and each change is as accurate as Newton's method.
 """
 
 import math
@@ -24,7 +24,7 @@ class Motion(IntEnum):
     """Evolution of a small deflection of the straight rod.
 
     monotone, oscillatory: stable; the slowest mode decays without or with oscillations. flutter: at least one
-    mode grows. undecided: on a boundary within its error, or unknown. crushed: F is at least the force that
+    mode grows. undecided: within the error of a boundary, or unknown. crushed: F is at least the force that
     crushes the weakest section, k1 for a uniform rod of linear material.
     """
 
@@ -37,7 +37,7 @@ class Motion(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class RowRequest:
-    """Request for every row: the varied parameter and its increasing values, (values,)."""
+    """Request for every row: name of the varied parameter, and its increasing values, (values,)."""
 
     name: str
     values: Array
@@ -69,17 +69,18 @@ class DiagramRow:
 
 
 def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
-    """The row of rods along an axis; a failure is a status, never an exception."""
+    """The row of rods with the parameters of `rod` along the requested axis; a failure is returned as a
+    status, never raised."""
 
     def failed(cause: str) -> DiagramRow:
         return _uniform(ThresholdStatus.failed, request.values, Motion.undecided, cause)
 
-    # ValueError: a search along the row needs a rod with parameters outside their range.
+    # ValueError: the search needs a rod whose parameters are outside the allowed range.
     return solved(lambda: _searched(rod, request), failed, more_failures=(ValueError,))
 
 
 def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
-    """The row, searched between the first and the last rod that are not crushed."""
+    """The row, searched between the first and the last value at which the rod is not crushed."""
     name = request.name
     values = request.values
     F = values if name == "F" else np.full(len(values), rod.F)
@@ -110,7 +111,7 @@ def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
 
 
 def _uniform(status: ThresholdStatus, values: Array, motion: Motion, message: str = "") -> DiagramRow:
-    """A row of a single class, without changes."""
+    """A row without changes, with the same class at all values."""
     return DiagramRow(
         motion=np.full(len(values), motion, dtype=np.int8),
         unstable_count=np.full(len(values), -1, dtype=np.int32),
@@ -119,8 +120,8 @@ def _uniform(status: ThresholdStatus, values: Array, motion: Motion, message: st
 
 
 def classes(found: Transitions, values: Array) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
-    """(class, number of unstable modes) at each value of a path's parameter, (values,) each, from the
-    changes. Values beyond the end of a search that ended early are undecided."""
+    """(class, number of unstable modes) at each value of the path's parameter, (values,) each, from the
+    changes `found`. Values beyond the end of a search that ended early are undecided."""
     oscillates = np.full(len(values), found.oscillates_at_start)
     unstable = np.full(len(values), found.unstable_at_start, dtype=np.int32)
     blurred = np.zeros(len(values), dtype=bool)
@@ -136,7 +137,7 @@ def classes(found: Transitions, values: Array) -> tuple[NDArray[np.int8], NDArra
     low, high = found.open_range
     if not math.isnan(low):
         blurred |= (values >= low) & (values <= high)
-        # Crossings in the open range change the number unseen; behind it the count at the end holds.
+        # Crossings in the open range change the number unseen; the count at the end applies behind the range.
         unstable[values > max([high, *(c.at for c in found.crossings)])] = found.unstable_at_end
     motion = np.where(oscillates, Motion.oscillatory, Motion.monotone).astype(np.int8)
     motion[unstable > 0] = Motion.flutter

@@ -1,7 +1,7 @@
 """Eigenvalues of arms followed along a path, and proved complete at every point of the path.
 
-The method is that of `rodsweep.solve.spectrum.path.following`, with D from the interpolated propagators of a
-family of arms. The proof at a point is that of `rodsweep.determinant.arm.completeness`, and uses only the
+The method is described in `rodsweep.solve.spectrum.path.following`; here D comes from the interpolated
+propagators of a family of arms. The proof at a point (`rodsweep.determinant.arm.completeness`) uses only the
 eigenvalues at this point.
 """
 
@@ -36,7 +36,7 @@ from .following import (
 from .prediction import Track, find_conjugates, predict_eigenvalues, set_two_guesses
 
 PropagatorsWithSlopes = tuple[float, Array, Array]
-"""(bound W of |w|, propagators valid for |w| <= W, their derivatives by p); both arrays:
+"""(bound W of |w|, propagators valid for |w| <= W, derivatives of the propagators by p); both arrays:
 (elements, terms, PADDED)."""
 
 
@@ -51,7 +51,7 @@ def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes) -> Corre
 def _settled(
     first: CorrectedEigenvalue, crowding: float, exact: bool, level: PropagatorsWithSlopes
 ) -> tuple[CorrectedEigenvalue, float]:
-    """(last Newton step, error) of an arm's eigenvalue, after steps until `converged_error` is finite.
+    """(last Newton step, error) of an arm's eigenvalue, after Newton steps until `converged_error` is finite.
 
     first: result of the first step. crowding, exact: as in `converged_error`. level: propagators of the arm.
     The error is inf without convergence.
@@ -82,7 +82,8 @@ def _correct_all(
 ) -> bool:
     """Refines the guesses for all eigenvalues of point i, at p, and writes the eigenvalues to the track.
 
-    guess: (m,). True if all converged, no two coincide, and every complex pair stayed complex.
+    guess: (m,). The `modes` leading eigenvalues converge to rounding error. Returns True if all eigenvalues
+    converged, no two coincide, and every complex pair stayed complex.
     """
     w = track.w[i]
     error = track.error[i]
@@ -112,11 +113,11 @@ def _correct_all(
 
 @compiled
 def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: PropagatorsWithSlopes) -> int:
-    """Number of leading eigenvalues of point i that are proved to be all eigenvalues right of a line; 0
-    without a proof.
+    """Number of leading eigenvalues of point i that are proved to be all eigenvalues to the right of a line;
+    0 without a proof.
 
-    The line lies at Re w <= 0, left of the leading `modes`, so that the proof includes all unstable
-    eigenvalues.
+    The line lies at Re w <= 0, to the left of the leading `modes`, so that the proof includes all unstable
+    eigenvalues. hull: region that contains the spectrum. level: propagators of the arm.
     """
     w = track.w[i]
     error = track.error[i]
@@ -144,8 +145,9 @@ def follow_eigenvalues_of_arms(
 ) -> int:
     """Follows eigenvalues of arms along the points p, (points,), and returns the number of points reached.
 
-    track: filled from the first point on, whose w and order are given. family: contains all p. hulls: regions
-    that contain the eigenvalues, for all arms of the family. known: (points,), filled by `all_right_of_line`.
+    track: `w` and `order` of the first point are given, the remaining points are filled. family: contains all
+    p. hulls: regions that contain the spectra of all arms of the family. known: (points,), filled by
+    `all_right_of_line`.
     """
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)

@@ -1,8 +1,8 @@
 """Spectra of arms at neighbouring values of one parameter: eigenvalues are followed, and proved complete at
 each arm.
 
-Krylov-Schur solves the first arm for more modes than wanted, because eigenvalues known left of the line make
-the proof easy. The propagators of all arms are interpolated from those of a few
+Krylov-Schur solves the first arm for more modes than wanted, because known eigenvalues to the left of the
+line make the proof easy. The propagators of all arms are interpolated from the propagators of a few arms
 (`rodsweep.determinant.arm.family`), on an interval short enough for smooth polynomials.
 """
 
@@ -42,7 +42,7 @@ class ArmInterval(NamedTuple):
 
     track: as in `follow_eigenvalues_of_arms`. proved_modes: number of leading modes proved complete at each
     point, (n,). arm_count: number of given points inside the family, of which the first n were reached.
-    further_modes: number of modes followed beyond the wanted modes.
+    further_modes: number of modes followed in addition to the wanted modes.
     """
 
     p: Array
@@ -59,7 +59,7 @@ class ArmInterval(NamedTuple):
 
 
 def follow_stretch_of_arms(path: Path, p: Array, request: SpectrumRequest) -> FollowedPoints | None:
-    """Spectra of the arms at p, (n,), from the first up to the last point reached; None if none is
+    """Spectra of the arms at p, (n,), from the first up to the last point reached; None if no point is
     reached."""
     found = follow_interval(path, p, request)
     if found is None:
@@ -77,7 +77,7 @@ def follow_interval(
     """The first points of p, (n,), that are reached with one family of arms; None if the first point fails.
 
     If too few points are proved complete, more eigenvalues are followed. before: the previous interval of the
-    path, whose family is used again if it contains enough of the points.
+    path, whose family is used again if it contains enough of the points p.
     """
     best: ArmInterval | None = None
     for further in (
@@ -103,7 +103,7 @@ def _too_few(found: ArmInterval) -> bool:
 
 
 def _is_better(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
-    """Whether `found` has more proved points than `other`, or equally many where `other` follows too few
+    """Whether `found` has more proved points than `other`, or equally many while `other` follows too few
     modes.
     """
     here = found.proved_points(modes)
@@ -112,7 +112,8 @@ def _is_better(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
 
 
 def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, further: int) -> bool:
-    """Whether following `further` modes would prove the middle one of the points without a proof."""
+    """Whether following `further` additional modes would prove completeness at the middle one of the points
+    without a proof."""
     left = np.flatnonzero(found.proved_modes < request.modes)
     p = float(found.p[left[len(left) // 2]])
     roots = _roots(path, p, request, further)
@@ -129,7 +130,7 @@ def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, furth
 def _followed(
     path: Path, p: Array, request: SpectrumRequest, further: int, before: ArmInterval | None
 ) -> ArmInterval | None:
-    """`follow_interval` with exactly `further` modes followed beyond the wanted modes."""
+    """As `follow_interval`, with exactly `further` modes followed in addition to the wanted modes."""
     first = _carried(before, float(p[0]), request, further)
     if first is None:
         first = first_eigenvalues(path, float(p[0]), request, further)
@@ -164,10 +165,10 @@ def _followed(
 
 
 def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmFamily, PathHulls] | None:
-    """(family of the arms at all p, (n,); their hulls), or None.
+    """(family of the arms at all p, (n,); hulls that contain their spectra), or None.
 
-    first: eigenvalues at the first point, (m,), leading first. None if all p are equal, if the arms are not
-    smooth in p, or if no elements resolve an arm.
+    first: eigenvalues at the first point, (m,), in descending order. modes: number of requested modes. None
+    if all p are equal, if the arms are not smooth in p, or if no elements resolve an arm.
     """
     low = float(p.min())
     high = float(p.max())
@@ -194,8 +195,8 @@ def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[
 
 
 def _carried(before: ArmInterval | None, p: float, request: SpectrumRequest, further: int) -> Complex | None:
-    """Eigenvalues, (m,), at p, the last point of the previous interval; None unless all its points are proved
-    complete.
+    """Eigenvalues, (m,), at p, the last point of the previous interval; None unless all points of this
+    interval are proved complete.
     """
     if before is None or before.further_modes != further or before.p[-1] != p:
         return None
@@ -205,16 +206,16 @@ def _carried(before: ArmInterval | None, p: float, request: SpectrumRequest, fur
 
 
 def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: int) -> Complex | None:
-    """Eigenvalues at p from which following starts, (m,), with whole conjugate pairs; None if the solve
-    fails.
+    """Eigenvalues at p from which following starts, (m,), without unpaired complex eigenvalues; None if the
+    solve fails.
     """
     found = _roots(path, p, request, further)
     return None if found is None else found.w[has_conjugate(found.w)]
 
 
 def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Roots | None:
-    """The leading eigenvalues at p, without a proof: the wanted modes and `further` more; None if the solve
-    fails.
+    """The leading eigenvalues at p, without a proof: the wanted modes and `further` more modes; None if the
+    solve fails.
     """
     try:
         modes = request.modes + further
@@ -228,13 +229,13 @@ def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Root
 
 
 def count_at(path: Path, found: ArmInterval, p: float, modes: int, here: Track) -> int:
-    """Number of eigenvalues at p that a count confirms to be all eigenvalues right of a line; 0 if no count
-    does.
+    """Number of eigenvalues at p that are confirmed by a count to be all eigenvalues to the right of a line;
+    0 without a confirmation.
 
     found: an interval that contains p. here: a track with the eigenvalues at p only.
     """
     w, error = leading_eigenvalues(here, here.w.shape[1])
-    if w[0, -1].real > 0:  # there are further growing modes, which the count would find as well
+    if w[0, -1].real > 0:  # more modes grow, and the count would include them
         return 0
     determinant = ArmDeterminant(path.at(p), propagators_in_family(found.family, p))
     hull = hull_at(found.hulls, p)

@@ -5,34 +5,35 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmStretchSettings:
-    """Settings for arms along a path: number of followed modes, families of interpolated arms, hulls of their
+    """Settings for arms along a path: number of followed modes, families of interpolated arms, hulls of
     spectra.
     """
 
     further_modes: tuple[int, ...] = (3, 9)
-    """Numbers of modes followed beyond the wanted modes. The second is tried if the first proves too few
-    points."""
+    """Numbers of modes followed in addition to the wanted modes. The second number is tried if the first
+    proves too few points."""
     min_proved_fraction: float = 0.5
-    """Fraction of points proved complete below which more modes are followed, provided that more modes prove
-    a further point."""
+    """If a smaller fraction of the points is proved complete, more modes are followed, provided that more
+    modes prove a further point."""
     headroom: float = 2.0
-    """Bound W of the |w| at which the propagators of a new family hold, in units of the largest |w| at the
-    first point."""
+    """The propagators of a new family are valid up to W = headroom * (largest |w| at the first point)."""
     reused_headroom: float = 1.25
-    """`headroom` that the family of the previous interval must still have to be used again."""
+    """The family of the previous interval is used again if its W is at least this multiple of the largest
+    |w|."""
     max_points_growth: int = 2
-    """Maximum number of points of a new family, in units of the points that the previous family reached."""
+    """Maximum number of points of a new family, divided by the number of points reached with the previous
+    family."""
     min_points: int = 4
     """Minimum number of points for which a family of arms is made."""
     accuracy: float = 1e-8
     """Relative accuracy of the eigenvalues of `FollowedArms`."""
     modes_beyond_growing: int = 2
-    """Number of modes that a search for crossings requests beyond the growing modes."""
+    """Number of modes that a search for crossings requests in addition to the growing modes."""
     steps_from_nearest: tuple[int, ...] = (1, 4)
-    """Numbers of equal steps tried, one after the other, to follow eigenvalues from the nearest point of the
-    path to a p between points."""
+    """To follow eigenvalues from the nearest point of the path to p, these numbers of equal steps are tried
+    in turn."""
     hull_arms: int = 7
-    """Number of arms of an interval at which hulls are computed; hulls of the arms between are
+    """Number of arms of an interval at which hulls are computed; the hulls of all other arms are
     interpolated."""
 
 

@@ -1,8 +1,8 @@
-"""A count of eigenvalues carried along a path, as far as a proof with a moving line succeeds.
+"""A count of eigenvalues carried along a path, as long as a proof with a moving line succeeds.
 
-At the first point the leading `known` followed eigenvalues are proved to be all eigenvalues right of a line.
-If no eigenvalue crosses a line that moves in a gap between followed eigenvalues to another point
-(`rodsweep.determinant.moving_line`), the number right of the line is the same at every point between.
+At the first point the leading `known` followed eigenvalues are proved to be all eigenvalues to the right of a
+line. If no eigenvalue crosses a line that moves to another point within a gap between followed eigenvalues
+(`rodsweep.determinant.moving_line`), the number to the right of the line is the same at every point between.
 """
 
 from dataclasses import dataclass
@@ -24,16 +24,17 @@ class CarriedCountSettings(CompiledSettings):
     """Settings for a count that is carried from point to point of a path."""
 
     base_rectangles: int = 60
-    """Maximum number of rectangles of one proof is this number plus `rectangles_per_point` for each point
-    covered."""
+    """The number of rectangles of one proof is at most this number plus `rectangles_per_point` times the
+    number of points covered."""
     rectangles_per_point: int = 20
-    """Number of rectangles that a proof may use for each point that it covers: a new count at a point costs
-    as much as twenty."""
+    """Number of rectangles allowed in a proof for each point covered: a new count at a point costs as much as
+    twenty rectangles."""
     wide_gap: float = 0.2
-    """Half-width of a gap, relative to the distance of its middle from the imaginary axis, above which a
-    wider gap is not preferred. Of several such gaps the one farthest left is taken."""
+    """Gaps are treated as equally wide if their relative half-width exceeds this; the leftmost of these gaps
+    is taken. Relative half-width: half-width divided by the distance of the gap's middle from the imaginary
+    axis."""
     min_gap: float = 1e-6
-    """Relative half-width below which no line is drawn in a gap."""
+    """No line is drawn in a gap with a smaller relative half-width."""
 
 
 CARRIED_COUNT = CarriedCountSettings()
@@ -43,7 +44,7 @@ CARRIED_COUNT = CarriedCountSettings()
 def line_in_gap(track: Track, i: int, gap: int) -> tuple[float, float]:
     """(real part of the line in the middle of a gap at point i, relative half-width of the gap).
 
-    gap: number of eigenvalues right of the gap.
+    gap: number of eigenvalues to the right of the gap.
     """
     right = track.w[i, track.order[i, gap - 1]].real
     left = track.w[i, track.order[i, gap]].real
@@ -55,9 +56,9 @@ def line_in_gap(track: Track, i: int, gap: int) -> tuple[float, float]:
 
 @compiled
 def widest_gap(track: Track, i: int, modes: int) -> int:
-    """Number of eigenvalues right of the widest gap at point i; 0 if no gap is wide enough.
+    """Number of eigenvalues to the right of the widest gap at point i; 0 if no gap is wide enough.
 
-    The gap lies left of the leading `modes` and of the imaginary axis.
+    The gap lies to the left of the leading `modes` and of the imaginary axis.
     """
     best = 0
     widest = CARRIED_COUNT.min_gap
@@ -71,11 +72,11 @@ def widest_gap(track: Track, i: int, modes: int) -> int:
 
 @compiled
 def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[float, float], p: Array) -> bool:
-    """Whether exactly the leading `gap` eigenvalues lie right of a moving line at every point between two
-    points.
+    """Whether exactly the leading `gap` eigenvalues lie to the right of a moving line at every point between
+    two points.
 
-    ends: indices of the two points; lines: real part of the line there. Eigenvalues must be farther from the
-    line than twice their error.
+    ends: indices of the two points. lines: real parts of the line at the two points. The distance of each
+    eigenvalue from the line must exceed twice the eigenvalue's error.
     """
     i, j = ends
     for s in range(i, j + 1):
@@ -91,8 +92,8 @@ def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[floa
 
 @compiled
 def _gap_between(track: Track, ends: tuple[int, int], modes: int, known: int, p: Array) -> int:
-    """Number of eigenvalues right of the widest gap that stays open between the points `ends`; 0 without such
-    a gap.
+    """Number of eigenvalues to the right of the widest gap that stays open between the points `ends`; 0
+    without such a gap.
 
     The number is at least `modes` and at most `known`.
     """
@@ -119,8 +120,8 @@ def carry_count(
 ) -> int:
     """Index of the last point to which the count at the first point can be carried.
 
-    coefficients: (points, 4). p: (points,). known: number of leading eigenvalues that are all eigenvalues
-    right of a line, (points,); given at the first point, filled up to the last.
+    coefficients: (points, 4). p: (points,). known: number of leading eigenvalues that are all eigenvalues to
+    the right of a line, (points,); given at the first point, filled up to the last point reached.
     """
     i = 0
     last = len(p) - 1
@@ -135,10 +136,10 @@ def carry_count(
             most = CARRIED_COUNT.base_rectangles + CARRIED_COUNT.rectangles_per_point * (j - i)
             proved, _ = proves_no_crossing(first, end, direction, most)
         if proved:
-            # The proof holds for the gap of the line, though more eigenvalues may have been known.
+            # The number of eigenvalues to the right of this gap is proved, even if `known` was larger before.
             known[i + 1 : j + 1] = gap
             i = j
-            # Where one proof succeeds, a proof over twice the way often does, too.
+            # After a successful proof, a proof over twice as many points often succeeds.
             ahead = 2 * ahead
         elif j == i + 1:
             return i
@@ -149,10 +150,10 @@ def carry_count(
 
 @compiled
 def assess_points(track: Track, known: NDArray, modes: int, accuracy: float) -> tuple[NDArray, NDArray]:
-    """(whether each point is certified and its leading `modes` accurate, number of unstable modes), (points,)
-    each.
+    """Returns (good, unstable), (points,) each. good: whether the point is certified and its leading `modes`
+    are accurate. unstable: number of unstable modes.
 
-    known: number of leading eigenvalues proved complete at each point, (points,). A point fails if an
+    known: number of leading eigenvalues proved complete at each point, (points,). A point is not good if an
     eigenvalue may lie on the imaginary axis, or if a nearly double eigenvalue has lost digits.
     """
     n = len(known)

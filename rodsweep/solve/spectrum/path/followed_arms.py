@@ -21,13 +21,13 @@ from .prediction import KnownRoots, Track, slice_track, start_track
 class FollowedArms:
     """Leading eigenvalues of arms along a path; eigenvalues at any p are followed from the nearest point.
 
-    Points are followed only as far as the largest requested p. Where following fails, a new interval starts
-    at a later point.
+    Points are followed only as far as the largest requested p. If following fails at a point, a new interval
+    starts at a later point.
     """
 
     def __init__(self, path: Path, p: Array, modes: int):
-        """p: path variable of the points, monotone, (n,). modes: number of leading eigenvalues to prove
-        complete there.
+        """p: path variable of the points, monotone, (n,). modes: number of leading eigenvalues to be proved
+        complete at each point.
         """
         self.path = path
         self.request = SpectrumRequest(modes, ARM_STRETCH.accuracy, certify=True)
@@ -44,8 +44,8 @@ class FollowedArms:
             found = follow_interval(self.path, self._p[self._next :], self.request, before)
             if found is not None:
                 self.intervals.append(found)
-            # Intervals share their end points. Where following fails it often fails at the next points too,
-            # so every further failure skips twice as many.
+            # Intervals share their end points. After a failure the next points often fail, too,
+            # so every further failure skips twice as many points.
             self._next += max(len(found.p) - 1, 1) if found is not None else self._patience
             self._patience = 1 if found is not None else 2 * self._patience
 
@@ -55,14 +55,14 @@ class FollowedArms:
         return next((one.family for one in self.intervals if one.family.low <= p <= one.family.high), None)
 
     def slope(self, w: complex, p: float) -> tuple[complex, float] | None:
-        """(dw/dp, error of w) of an eigenvalue w that `spectrum` returned at p; None for any other w."""
+        """(dw/dp, error of w) of an eigenvalue w returned by `spectrum` at p; None for any other w."""
         for one in self._judged.get(p, []):
             for k in np.flatnonzero(one.track.w[0] == w).tolist():
                 return complex(one.track.slope[0, k]), float(one.track.error[0, k])
         return None
 
     def spectrum(self, p: float, modes: int) -> Spectrum | None:
-        """The leading `modes` eigenvalues at p; None unless they were followed, are accurate and proved
+        """The leading `modes` eigenvalues at p; None unless they were followed, are accurate and are proved
         complete.
         """
         self._follow_to(p)
@@ -83,10 +83,10 @@ class FollowedArms:
         return None
 
     def _judge(self, p: float, modes: int) -> Iterator["ProvedEigenvalues"]:
-        """Yields the eigenvalues at p of each interval that contains p, up to the first that proves `modes`
-        complete.
+        """Yields the eigenvalues at p of each interval that contains p, up to the first interval with a proof
+        for `modes`.
 
-        All growing modes and two more are proved at once, because the next requests need them.
+        All growing modes and two more modes are proved at once, because the next requests need these modes.
         """
         for one in self.intervals:
             followed = one.track.w.shape[1]
@@ -111,10 +111,10 @@ class FollowedArms:
                 return
 
     def _from_nearest(self, one: ArmInterval, p: float, modes: int) -> tuple[Track | None, int]:
-        """(track with the eigenvalues at p only, number of them proved complete), followed from the point
-        nearest to p.
+        """(track with the eigenvalues at p only, number of modes proved complete), followed from the point
+        nearest to p. one: an interval that contains p.
 
-        The track is None where following fails.
+        The track is None if following fails.
         """
         i = int(np.argmin(np.abs(one.p - p)))
         start = float(one.p[i])
@@ -131,7 +131,7 @@ class FollowedArms:
 
 
 class ProvedEigenvalues(NamedTuple):
-    """Eigenvalues at one p of a path; the leading `proved_modes` of them are proved complete.
+    """Eigenvalues at one p of a path; the leading `proved_modes` are proved complete.
 
     max_modes: largest number of modes whose proof was tried.
     """
@@ -141,7 +141,7 @@ class ProvedEigenvalues(NamedTuple):
     proved_modes: int
 
     def spectrum(self, modes: int, accuracy: float) -> Spectrum | None:
-        """The leading `modes` eigenvalues if all were followed, are accurate and proved complete; else
+        """The leading `modes` eigenvalues if they were followed, are accurate and are proved complete; else
         None."""
         if self.track.w.shape[1] < modes:
             return None

@@ -1,7 +1,7 @@
 """The leading eigenvalue of a rod, followed from a neighbouring rod without a mesh.
 
-Newton's method on D refines the eigenvalue of the neighbour, and a count of eigenvalues proves that the
-refined eigenvalue leads.
+Newton's method on D refines the eigenvalue of the neighbouring rod, and a count of eigenvalues proves that
+the refined eigenvalue leads.
 """
 
 from collections.abc import Iterator
@@ -29,7 +29,7 @@ from .prediction import KnownRoots
 class LeadingEigenvalue(NamedTuple):
     """The leading eigenvalue w of a rod, in 1/tau2, with Im w >= 0, and its absolute error.
 
-    eigenvalues: all followed eigenvalues of the rod with Im w >= 0, (n,), the leading one first.
+    eigenvalues: all followed eigenvalues of the rod with Im w >= 0, (n,), the leading eigenvalue first.
     """
 
     w: complex
@@ -38,11 +38,11 @@ class LeadingEigenvalue(NamedTuple):
 
 
 def follow_leading_eigenvalue(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | None:
-    """The leading eigenvalue of a rod, followed from a neighbouring rod; None unless it is proved to lead.
+    """The leading eigenvalue of `rod`, followed from a neighbouring rod; None unless it is proved to lead.
 
-    near: eigenvalues of the neighbouring rod with Im w >= 0, (n,), the leading one first. An arm that varies
-    along its length needs several for the proof, a uniform rod only the first. accuracy: largest relative
-    error.
+    near: eigenvalues of the neighbouring rod with Im w >= 0, (n,), the leading eigenvalue first. A uniform
+    rod uses only the first; the proof for an arm that varies along its length needs several. accuracy:
+    largest relative error.
     """
     if rod.standard:
         return _of_uniform(rod, complex(near[0]), accuracy)
@@ -57,7 +57,7 @@ def follow_leading_eigenvalue(rod: Rod, near: Complex, accuracy: float) -> Leadi
 
 
 def _of_uniform(rod: Rod, near: complex, accuracy: float) -> LeadingEigenvalue | None:
-    """`follow_leading_eigenvalue` for a uniform rod of linear material.
+    """As `follow_leading_eigenvalue`, for a uniform rod of linear material.
 
     near: leading eigenvalue of the neighbouring rod.
     """
@@ -71,7 +71,7 @@ def _of_uniform(rod: Rod, near: complex, accuracy: float) -> LeadingEigenvalue |
 
 
 def _of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | None:
-    """`follow_leading_eigenvalue` for an arm that varies along its length.
+    """As `follow_leading_eigenvalue`, for an arm that is not uniform.
 
     near: eigenvalues of the neighbouring arm, (n,).
     """
@@ -83,7 +83,7 @@ def _of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | Non
     size = largest_w_of_proof(line_for_proof(first, 0.0), hull, near)
     if not isfinite(size):
         size = largest_w_of_count(next(_lines(first)), determinant, hull)
-    determinant.level(size)  # elements for the proof, which serve the eigenvalues too
+    determinant.level(size)  # the elements for the proof also serve the eigenvalues
     found = [refine_eigenvalue_and_error(value, determinant) for value in near.tolist()]
     w = np.array([root for root, _ in found])
     error = np.array([error for _, error in found])
@@ -104,11 +104,12 @@ def _of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | Non
 
 
 def _is_of_its_kind(w: complex, error: float, near: complex, accuracy: float) -> bool:
-    """Whether w is accurate, and real or complex like the neighbour's eigenvalue `near`."""
+    """Whether w has a relative error of at most `accuracy`, and is real or complex like the eigenvalue `near`
+    of the neighbouring rod."""
     return error <= accuracy * abs(w) and w.imag >= 0 and (w.imag == 0) == (near.imag == 0)
 
 
 def _lines(w: complex) -> Iterator[float]:
-    """Real parts of two lines left of a leading eigenvalue w, for its count; the cheaper count comes
+    """Real parts of two lines to the left of a leading eigenvalue w, for the count; the cheaper count
     first."""
     return (w.real - far * abs(w) for far in (CANDIDATES.leader_line_distance, CANDIDATES.last_line_distance))

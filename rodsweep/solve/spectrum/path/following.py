@@ -1,7 +1,7 @@
 """Eigenvalues followed along the points of a path: predicted, then refined by Newton's method on D.
 
-Each followed eigenvalue is a root of D within its error, and no two are the same root. Following does not
-prove that no eigenvalue is missing, nor that two have not been exchanged; the count does.
+Each followed eigenvalue is a root of D within its error, and no two are the same root. Following proves
+neither that no eigenvalue is missing nor that no two eigenvalues have been exchanged; a count proves both.
 """
 
 import math
@@ -30,22 +30,20 @@ class FollowingSettings(CompiledSettings):
     max_newton_steps: int = 8
     """Maximum number of Newton steps for one eigenvalue."""
     accuracy: float = 1e-9
-    """Relative accuracy of eigenvalues beyond the leading modes, which only show where to draw the line of a
+    """Relative accuracy of eigenvalues beyond the leading modes, which are used only to place the line of a
     count."""
     curvature_safety_factor: float = 4.0
-    """Safety factor on |D''/(2 D')|, which is the modulus of the sum of 1/(w - w_j) over all other roots w_j,
-    but is computed from the followed roots only."""
+    """Safety factor on |D''/(2 D')|: the modulus of the sum of 1/(w - w_j) over all other roots w_j,
+    estimated from the followed roots alone."""
     final_step: float = 4.0
-    """Newton step, in units of the rounding error of the eigenvalue, at which the iteration ends."""
+    """Newton's method stops when the step is at most this multiple of the eigenvalue's rounding error."""
 
 
 FOLLOWING = FollowingSettings()
 
 
 class CorrectedEigenvalue(NamedTuple):
-    """An eigenvalue w after one Newton step: its slope dw/dp, the length of the step, and the rounding error
-    of w.
-    """
+    """An eigenvalue w after one Newton step: slope dw/dp, length of the step, and rounding error of w."""
 
     w: complex
     slope: complex
@@ -57,8 +55,8 @@ class CorrectedEigenvalue(NamedTuple):
 def correct_eigenvalue(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> CorrectedEigenvalue:
-    """One Newton step on D from w, for a uniform rod; a real w stays real. direction:
-    d(F, nu, c2, gamma3)/dp.
+    """One Newton step on D from w, for a uniform rod; a real w stays real. direction: d(F, nu, c2,
+    gamma3)/dp.
     """
     D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
     return newton_step(w, D, D_w, D_p, DETERMINANT.typical_noise * noise)
@@ -68,7 +66,8 @@ def correct_eigenvalue(
 def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, rounding: float) -> CorrectedEigenvalue:
     """One Newton step from w, given D and its derivatives by w and p; a real w stays real.
 
-    rounding: rounding error of D, on the same scale as D. All results are inf or 0 if D_w vanishes.
+    rounding: rounding error of D, on the same scale as D. If D_w vanishes, w is returned unchanged, with step
+    and rounding error inf.
     """
     size = abs(D_w)
     if not size > 0:
@@ -83,7 +82,7 @@ def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, rounding: fl
 
 @compiled
 def curvature_estimate(w: Complex, k: int) -> float:
-    """Upper estimate of |D''/(2 D')| at root w[k], from its distances to 0 and to the other followed roots w,
+    """Upper estimate of |D''/(2 D')| at root w[k], from the distances to 0 and to the other followed roots w,
     (m,).
     """
     total = 1 / abs(w[k])
@@ -99,7 +98,7 @@ def converged_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> 
     enough.
 
     crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact: whether the remainder must be below the
-    rounding error, instead of `FOLLOWING.accuracy`.
+    rounding error, instead of `FOLLOWING.accuracy` |w|.
     """
     left = crowding * here.step * here.step
     allowed = max(here.rounding, ROUND_OFF * abs(here.w)) if exact else FOLLOWING.accuracy * abs(here.w)
@@ -113,7 +112,7 @@ def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalu
     """Writes eigenvalue k of point i to the track, and its conjugate to index `mate` unless `mate` is
     negative.
 
-    False if a complex pair has become real. The error of eigenvalue k must be in the track already.
+    Returns False if a complex pair has become real. The error of eigenvalue k must already be in the track.
     """
     w = track.w[i]
     slope = track.slope[i]
@@ -133,8 +132,8 @@ def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalu
 def _settled(
     first: CorrectedEigenvalue, crowding: float, exact: bool, rod: Coefficients, direction: Coefficients
 ) -> tuple[CorrectedEigenvalue, float]:
-    """(last Newton step, error) of an eigenvalue of a uniform rod, after steps until `converged_error` is
-    finite.
+    """(last Newton step, error) of an eigenvalue of a uniform rod, after Newton steps until `converged_error`
+    is finite.
 
     first: result of the first step. crowding, exact: as in `converged_error`. The error is inf without
     convergence.
@@ -165,8 +164,7 @@ def _correct_all(
     track: Track, i: int, guess: Complex, modes: int, rod: Coefficients, direction: Coefficients
 ) -> bool:
     """Refines the guesses for all eigenvalues of point i, (m,), and writes the eigenvalues to the track.
-
-    True if all converged, no two coincide, and every complex pair stayed complex.
+    Returns True if all eigenvalues converged, no two coincide, and every complex pair stayed complex.
     """
     w = track.w[i]
     error = track.error[i]
@@ -174,7 +172,7 @@ def _correct_all(
     m = len(w)
     mate = np.empty(m, np.int64)
     find_conjugates(guess, mate)
-    # One step for all before further steps for any: the crowding of a root needs its neighbours.
+    # All eigenvalues take one step before further steps: the crowding of a root needs its neighbours.
     first = [CorrectedEigenvalue(0j, 0j, math.inf, math.inf) for _ in range(m)]
     for k in range(m):
         if guess[k].imag != 0 and mate[k] < 0:
@@ -202,8 +200,9 @@ def follow_eigenvalues(
     """Follows eigenvalues of uniform rods along the points p, (points,), and returns the number of points
     reached.
 
-    track: filled from the first point on, whose w and order are given. coefficients: (points, 4). direction:
-    d(F, nu, c2, gamma3)/dp. The leading `modes` eigenvalues converge to rounding error.
+    track: `w` and `order` of the first point are given, the remaining points are filled. coefficients:
+    (points, 4). direction: d(F, nu, c2, gamma3)/dp. The leading `modes` eigenvalues converge to rounding
+    error.
     """
     guess = track.w[0].copy()
     decided = np.empty(len(guess), np.int64)

@@ -2,8 +2,8 @@
 
 A cubic Hermite polynomial extrapolates each single real eigenvalue. Two real eigenvalues that meet and become
 a complex pair are not smooth functions of p. Half their sum and the square of half their difference are
-smooth, before and after the meeting, so these two numbers are extrapolated. Near the meeting, the quadratic
-Taylor polynomial of D about half the sum decides whether the two are real or complex.
+smooth, before and after the meeting, and are extrapolated instead. Near the meeting, the quadratic Taylor
+polynomial of D about half the sum shows whether the two eigenvalues are real or complex.
 """
 
 import cmath
@@ -23,11 +23,11 @@ class EigenvaluePredictionSettings(CompiledSettings):
     """Settings for the prediction of two eigenvalues that meet."""
 
     max_steps_to_meeting: float = 4.0
-    """Two real eigenvalues are extrapolated as a pair if their slopes let them meet within this many steps of
-    the path, ahead or behind."""
+    """Two real eigenvalues are extrapolated as a pair if, by their slopes, they meet within this many steps
+    of the path, ahead or behind."""
     undecided_fraction: float = 0.25
-    """Fraction of the squared half difference at the last point. If the prediction falls below it, D decides
-    whether the two eigenvalues are real or complex."""
+    """If the predicted squared half difference is below this fraction of its value at the last point, D is
+    evaluated to find whether the two eigenvalues are real or complex."""
 
 
 EIGENVALUE_PREDICTION = EigenvaluePredictionSettings()
@@ -36,7 +36,8 @@ EIGENVALUE_PREDICTION = EigenvaluePredictionSettings()
 class Track(NamedTuple):
     """Followed eigenvalues w, their slopes dw/dp and absolute errors, (points, m) each.
 
-    order: at each point the indices of the eigenvalues by descending real part, then frequency, (points, m).
+    order: indices of the eigenvalues at each point by descending real part, then descending frequency,
+    (points, m).
     """
 
     w: Complex
@@ -46,15 +47,15 @@ class Track(NamedTuple):
 
 
 class KnownRoots(NamedTuple):
-    """Some roots w of the determinant D of one rod, (k,), in any order, and their absolute errors, (k,)."""
+    """Known roots w of the determinant D of one rod, (k,), in any order, and their absolute errors, (k,)."""
 
     w: Complex
     error: Array
 
 
 def start_track(first: Complex, points: int) -> Track:
-    """A track of `points` points of which only the first is filled, with the eigenvalues `first`, (m,),
-    leading first.
+    """A track of `points` points of which only the first is filled, with the eigenvalues `first`, (m,), in
+    descending order.
     """
     shape = (points, len(first))
     order = np.zeros(shape, np.int64)
@@ -65,14 +66,14 @@ def start_track(first: Complex, points: int) -> Track:
 
 
 def slice_track(track: Track, start: int, stop: int) -> Track:
-    """The points `start` up to, but without, `stop` of a track."""
+    """The points of a track with indices from `start` to `stop` - 1."""
     here = slice(start, stop)
     return Track(track.w[here], track.slope[here], track.error[here], track.order[here])
 
 
 @compiled
 def find_conjugates(w: Complex, mate: NDArray) -> None:
-    """Writes the index of the complex conjugate of each eigenvalue into `mate`, (m,); -1 for real
+    """Writes the index of the complex conjugate of each eigenvalue w into `mate`, (m,); -1 for real
     eigenvalues.
     """
     for k in range(len(w)):
@@ -85,8 +86,8 @@ def find_conjugates(w: Complex, mate: NDArray) -> None:
 
 @compiled
 def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
-    """Makes real eigenvalues that are about to meet each other's mates in `mate`, (m,), the earliest meeting
-    first.
+    """Pairs real eigenvalues that are about to meet: writes the index of the partner of each into `mate`,
+    (m,), the earliest meeting first. step: change of p.
     """
     while True:
         soonest = EIGENVALUE_PREDICTION.max_steps_to_meeting
@@ -113,7 +114,7 @@ def extrapolate_hermite(
 ) -> float:
     """Cubic Hermite extrapolation to a third point, from the values and slopes at two points.
 
-    steps: distance from the first to the second point, and from the second to the third.
+    steps: distance from the first to the second point, and from the second to the third point.
     """
     h, ahead = steps
     t = ahead / h
@@ -125,7 +126,8 @@ def extrapolate_hermite(
 
 @compiled
 def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, float, float, float]:
-    """(half the sum of eigenvalues k and j, squared half difference, slopes of these two numbers)."""
+    """(half the sum of eigenvalues k and j, squared half difference, slope of the former, slope of the
+    latter)."""
     half = (w[k] - w[j]) / 2
     slope_of_half = (slope[k] - slope[j]) / 2
     middle = (w[k] + w[j]).real / 2
@@ -137,10 +139,10 @@ def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, 
 def _two_ahead(
     track: Track, i: int, two: tuple[int, int], steps: tuple[float, float]
 ) -> tuple[complex, complex, bool]:
-    """(guess, guess, undecided) for two eigenvalues at point i; the larger real part or frequency comes
-    first.
+    """Returns (guess, guess, undecided) for the two eigenvalues `two` at point i; the guess with the larger
+    real part or frequency comes first.
 
-    undecided: whether D has to decide between two real eigenvalues and a complex pair. Both guesses are then
+    undecided: whether D must show if the two eigenvalues are real or a complex pair. Both guesses are then
     half the sum. steps: as in `extrapolate_hermite`.
     """
     k, j = two
@@ -163,9 +165,10 @@ def _two_ahead(
 
 @compiled
 def set_two_guesses(w: Complex, two: tuple[int, int], roots: tuple[complex, complex], guess: Complex) -> None:
-    """Writes `roots` as the guesses for two eigenvalues of w, in the order of w: real part, then frequency.
+    """Writes `roots` as the guesses for two eigenvalues, in the order of these eigenvalues in w: real part,
+    then frequency.
 
-    two: indices of the two in w and `guess`, (m,) each.
+    two: indices of the two eigenvalues in w and `guess`, (m,) each.
     """
     k, j = two
     one, other = roots
@@ -180,8 +183,8 @@ def predict_eigenvalues(track: Track, i: int, p: Array, guess: Complex, decided:
     """Writes the predicted eigenvalues of point i >= 1 into `guess`, (m,). p: path variable of every point,
     (points,).
 
-    decided: (m,), filled with -1. Where D has to decide whether two eigenvalues are real, it gets the index
-    of the second at the first, and both guesses are half their sum.
+    decided: (m,), filled with -1. If D must show whether eigenvalues k and j > k are real, decided[k] = j,
+    and both guesses are half the sum.
     """
     w = track.w[i - 1]
     slope = track.slope[i - 1]

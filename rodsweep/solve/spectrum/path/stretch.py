@@ -1,8 +1,8 @@
 """Spectra of rods at neighbouring values of one parameter: followed eigenvalues, and one count for many rods.
 
-Krylov-Schur solves the first rod for a few modes more than requested, and solves again where following stops
-or a count disagrees. Rods without proof or with lost digits are solved one by one. The outcome depends only
-on the rods of the stretch.
+Krylov-Schur solves the first rod for a few modes more than requested, and solves again at a rod where
+following stops or a count disagrees. Rods without a proof or with lost digits are solved one by one. The
+outcome depends only on the given rods.
 """
 
 import time
@@ -30,11 +30,11 @@ from .prediction import Track, slice_track, start_track
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StretchSettings:
-    """Settings for eigenvalues followed along a stretch of rods."""
+    """Settings for eigenvalues followed along neighbouring rods of a sweep."""
 
     further_modes: int = 2
-    """Number of modes followed beyond the requested modes. The line of a count lies in a gap between these
-    further modes."""
+    """Number of modes followed in addition to the requested modes. The line of a count lies in a gap between
+    these additional modes."""
 
 
 STRETCH = StretchSettings()
@@ -42,8 +42,8 @@ STRETCH = StretchSettings()
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """Rods that differ in one parameter: `path` names the parameter, `values` has its value in each rod,
-    (n,).
+    """Neighbouring rods of a sweep that differ in one parameter: `path` names the parameter, `values`, (n,),
+    are its values.
     """
 
     path: Path
@@ -53,7 +53,7 @@ class Stretch:
         return len(self.values)
 
     def rod(self, i: int) -> Rod:
-        """Rod number i."""
+        """Rod of index i."""
         return self.path.rod.changed(**{self.path.name: float(self.values[i])})
 
     @property
@@ -63,7 +63,7 @@ class Stretch:
 
     @property
     def coefficients(self) -> Array:
-        """(F, nu, c2, gamma3) of every rod, (n, 4), equal to `Rod.coefficients` in every bit."""
+        """(F, nu, c2, gamma3) of every rod, (n, 4), identical to `Rod.coefficients`."""
         columns = coefficients_of({**self.path.rod.values, self.path.name: self.values})
         table = np.empty((len(self), len(columns)))
         for place, column in enumerate(columns):
@@ -72,8 +72,8 @@ class Stretch:
 
 
 def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
-    """The leading `request.modes` eigenvalues of every rod, all certified. A failed rod gets a status;
-    nothing is raised.
+    """The leading `request.modes` eigenvalues of every rod, with certificates. A failure is returned as the
+    status of the rod, never raised.
     """
     began = time.perf_counter()
     n = len(stretch)
@@ -84,7 +84,7 @@ def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
     while place < n:
         found = _followed(stretch, place, request)
         end = place + (len(found.accepted) if found else min(patience, n - place))
-        # If no proof succeeds, as without a bound, following is tried less and less often.
+        # If no proof succeeds, for example without a bound, following is tried less and less often.
         patience = 1 if found else 2 * patience
         if found:
             here = slice(place, end)
@@ -117,9 +117,7 @@ def _unsolved(n: int, modes: int) -> dict[str, Any]:
 
 
 def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> FollowedPoints | None:
-    """Eigenvalues followed from rod `start` on, with their counts, as far as possible; None if the first rod
-    fails.
-    """
+    """Eigenvalues followed from rod `start` as far as possible, with counts; None if the first rod fails."""
     rod = stretch.path.rod
     varies = stretch.path.name == "taper"
     if rod.uniform and not (rod.standard or varies):
@@ -147,7 +145,8 @@ def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> N
     """Number of leading eigenvalues proved complete at each point of a track, up to the last point with a
     proof, (points,).
 
-    complete: this number at the first point. Where no proof carries it on, a new count gives the next number.
+    complete: this number at the first point. If a proof does not carry the number to the next point, a new
+    count there is tried.
     """
     n = len(track.w)
     coefficients = stretch.coefficients[:n]
@@ -170,8 +169,8 @@ def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> N
 
 
 def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
-    """(eigenvalues to follow, (m,), with whole conjugate pairs; number of them proved complete); None after a
-    failure.
+    """(eigenvalues to follow, (m,), without unpaired complex eigenvalues; number of eigenvalues proved
+    complete); None after a failure.
     """
     try:
         modes = request.modes + STRETCH.further_modes
@@ -194,7 +193,7 @@ def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | No
 
 
 def warm_up() -> None:
-    """Loads compiled code and creates the solver objects, so that the first stretch takes no extra time."""
+    """Loads compiled code and creates the solver objects, so that the first sweep takes no extra time."""
     warm_up_search()
     path = Path(Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4), "F")
     solve_stretch(Stretch(path, np.linspace(15.0, 45.0, 12)), SpectrumRequest(2, 1e-4, certify=True))
