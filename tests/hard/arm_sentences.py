@@ -775,7 +775,7 @@ class ArmTruth:
         compression += [abs(self.F) / self.own["k1"]] if self.F is not None else []
         for line, match in read(page, r"the load \w+ the arm by NUMBER %"):
             found.append((line, _two(match[1], 100 * abs(self.F) / self.own["k1"])))
-        for line, match in read(page, r"(?:that of flutter|flutter shortens the arm) by NUMBER %"):
+        for line, match in read(page, r"the flutter load shortens (?:it|the arm) by NUMBER %"):
             found.append((line, _two(match[1], 100 * effects["compression"])))
         for line, match in read(page, r"rubber is some NUMBER % stiffer"):
             c = max(compression)
