@@ -60,7 +60,7 @@ def _sentence(table: Table, view: View) -> str:
     """Sentence on the written table: its size, points without a row, and the names of the other tables."""
     text = f"{counted(table.rows, 'row')} of {table.name} in {counted(len(table.columns), 'column')}"
     if table.empty_points:
-        text += f"; {table.empty_points} of {counted(view.variables['status'].size, 'point')} without any"
+        text += f"; {table.empty_points} of {counted(view.variables['status'].size, 'point')} without a row"
     if table.others:
         text += f"; --table takes {words(table.others, 'or')} instead"
     return text

@@ -20,9 +20,9 @@ def require_name(output: Path, endings: Sequence[str], noun: str, inputs: Sequen
     if not output.parent.is_dir():
         raise InputError(f"--output {output}: there is no directory {output.parent}")
     if output.exists() and not output.is_file():
-        raise InputError(f"--output {output} is not a name for a {noun}; choose another")
+        raise InputError(f"--output {output} is not a regular file; choose another name for the {noun}")
     if output.exists() and any(output.samefile(path) for path in inputs if path.exists()):
-        raise InputError(f"--output {output} is a file to report and would be overwritten; choose another")
+        raise InputError(f"--output {output} is an input file and would be overwritten; choose another name")
 
 
 @contextmanager

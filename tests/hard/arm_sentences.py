@@ -35,9 +35,9 @@ SIDES = ("radius", "inner_radius", "width", "height")
 LOADS = ("pressure", "force")
 WITHOUT_CYCLE = {
     "straight": "does not beat",
-    "unstable": "has a cycle that it leaves at the least disturbance",
+    "unstable": "has an unstable cycle",
     "torus": "beats without repeating",
-    "not_settled": "is not settled: no stable cycle was found, but one may exist",
+    "not_settled": "is not settled: no stable cycle was found, but a stable cycle may exist",
     "left_the_model": "is crushed somewhere or loses its stiffness, where the model ends",
     "failed": "is not known: the integration failed",
 }
@@ -354,7 +354,12 @@ def _answer(view, page, fine, scales):
     """The check of the line that answers first, of all points or of those where the model applies."""
     inside = (np.asarray(view.variables["model_applies"]) != Validity.does_not_apply).ravel()
     prefix = next(
-        (p for p in ("where it applies: ", "if it applied: ") if any(x.startswith(p) for x in page)), ""
+        (
+            p
+            for p in ("where the model applies: ", "if the model applied: ")
+            if any(x.startswith(p) for x in page)
+        ),
+        "",
     )
     chosen = inside if prefix.startswith("where") else np.ones_like(inside)
     start, count, found = f"^{re.escape(prefix)}", int(chosen.sum()), []
@@ -429,7 +434,7 @@ def _flutter_answer(view, page, told, start, chosen, scales):
 def _extremes(view, page, start, loads, chosen):
     """The check of which arms flutter at the least and at the largest of loads."""
     loads, found = np.where(chosen, loads, np.nan), []
-    for line, match in read(page, rf"{start}least at (.*); most at (.*)$"):
+    for line, match in read(page, rf"{start}smallest at (.*); largest at (.*)$"):
         ends = (np.nanmin(loads), np.nanmax(loads))
         why = [_of_one(view, text, loads, end) for text, end in zip(match.groups(), ends, strict=True)]
         found.append((line, "; ".join(filter(None, why))))

@@ -82,7 +82,7 @@ def test_show_names_the_branch_that_could_not_be_followed(command):
     reasons = view.variables["special_reason"]
     reasons[reasons > 0] = END_REASONS.index("no_cycle_found")
     told = summary.branch_summary(view, np.ones((2, 1, 1, 1), bool)).answer
-    assert "1 branch leads to a cycle beyond which none is found: F = 80" in told
+    assert "1 branch leads to a cycle after which no further cycle was found: F = 80" in told
     assert "  k1 = 150: branch 1, at F = 80" in told
 
 

@@ -44,7 +44,7 @@ def _number(name: str, value: float | str) -> float:
         return float(value)
     except ValueError:
         if name == "drag":
-            raise InputError(f"--at drag={value} is none of {', '.join(DRAGS)}") from None
+            raise InputError(f"--at drag={value}: the drag must be one of {', '.join(DRAGS)}") from None
         if name in ALL_QUANTITIES:
             return in_si(f"--at {name}", value, ALL_QUANTITIES[name].unit, "12 cm")
         raise InputError(f"--at {name}={value} must be a parameter with a number, such as k1=150") from None

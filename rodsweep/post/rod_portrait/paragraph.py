@@ -26,9 +26,9 @@ THRESHOLD_CLAUSES = {
     "hopf": "a pair of modes becomes unstable at {F}",
     "hopf_reverse": "a pair becomes stable at {F}, where other modes stay unstable",
     "restabilization": "it is stable again from {F}",
-    "real_again": "it stops oscillating as it decays at {F}",
-    "real_leads": "a real eigenvalue takes the lead at {F}",
-    "pair_leads": "a complex pair takes the lead at {F}",
+    "real_again": "decaying disturbances stop oscillating at {F}",
+    "real_leads": "a real eigenvalue becomes the leading eigenvalue at {F}",
+    "pair_leads": "a complex pair becomes the leading pair at {F}",
 }
 """Clause on the straight rod at a threshold, by kind of threshold."""
 SEARCH_TASKS = ("thresholds", "criticality", "branch")
@@ -98,7 +98,7 @@ def _thresholds(results: RodResults) -> Iterator[str]:
             clause += f"{_side(results, float(v['crossing_F'][i]))})"
         clauses.append(clause)
     if clauses:
-        yield f"Straight, {'; '.join(clauses)}."
+        yield f"In the straight state, {'; '.join(clauses)}."
     elif v["crossing_count"] == 0:
         yield f"The straight {results.rod.kind} has no threshold up to {end}."
     if v["crossing_count"] >= 0:
@@ -118,7 +118,7 @@ def _side(results: RodResults, F: float) -> str:
     if not sides.size:
         return ""
     a = float(v["amplitude_coefficient"][same][0])
-    return f"; {CRITICALITY_WORDS[int(sides[0])]}, its cycles are {'above' if a > 0 else 'below'} it"
+    return f"; {CRITICALITY_WORDS[int(sides[0])]}, with cycles {'above' if a > 0 else 'below'} this load"
 
 
 def _branches(results: RodResults) -> Iterator[str]:
