@@ -10,10 +10,8 @@ from ..errors import InputError
 
 
 def require_name(output: Path, endings: Sequence[str], noun: str, inputs: Sequence[Path] = ()) -> None:
-    """Raises InputError unless a file can be written under the name `output`.
-
-    endings: allowed suffixes. noun: kind of file, for the message. inputs: files that must not be
-    overwritten.
+    """Raises InputError if `output` has a suffix not in `endings`, if its directory does not exist, or if
+    `output` is a directory or one of the files `inputs`. noun: noun for the file, for the message.
     """
     if output.suffix not in endings:
         raise InputError(f"--output {output}: the name must end in {', '.join(endings)}")
@@ -27,9 +25,10 @@ def require_name(output: Path, endings: Sequence[str], noun: str, inputs: Sequen
 
 @contextmanager
 def written_whole(output: Path) -> Iterator[TextIO]:
-    """Context manager that opens a text file under a temporary name and, at the end, renames it to `output`.
+    """Context manager that opens a text file with a temporary name and, at the end, renames the file to
+    `output`.
 
-    A killed process therefore leaves no incomplete file named `output`.
+    A killed process therefore leaves no incomplete file with the name `output`.
     """
     partial = output.with_name(f".{output.name}.partial")
     try:

@@ -136,8 +136,8 @@ def _second_state_lines(v: Mapping[str, np.ndarray], done: np.ndarray) -> list[s
     if cycle.any():
         lines.append(
             f"a second state is possible{_at(cycle, done)}: the rod is straight, and its Hopf point at "
-            f"F = {span(v['subcritical_F'][cycle])} is subcritical, so a larger initial deflection may lead to "
-            "a cycle; the task branch follows this cycle"
+            f"F = {span(v['subcritical_F'][cycle])} is subcritical, so a larger initial deflection may lead "
+            "to a cycle; the task branch follows this cycle"
         )
     return lines
 

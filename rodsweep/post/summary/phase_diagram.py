@@ -75,7 +75,7 @@ def saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
 
 def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     """Lines about the fraction of the grid with each stable state, and about changes of cycles. done: mask of
-    the computed rows. line: parameter along a row. row: parameter constant on a row.
+    the computed rows, (...,). line: parameter along a row. row: parameter constant on a row.
     """
     v = view.variables
     of_row = view.point_columns[row].reshape(done.shape)
@@ -109,7 +109,7 @@ def share_lines(found: np.ndarray) -> list[str]:
 
 def start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
     """List with a line on the classes at the starts of the rows; empty if all these classes are monotone.
-    done: mask of the computed rows. line: parameter along a row.
+    done: mask of the computed rows, (...,). line: parameter along a row.
     """
     start = view.variables["class"][done][:, 0]
     words = [f"{word} on {int((start == n).sum())}" for n, word in CLASSES if (start == n).any()]
