@@ -149,7 +149,7 @@ async def serve(state: PageState, stored: StoredResults | None, port: int, is_op
     for number in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(number, stopped.set)
     server = ExploreServer(state, stored, port)
-    print(f"{server.url} shows the page; Ctrl-C ends it", flush=True)
+    print(f"{server.url} shows the page; Ctrl-C stops the server", flush=True)
     server.start()
     if is_opened:
         import webbrowser

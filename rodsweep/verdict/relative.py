@@ -59,8 +59,8 @@ def plane_rods(
     """Pairs (rod, scale), one per plane of motion. rod: dimensionless rod without load, for the most likely
     drag. scale: k3/L^2 of the rod divided by k3/L^2 of the arm.
 
-    build: constitutive law and profile; taper: ratio of tip to base radius; used if given, instead of the
-    values of the arm.
+    build: constitutive law and profile. taper: ratio of tip to base radius. If given, `build` and `taper`
+    replace the values of the arm.
     """
     planes = [(_in_its_plane(arm, build, taper), 1.0)]
     if not arm.isotropic:

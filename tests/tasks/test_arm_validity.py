@@ -257,7 +257,7 @@ def test_lines_that_are_asked_for_over_an_arm_name_what_draws_them(command):
     refused = command("plot", "a.h5", "--what", "lines")
     assert refused.returncode == 2
     assert (
-        "--what lines is not for a grid over an arm's quantities; remove it, or draw lines over"
+        "--what lines is not for a grid over an arm's quantities; remove --what or draw lines over"
         in refused.stderr
     )
 

@@ -24,7 +24,7 @@ LOAD_COUNT = 121
 """Number of load values. Additional values are cheap: the stability at all loads of a row follows from the
 thresholds on this row."""
 ARM_ROW_COUNT = 12
-"""Number of values of the second quantity, for arms in SI units."""
+"""Number of values of the second quantity of the diagram, for arms."""
 ARM_SPAN_RATIO = 2.0
 """Ratio of the largest to the present value of an arm's second quantity, and of the present to the smallest
 value. The ratio is small, so that all arms are slender."""

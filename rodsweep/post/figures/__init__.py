@@ -98,7 +98,7 @@ def draw(
     """
     views = [views] if isinstance(views, View) else views
     if look.width and choices.get("what") == "animation":
-        raise InputError("--width is for printed figures, not for an animation; remove it")
+        raise InputError("--width is for printed figures, not for an animation; remove --width")
     if not look.title:
         views = [replace(view, attributes=view.attributes | {"title": ""}) for view in views]
     taken = output.exists() and (

@@ -80,7 +80,7 @@ def figure_name(request: FigureRequest) -> str:
     if others and name != "amplitude":
         raise InputError(f"--what {name} draws one file; only amplitudes of several files make one figure")
     if request.points and name in ALL_POINT_FIGURES:
-        raise InputError(f"--point is given, but {ALL_POINT_FIGURES[name]} show all points; remove it")
+        raise InputError(f"--point is given, but {ALL_POINT_FIGURES[name]} show all points; remove --point")
     return name
 
 

@@ -129,8 +129,8 @@ def draw_phase_diagram(request: FigureRequest) -> str:
 
 
 def _fixed(view: View, line: str, row: str) -> str:
-    """Text of the constant parameters. gamma1 is left out if neither cycles nor criticality depend on it.
-    line, row: parameters on the axes.
+    """Text of the constant parameters. gamma1 is included only if the figure shows cycles or their
+    criticality. line, row: parameters on the axes.
     """
     fixed = {name: values[0] for name, values in view.axes.items() if name not in (line, row)}
     if "curve_gamma1" in view.variables:

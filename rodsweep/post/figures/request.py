@@ -152,7 +152,7 @@ class FigureRequest:
         if self.output.suffix not in suffixes:
             raise InputError(f"--output {self.output}: the name must end in {', '.join(suffixes)}")
         if self.taken:
-            raise InputError(f"--output {self.output} is not a name for a figure; choose another")
+            raise InputError(f"--output {self.output} cannot be overwritten by a figure; choose another name")
 
     def write(self, figure: Figure, shown: str, min_aspect: float = MIN_ASPECT) -> str:
         """Writes the figure, with a second scale in SI units and hatches for an arm; returns `shown`, the

@@ -104,7 +104,7 @@ def _several(request: FigureRequest) -> str:
     request.check_output()
     if len(request.views) > MAX_PANELS:
         raise InputError(
-            f"{len(request.views)} files are given, but one figure has room for {MAX_PANELS}; give fewer"
+            f"{len(request.views)} files are given, but a figure has room for {MAX_PANELS}; give fewer files"
         )
     views = [_line_of(view, request) for view in request.views]
     return _in_panels(views, request, f"of {len(views)} files")

@@ -40,12 +40,12 @@ def draw_thresholds(request: FigureRequest) -> str:
     if not view.is_grid or view.variables["status"].size == 1:
         if request.what and view.quantities and view.variables["status"].size > 1:
             raise InputError(
-                f"{view.path}: --what {request.what} is not for a grid over an arm's quantities; remove it, "
-                "or draw lines over the other quantities with --at, such as --at 'length=12 cm'"
+                f"{view.path}: --what {request.what} is not for a grid over an arm's quantities; remove "
+                "--what or draw lines over the other quantities with --at, such as --at 'length=12 cm'"
             )
         if request.what:
             raise InputError(
-                f"{view.path}: --what {request.what} needs rods that vary in one parameter or two; remove it"
+                f"{view.path}: --what {request.what} needs rods that vary in one or two parameters; remove it"
             )
         min_aspect = BAR_ASPECT if view.variables["status"].size == 1 else MIN_ASPECT
         return request.write(draw_class_bars(view), "behaviour of each rod over F", min_aspect)

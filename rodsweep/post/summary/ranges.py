@@ -91,8 +91,8 @@ def number_and_error(value: float, error: float) -> tuple[str, str]:
 
 
 def stated_error(value: float, error: float) -> tuple[str, float]:
-    """Returns (text, error). text: the number, rounded at the decimal place of `error`. error: sum of `error`
-    and the rounding error.
+    """Returns (number as text, rounded at the decimal place of `error`; sum of `error` and the rounding
+    error).
     """
     text = _rounded(value, error / 10, MAX_DIGITS)
     return text, error + abs(float(text) - value)

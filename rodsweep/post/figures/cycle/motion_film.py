@@ -18,8 +18,8 @@ FRAME_SIZE = (3.6, 4.0)
 DPI = 100
 """Resolution of a frame, in pixels per inch."""
 FRAME_RATE = 16
-"""Frames per second. The time between two returns of the tip, 32 shapes, takes 2 s, as on the page of
-`rodsweep explore`."""
+"""Frames per second. The 32 shapes between two returns of the tip take 2 s, as on the page of `rodsweep
+explore`."""
 MAX_FRAMES = 256
 """Largest number of frames: a film of 16 s, whose drawing takes some 10 s."""
 

@@ -73,9 +73,7 @@ def is_map(view: View) -> bool:
 
 
 def _varying(names: list[str]) -> str:
-    """Clause that says which parameters `names` vary, and a remedy, for a file in which not exactly two
-    vary.
-    """
+    """Clause on the varied parameters `names`, with a remedy, for a file in which other than two vary."""
     if not names:
         return "no parameter varies"
     if names[1:]:

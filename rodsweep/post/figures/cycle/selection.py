@@ -133,7 +133,9 @@ def chosen_traces(view: View, points: Sequence[int]) -> CycleSelection:
     is_stored = np.isfinite(view.variables[TRACE_VARIABLES[0]][..., -1].ravel())
     for number in points:
         if not is_stored[number - 1]:
-            raise InputError(f"--point {number}: the motion of the point from its start is not stored")
+            raise InputError(
+                f"--point {number}: the motion of this point from its initial state is not stored"
+            )
     return _selection(view, points, is_stored, "transient")
 
 
@@ -155,7 +157,9 @@ def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], w
     words = view.outcomes
     if not available.size:
         states = ", ".join(sorted({word.replace("_", " ") for word in words.tolist()}))
-        raise InputError(f"{view.path} holds no {what} that could be drawn; its points are: {states}")
+        raise InputError(
+            f"{view.path} holds no {what} that could be drawn; the statuses of its points are: {states}"
+        )
     numbers = list(points) or [int(index) + 1 for index in available[:MAX_CYCLES]]
     columns = view.point_columns
     parameters = [{name: float(columns[name][n - 1]) for name in columns} for n in numbers]

@@ -27,8 +27,8 @@ SI_LINE_WIDTH = 80
 FEW_ITEMS = 4
 """Up to this number of values of an array are listed one by one; more values are printed as a range."""
 TYPED_UNIT_SOURCES = {"m": ("length",), "Pa": ("pressure", "young"), "N": ("force",)}
-"""Quantities of the arm, by SI unit. All numbers with this SI unit are printed in the unit that the user
-typed for the first of these quantities."""
+"""Quantities of the arm, by SI unit. All numbers with this SI unit are printed in the unit of the
+first of these quantities for which the user typed a unit."""
 PREFIXED_UNITS = ("J", "W")
 """SI units that get a prefix, such as mW."""
 SHORT_TIME = 0.1
