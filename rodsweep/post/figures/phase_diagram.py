@@ -1,5 +1,5 @@
 """Phase diagrams, as in the paper's Fig. 4: stability class of the rod over two parameters, and boundary
-curves.
+curves. line, row: parameters along a row, and constant on a row.
 """
 
 from dataclasses import dataclass

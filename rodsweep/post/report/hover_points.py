@@ -1,7 +1,8 @@
 """Values in a drawn figure with their positions, for the text that a page shows under the pointer.
 
 The values are read from the lines, scatter plots, bars and coloured cells of a matplotlib figure. The modules
-that draw figures are therefore independent of pages.
+that draw figures are therefore independent of pages. names: labels of the two axes of a panel. words: legend
+entries by colour.
 """
 
 from collections.abc import Iterator, Sequence

@@ -20,7 +20,7 @@ from ..summary.thresholds import ENDED_EARLY
 from .results import RodResults
 
 SAME_FORCE_TOLERANCE = 1e-6
-"""Hopf points found by two tasks are identified if their forces differ by at most this relative amount."""
+"""Hopf points of two tasks are the same Hopf point if their forces differ by at most this relative amount."""
 THRESHOLD_CLAUSES = {
     "onset": "it starts to oscillate at {F}",
     "hopf": "a pair of modes becomes unstable at {F}",

@@ -80,8 +80,8 @@ def si_columns(
     """Yields columns in SI units for variables of a list that the file of an arm stores only in dimensionless
     form.
 
-    columns: columns of `variables`. points: index of the point of each row, (rows,); None if the list belongs
-    to the whole file, and SI units are then possible only if all points have the same arm.
+    columns: columns of `variables`. points: index of the point of each row, (rows,); None if the list
+    belongs to the whole file; columns in SI units are then possible only if all points have the same arm.
     """
     if not view.quantities:
         return

@@ -1,4 +1,4 @@
-"""Curves of a phase diagram, special points on the curves, and legend entries."""
+"""Curves and special points of a phase diagram. line, row: parameters along a row, and constant on a row."""
 
 import numpy as np
 from matplotlib.axes import Axes

@@ -1,6 +1,6 @@
 """First lines of `rodsweep show` for an arm: validity of the model, flutter load, frequency of beating.
 
-Quantities are in the units typed by the user, frequencies in Hz.
+Quantities are in the units typed by the user, frequencies in Hz. rods: mask of the points with a rod.
 """
 
 from collections.abc import Callable
