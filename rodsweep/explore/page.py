@@ -168,7 +168,9 @@ class Page:
                 continue
             if self.state.tab == "rod" and not has_uniform_rods(self.state):
                 self.asked.pop(kind, None)
-                self.contents.say(kind, "For such a rod this takes a minute; press the button below.")
+                self.contents.say(
+                    kind, "The solve takes a minute for such a rod; press the button below to start."
+                )
                 continue
             self._ask(kind)
         self._show_solving()

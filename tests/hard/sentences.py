@@ -752,7 +752,10 @@ def diagram_sentences(view, page, keywords, fine):
         found += counts(page, rf"where the rows begin.*: .*{word} on NUMBER", there[:, 0].sum())
     beats = (table == "flutter").any(axis=1)
     found += ranges(
-        page, rf"^flutter on the rows {row} = RANGE; on none of {row} = RANGE", rows[beats], rows[~beats]
+        page,
+        rf"^flutter on the rows {row} = RANGE; no flutter on the rows {row} = RANGE",
+        rows[beats],
+        rows[~beats],
     )
     for kind in ("onset", "hopf", "restabilization", "real_again", "hopf_reverse"):
         of_kind = [[c.at for c in each if c.kind.name == kind] for each in every]
@@ -787,7 +790,7 @@ def _curve_sentences(view, page, row):
         return []
     kinds = [int(v["curve_kind"][v["curve_number"] == n][0]) for n in np.unique(v["curve_number"])]
     for_line = "^curves: NUMBER of Hopf points, NUMBER of double eigenvalues; "
-    for_line += "crossings on rows lie within NUMBER of them, over F; NUMBER lie"
+    for_line += "crossings on rows lie within NUMBER of these curves along F; NUMBER (?:is|are) on no curve"
     found = []
     for line, match in read(page, for_line):
         told = [int(match[1]), int(match[2]), int(match[4])]
@@ -961,7 +964,7 @@ def _state_sentences(view, page, fine, row):
     for line, match in read(
         page,
         "^curves of cycles: NUMBER; folds and torus points of rows lie within NUMBER "
-        "of them, over F; NUMBER lie",
+        "of these curves along F; NUMBER (?:is|are) on no curve",
     ):
         true = (
             len(np.unique(view.variables["cycle_curve_number"])),

@@ -138,11 +138,11 @@ def test_a_row_that_is_undecided_is_no_row_without_flutter(tmp_path):
     view = view_of_sweep(
         tmp_path, "phase_diagram", **ROWS | {"k1": [100.0, 200.0], "k2": 1e4, "F": [0.0, 60.0]}
     )
-    assert "flutter on the rows k1 = 200; on none of k1 = 100" in told(view)
+    assert "flutter on the rows k1 = 200; no flutter on the rows k1 = 100" in told(view)
     classes = np.asarray(view.variables["class"]).copy()
     classes[..., 0, 0, 0, 1] = next(number for number, word in CLASSES if word == "undecided")
     shown = told(changed(view, **{"class": classes}))
-    assert "on none of" not in shown
+    assert "no flutter on" not in shown
     assert "undecided: on 1 of 2 rows, F = 60, k1 = 100" in shown
 
 

@@ -133,7 +133,7 @@ def _left_out(rods: Sequence[RodBranches], beating: int, drawn: int) -> str:
     computed = int((rods[0].view.variables["status"] != MISSING).sum())
     without = computed - beating
     return more + (
-        f"; {some_of(without, computed, 'rod')} {has_or_have(without)} none" if without > 0 else ""
+        f"; {some_of(without, computed, 'rod')} {has_or_have(without)} no branch" if without > 0 else ""
     )
 
 

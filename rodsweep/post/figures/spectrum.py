@@ -121,8 +121,8 @@ def _line_of(view: View, request: FigureRequest) -> View:
     view = without_infinite(view) if view.is_grid else view
     if not view.is_grid or sum(len(values) > 1 for values in view.axes.values()) != 1:
         raise InputError(
-            f"{view.path} is not a line of spectra, along which one parameter varies; only such files share "
-            "a figure"
+            f"{view.path} is not a line of spectra, along which one parameter varies; only lines of spectra "
+            "can share a figure"
         )
     return view
 

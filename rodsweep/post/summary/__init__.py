@@ -143,8 +143,8 @@ def _unfinished(view: View, missing: int, noun: str) -> list[str]:
     if missing and (shard := view.attributes.get("shard")):
         lines.append(
             f"{counted(missing, noun)} {is_or_are(missing)} not in this file: it is shard {shard}, and "
-            "`rodsweep merge` combines the shards; if the run of this shard was interrupted, its command "
-            "continues it"
+            "`rodsweep merge` combines the shards; if the run of this shard was interrupted, the "
+            "same command continues the run"
         )
     elif missing:
         lines.append(
@@ -153,7 +153,7 @@ def _unfinished(view: View, missing: int, noun: str) -> list[str]:
         )
     elif lacks_curves(view.attributes):
         lines.append(
-            f"all {plural(noun)} are computed; the curves are missing, and the same command adds them"
+            f"all {plural(noun)} are computed; the curves are missing; repeat the command to add the curves"
         )
     if waiting := view.journalled:
         verb = "is" if waiting == 1 else "are"

@@ -13,7 +13,7 @@ from .ranges import listed, rounded, span, to_error
 from .summary_lines import SummaryLines, at_point, first_lines, proof_clause
 from .thresholds import unknown_clause
 
-LIST_TOO_SHORT = "they have more special points than the list holds; raise branch.special"
+LIST_TOO_SHORT = "the list of special points is full; raise branch.special"
 """Reason for which branches are not shown, and remedy."""
 COEXISTENCE_WORDS = "stable cycles beside a stable straight rod"
 """Phrase for a range in which a stable cycle and the stable straight rod coexist."""

@@ -69,7 +69,7 @@ def agreement_lines(view: View, line: str) -> list[str]:
     hopf = len(np.unique(v["curve_number"][v["curve_kind"] == 1]))
     double = len(np.unique(v["curve_number"])) - hopf
     within = error_text(float(v["curve_agreement"]))
-    near = f"crossings on rows lie within {within} of them, over {line}; " * (hopf + double > 0)
+    near = f"crossings on rows lie within {within} of these curves along {line}; " * (hopf + double > 0)
     lines = [
         f"curves: {hopf} of Hopf points, {double} of double eigenvalues; {near}"
         f"{_on_none(int(v['curves_untraced']))}"
@@ -79,7 +79,7 @@ def agreement_lines(view: View, line: str) -> list[str]:
         within = error_text(float(v["cycle_curve_agreement"]))
         lines.append(
             f"curves of cycles: {curves}; folds and torus points of rows lie within {within} of "
-            f"them, over {line}; {_on_none(int(v['cycle_curves_untraced']))}"
+            f"these curves along {line}; {_on_none(int(v['cycle_curves_untraced']))}"
         )
     return lines
 

@@ -69,7 +69,7 @@ def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarra
     if len(found) == 1:
         word = next(iter(found))
         if done.size > 1:
-            return f"{word} at all {whole}" if done.sum() > 1 else f"{word} at the one point that is solved"
+            return f"{word} at all {whole}" if done.sum() > 1 else f"{word} at the only solved point"
         return f"the rod {word}" if word in OUTCOME_WORDS.values() else word
     counts = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in found.items())
     return f"of {whole}: {', '.join(counts)}"
@@ -189,4 +189,4 @@ def _error_line(v: Mapping[str, np.ndarray], beats: np.ndarray) -> str:
     for word, name in names.items():
         known = np.abs(v[name][beats & np.isfinite(v[name])])
         errors.append(f"{word} {error_text(float(known.max())) if known.size else 'not known'}")
-    return f"worst errors: {', '.join(errors)}; the error of multipliers is absolute, others are relative"
+    return f"worst errors: {', '.join(errors)}; the error of multipliers is absolute, all other errors are relative"

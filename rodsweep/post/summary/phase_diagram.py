@@ -153,7 +153,7 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     never = ~flutters & (v["class"] != unknown_class).all(axis=-1)
     if (done & never).any() and (done & flutters).any():
         with_it, without = (span(of_row[done & mask]) for mask in (flutters, never))
-        lines.append(f"flutter on the rows {row} = {with_it}; on none of {row} = {without}")
+        lines.append(f"flutter on the rows {row} = {with_it}; no flutter on the rows {row} = {without}")
     return lines
 
 
