@@ -189,4 +189,4 @@ def _error_line(v: Mapping[str, np.ndarray], beats: np.ndarray) -> str:
     for word, name in names.items():
         known = np.abs(v[name][beats & np.isfinite(v[name])])
         errors.append(f"{word} {error_text(float(known.max())) if known.size else 'not known'}")
-    return f"worst errors: {', '.join(errors)}; the error of multipliers is absolute, all other errors are relative"
+    return f"worst errors: {', '.join(errors)}; multiplier errors are absolute, all other errors are relative"
