@@ -612,7 +612,7 @@ class ArmTruth:
         told(rf"lies in the range of flutter, {value}{name}: drag", loads)
         told(rf"^Flutter is at {value}{name};", loads)
         told(rf"^Flutter, at {value}{name}, is within", loads)
-        told(rf"would flutter at {value}{name}[,.]", loads)
+        told(rf"would flutter at {value}{name}(?:\.| and)", loads)
         told(rf"begins? to beat at {value}", own["hertz"])
         told(rf"straight arm is stable again above {value}", self._loads(own["restabilization"]))
         told(rf"^From {value} on a disturbance", self._loads(own["onset"]))
@@ -803,7 +803,7 @@ class ArmTruth:
             lost = lost_by_flattening(self.q)
             why = _two(match[1], 100 * lost) if match[1] else "" if lost >= 1 else f"it loses {lost}"
             found.append((line, why))
-        for line, match in read(page, r"buoyancy is NUMBER of what buckles"):
+        for line, match in read(page, r"buoyancy is NUMBER of the weight that buckles"):
             found.append((line, _two(match[1], effects["weight"])))
         for line, match in read(page, r"sags by NUMBER of its length"):
             found.append((line, _two(match[1], 7.837 / 8 * effects["weight"])))
