@@ -795,7 +795,7 @@ class ArmTruth:
             found.append((line, _two(match[1], 64 * both, 0.6)))
         found += [
             (line, "" if match[1] == "0.1" else "the limit is 0.1")
-            for line, match in read(page, r"and allows NUMBER\.?$")
+            for line, match in read(page, r"and applies only up to NUMBER\.?$")
         ]
         for line, match in read(page, r"Reynolds number: NUMBER if"):
             found.append((line, _two(match[1], effects["Reynolds number"])))
