@@ -43,7 +43,7 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
         height=FIGURE_HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
         x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
     )  # fmt: skip
-    made.toolbar.autohide = True
+    made.toolbar.autohide = True  # moves the toolbar outside the frame, so that no button covers the plot
     made.toolbar.logo = None
     made.toolbar.active_drag = None
     made.min_border_right = 10

@@ -112,7 +112,7 @@ def run(connection: "Connection[Reply, Question]", life: "Connection[Any, Any]",
     """Answers the questions from the pipe `connection` until the pipe closes. life: pipe that closes when the
     page's process ends. niceness: Unix niceness.
     """
-    os.setpgid(0, 0)  # out of reach of Ctrl-C, which ends the page; a session of its own would undo niceness
+    os.setpgid(0, 0)  # protects from Ctrl-C, which ends the page; a separate session would undo the niceness
     os.nice(niceness)
     Thread(target=end_with_page, args=(life,), daemon=True).start()
     cancellation = Cancellation()

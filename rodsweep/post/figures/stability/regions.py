@@ -110,7 +110,7 @@ def _dense(curve: Array) -> Array:
     the plane.
     """
     curve = curve[np.isfinite(curve).all(axis=1)]
-    edge = 0.5 / PIXEL_COUNT  # rounding may move an end on the edge outside
+    edge = 0.5 / PIXEL_COUNT  # rounding may move an end from the edge to the outside
     steps = np.diff(curve, axis=0)
     with np.errstate(all="ignore"):  # a segment parallel to an axis gives infinities, which are correct
         crossed = np.stack([(bound - curve[:-1]) / steps for bound in (-edge, 1 + edge)])
