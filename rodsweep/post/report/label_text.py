@@ -9,7 +9,7 @@ FORMULA = re.compile(r"\$(.+?)(?<!\\)\$")
 DERIVATIVE = re.compile(r"\\dot\s*(?:\{([^{}]*)\}|(\w))")
 """Pattern for the TeX command of a time derivative: a dot above the argument."""
 COMMAND_WITH_ARGUMENT = re.compile(r"\\(?:mathrm|text|tilde|mathit)\s*(?:\{([^{}]*)\}|(\w))")
-"""Pattern for a TeX command that is replaced by its argument: upright text, or a tilde above a letter."""
+"""Pattern for a TeX command that is replaced by its argument: a font, or a tilde above a letter."""
 SUBSCRIPT = re.compile(r"_(?:\{([^{}]*)\}|(.))")
 """Pattern for a TeX subscript."""
 POWER = re.compile(r"\^(?:\{([^{}]*)\}|(\\?\w+|.))")
