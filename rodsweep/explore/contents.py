@@ -60,13 +60,13 @@ class PageContents:
 
     @property
     def cards(self) -> list[Card]:
-        """Cards of all pictures, each a figure that a sentence can replace."""
+        """Cards of all pictures, see `Card`."""
         pictures = (self.spectrum, self.mode, self.growth, self.beating, self.branches, self.diagram)
         return [picture.card for picture in pictures]
 
     def connect(self, document: Document, react: Mapping[str, Callable[..., None]]) -> None:
-        """Adds all models to a Bokeh document. react: callback by button, or by picture that the
-        user clicks.
+        """Adds all models to a Bokeh document. react: callbacks, by name of the button; "diagram_point" and
+        "load" for clicks in pictures.
         """
         for kind, button in self.buttons.items():
             button.on_click(react[kind])
@@ -75,7 +75,7 @@ class PageContents:
         for picture in (self.growth, self.branches):
             picture.card.figure.on_event(Tap, react["load"])
         # Add models last: a document subscribes only to events that its models already handle.
-        # Freeze: otherwise each root makes the document go through all models, which takes a second in all.
+        # Freeze: otherwise the document goes through all models after each root, which takes a second in all.
         with document.models.freeze():
             for root in (
                 self.controls.root, self.sharing.root, *self.buttons.values(),
@@ -90,7 +90,9 @@ class PageContents:
         document.template_variables["page_css"] = template_text("page.css")
 
     def show_point(self, state: PageState, F: float) -> None:
-        """Marks the point of the state in all pictures, and updates address, config and Python lines."""
+        """Marks the parameters of `state` in all pictures, and updates address, config and Python lines. F:
+        the load, in k3/L^2.
+        """
         axis = load_axis(state)
         at = F * axis.factor
         self.controls.show_largest_load(state, axis)
@@ -106,7 +108,7 @@ class PageContents:
         self.sharing.show(state)
 
     def show(self, kind: str, found: dict[str, Any], state: PageState) -> None:
-        """Draws the answer `found` to a question of the kind `kind` in all pictures that depend on it."""
+        """Draws the answer `found` to a question of the kind `kind` in all pictures that show this answer."""
         if kind == "spectrum":
             self.spectrum.show(found)
             self.mode.show(found)
@@ -130,7 +132,9 @@ class PageContents:
         self.numbers.show(kind, found)
 
     def say(self, kind: str, sentence: str) -> None:
-        """Shows a sentence in place of the pictures that a question of the kind `kind` fills."""
+        """Shows a sentence in place of the pictures for questions of the kind `kind`; for questions on cycle
+        curves, drags and films, above the picture.
+        """
         self.numbers.show(kind, None)
         if kind == "cycle":
             self.beating.stop()

@@ -1,5 +1,5 @@
-"""Sliders, text fields and menus of the page. Every change is reported as the name and the new text of a
-value.
+"""Sliders, text fields and menus of the page. Every change by the user is reported by the name and the new
+text of the changed value.
 """
 
 from collections.abc import Callable
@@ -15,12 +15,14 @@ from .state import LAW_NAMES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 
 LARGEST_FORCE = "Largest force F (k3/L^2)"
 SLIDER_STEP_COUNT = 400
-"""Number of steps of a slider from end to end."""
+"""Number of steps of a slider between its ends."""
 ChangeCallback = Callable[..., None]
 
 
 class SliderField:
-    """Text field and slider for the same value. A change of either calls `changed(name, text)`."""
+    """Text field and slider for the same value. A change of the field or of the slider calls `changed(name,
+    text)`.
+    """
 
     def __init__(self, scale: ControlScale, changed: Callable[[str, str], None], sheets: list[StyleSheet]):
         self.scale = scale
@@ -37,12 +39,12 @@ class SliderField:
         self.slider.on_change("value", self._slid)
         self.root = Column(self.text, self.slider, sizing_mode="stretch_width", spacing=0)
         self._is_shown = False
-        """True while the page changes widgets, so that callbacks of the widgets must not react."""
+        """True while the page itself changes widgets; callbacks of the widgets then return at once."""
         self._sliding = False
 
     def show(self, text: str) -> None:
-        """Shows `text` in the field, and moves the slider to its value unless the user is dragging the
-        slider.
+        """Shows `text` in the field, and moves the slider to the value of `text` unless the user is dragging
+        the slider.
         """
         self._is_shown = True
         try:
@@ -70,8 +72,8 @@ class SliderField:
 class Controls:
     """All controls of the page.
 
-    changed: called with the changed fields of `PageState`, or with `values`, the changed texts of the tab by
-    name.
+    changed: callback; its keywords are the changed fields of `PageState`, or `values`, the changed texts of
+    the tab by name.
     """
 
     def __init__(self, changed: ChangeCallback, style_sheet: InlineStyleSheet):
@@ -118,7 +120,9 @@ class Controls:
             self._is_shown = False
 
     def show_largest_load(self, state: PageState, axis: PictureAxis) -> None:
-        """Says, for an arm, at which pressure the force is the largest one. axis: of the load."""
+        """Writes, for an arm, the pressure that corresponds to the largest force above the field of this
+        force. axis: axis of the load.
+        """
         pressure = f": {state.largest_force() * axis.factor:.4g} kPa" if state.tab == "arm" else ""
         self.F_max.title = LARGEST_FORCE + pressure
 

@@ -1,4 +1,4 @@
-"""Template, style sheets and scripts of the page. Its colours are light or dark as the browser prefers."""
+"""Template, style sheets and scripts of the page. The browser's preference selects light or dark colours."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,14 +16,14 @@ def template_text(name: str) -> str:
 
 
 def style_sheet(name: str) -> InlineStyleSheet:
-    """Style sheet for Bokeh's widgets from the file `name`. Widgets inherit colours, but no style sheet, from
-    the page.
+    """Style sheet for Bokeh's widgets, from the file `name` in TEMPLATES. A widget inherits the colours of
+    the page, but not its style sheets.
     """
     return InlineStyleSheet(css=template_text(name))
 
 
 def colour_script(figures: Sequence[figure]) -> CustomJS:
-    """Browser script that colours the figures for the light or dark colour scheme, now and after every change
-    of the scheme.
+    """Browser script that gives the figures the colours of the light or dark colour scheme, at once and after
+    every change of the scheme.
     """
     return CustomJS(args={"figures": list(figures)}, code=template_text("colours.js"))

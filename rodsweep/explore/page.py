@@ -20,15 +20,15 @@ from .solving.solvers import Solvers
 from .state import PageState, from_address, rod_of
 from .stored_results import StoredResults
 
-STOPPED_SENTENCE = "Stopped. A change of the rod starts it again."
+STOPPED_SENTENCE = "Stopped. A change of the rod starts the solve again."
 """Sentence shown in place of a picture after the user has stopped its solve."""
 IDLE_MILLISECONDS = 900
-"""Time without a change of the controls after which questions that take seconds are sent, in milliseconds."""
+"""Questions that take seconds are sent when the controls have not changed for this time, in milliseconds."""
 
 
 class Page:
-    """Page in a browser tab. stored: answers of a result file, used instead of solves; None
-    without a file.
+    """Page in a browser tab. stored: answers from a result file, used instead of solves; None if there is no
+    file.
     """
 
     def __init__(
@@ -42,9 +42,9 @@ class Page:
         self.is_open = True
         self.solving: set[str] = set()
         self.progress: dict[str, str] = {}
-        """Progress of every long solve, as text, by kind of question."""
+        """Progress of each running solve, as text, by kind of question."""
         self.asked: dict[str, Needs] = {}
-        """Part of the state, see `needs`, on which the latest question of each kind depends."""
+        """Part of the state on which the latest question of each kind depends, see `needs`."""
         self.contents = PageContents(self.change, self.load)
         self._idle: Callable[[], None] | None = None
         self.contents.connect(document, self._connections())
@@ -69,17 +69,17 @@ class Page:
             self._refuse(str(error))
 
     def close(self) -> None:
-        """Cancels all questions of this page that are not answered yet."""
+        """Cancels all unanswered questions of this page."""
         self.is_open = False
         self.solvers.forget(self.session)
 
     def change(self, values: dict[str, str] | None = None, **changed: Any) -> None:
-        """Changes the controls. values: changed texts of the tab. changed: further fields of the state."""
+        """Changes the state. values: changed texts of the visible tab. changed: other changed fields."""
         state = replace(self.state, **changed)
         self._change_to(state.with_values(**values) if values else state)
 
     def solve(self, kind: str, tip: Tip | None = None) -> None:
-        """Sends a question of the kind `kind` to its solver process, even if its answer is already shown."""
+        """Sends a question of the kind `kind` to its solver process, even if the answer is already shown."""
         if kind == "cycles" and "diagram" in self.solving:
             self._drop("diagram")
         self._drop(kind)
@@ -87,7 +87,7 @@ class Page:
         self._show_solving()
 
     def stop(self) -> None:
-        """Cancels long solves; their pictures say so. A bent arm returns to its motion before the drag."""
+        """Cancels long solves, with a sentence in their pictures. A dragged arm returns to its motion."""
         for kind in STOPPABLE_KINDS:
             if kind in self.solving:
                 self._drop(kind)
@@ -98,7 +98,7 @@ class Page:
         self._show_solving()
 
     def drag(self, kind: str, tip: Tip) -> None:
-        """Solves for the arm with its tip dragged to `tip`, in L, or released; kind: see `TIP_KINDS`."""
+        """Requests the shape with the tip held at `tip`, in L, or the motion after release; see TIP_KINDS."""
         for other in TIP_KINDS:
             if other != kind:
                 self._drop(other)
@@ -106,7 +106,7 @@ class Page:
         self._show_solving()
 
     def _drop(self, kind: str) -> None:
-        """Cancels the question of the kind `kind`; an answer that still arrives is ignored."""
+        """Cancels the question of the kind `kind`; an answer that arrives later is ignored."""
         self.asked.pop(kind, None)
         if kind in self.solving:
             self.solving.discard(kind)
@@ -144,7 +144,7 @@ class Page:
         self._rest()
 
     def _refuse(self, sentence: str) -> None:
-        """Shows an error message instead of all pictures but a drawn diagram, and cancels all solves."""
+        """Cancels all solves and shows an error message in place of all pictures but a drawn diagram."""
         for kind in (*TIP_KINDS, *MANUAL_KINDS):
             self._drop(kind)
         for kind in (*INSTANT_KINDS, *IDLE_KINDS):
@@ -155,7 +155,7 @@ class Page:
         self._show_solving()
 
     def _rest(self) -> None:
-        """Schedules slow questions `IDLE_MILLISECONDS` after the last change of the controls."""
+        """Schedules the slow questions; each call restarts the waiting time `IDLE_MILLISECONDS`."""
         if self._idle is not None:
             self.document.remove_timeout_callback(self._idle)
         self._idle = self.document.add_timeout_callback(self._rested, IDLE_MILLISECONDS)
@@ -168,13 +168,15 @@ class Page:
                 continue
             if self.state.tab == "rod" and not has_uniform_rods(self.state):
                 self.asked.pop(kind, None)
-                self.contents.say(kind, "This takes a minute for such an arm: press the button below.")
+                self.contents.say(
+                    kind, "The solve takes a minute for such a rod; press the button below to start."
+                )
                 continue
             self._ask(kind)
         self._show_solving()
 
     def _ask(self, kind: str, tip: Tip | None = None, is_solved_again: bool = False) -> None:
-        """Sends a question not yet sent. A stored answer replaces the solve, unless `is_solved_again`."""
+        """Sends a new question. A stored answer replaces the solve, unless `is_solved_again`."""
         question = Question(kind, self.state, tip, self._cycle_to_film(kind, tip))
         wanted = needs(question)
         if self.asked.get(kind) == wanted:
@@ -195,13 +197,13 @@ class Page:
         self.solvers.ask(self.session, question, receive, receive)
 
     def _cycle_to_film(self, kind: str, tip: Tip | None) -> Dataset | None:
-        """The stored cycle that a film shows; None if the film needs a solve, or if `kind` is no film."""
+        """Stored cycle of which the film is made; None for a film that needs a solve, or another `kind`."""
         if kind != "film" or tip is not None or self.stored is None:
             return None
         return self.stored.cycle_to_film(self.state)
 
     def _receive(self, question: Question, reply: Reply) -> None:
-        """Passes a reply to the event loop of the document, where alone the document may change."""
+        """Passes a reply to the event loop of the document; only this loop may change the document."""
         if self.is_open:
             self.document.add_next_tick_callback(lambda: self._answered(question, reply))
 

@@ -1,4 +1,4 @@
-"""Scales of the sliders: unit, range, and whether linear or logarithmic; and axes of the pictures."""
+"""Scales of the sliders (unit, range, linear or logarithmic), and axes of the pictures."""
 
 from dataclasses import dataclass
 from math import inf, isfinite, isnan, log10
@@ -31,15 +31,15 @@ class ControlScale:
     factor: float = 1.0
     """Factor that converts a value from SI units to `unit`."""
     has_inf: bool = False
-    """Whether the upper end of the slider stands for inf."""
+    """Whether the upper end of the slider means inf instead of `high`."""
 
     def text(self, value: float) -> str:
-        """`value`, given in `unit`, as text with the unit."""
+        """`value`, a number in `unit`, as text with the unit."""
         written = f"{value:.5g}"
         return f"{written} {self.unit}" if self.unit else written
 
     def value(self, text: str) -> float | None:
-        """Value in `unit` of a text that the user typed, such as "10 cm"; None for an invalid text."""
+        """Value, in `unit`, of a text that the user typed, such as "10 cm"; None for an invalid text."""
         try:
             if self.unit:
                 quantity = QUANTITIES[self.name]
@@ -51,12 +51,14 @@ class ControlScale:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Positions of the slider at its ends: `low` and `high`, or their logarithms."""
+        """Slider positions of the two ends: `low` and `high`, or their common logarithms for a logarithmic
+        slider.
+        """
         return (log10(self.low), log10(self.high)) if self.logarithmic else (self.low, self.high)
 
     def position(self, text: str) -> float | None:
-        """Position of the slider for a text that the user typed, clipped to the ends; None for an invalid
-        text or NaN.
+        """Slider position for a text that the user typed, clipped to the ends; None if the text is invalid or
+        NaN.
         """
         value = self.value(text)
         start, end = self.ends
@@ -69,7 +71,7 @@ class ControlScale:
         return min(max(value, start), end)
 
     def at(self, position: float) -> str:
-        """Text of the value at a position of the slider."""
+        """Value at a slider position, as text."""
         if self.has_inf and position >= self.ends[1]:
             return "inf"
         value = 10**position if self.logarithmic else position
@@ -78,9 +80,7 @@ class ControlScale:
 
 
 class PictureAxis(NamedTuple):
-    """Label, with the unit, and the factor that converts dimensionless values to this unit, for an axis of a
-    picture.
-    """
+    """Axis of a picture. label: text with the unit. factor: value in this unit per dimensionless value."""
 
     label: str
     factor: float

@@ -1,4 +1,4 @@
-"""Web server of the page. It accepts browsers on this machine only."""
+"""Web server of the page, which only browsers on the same machine can reach."""
 
 import asyncio
 import signal
@@ -30,21 +30,21 @@ ADDRESS = "127.0.0.1"
 HOSTS = (ADDRESS, "localhost")
 """Host names under which a browser on this machine may open the page."""
 UNUSED_SESSION_MILLISECONDS = 5000
-"""Time after which the session of a closed page ends, in milliseconds."""
+"""A session ends this time after its page was closed, in milliseconds."""
 
 
 class UndelayedServer(HTTPServer):
     """HTTP server without Nagle's algorithm, so that small messages are sent at once."""
 
     def handle_stream(self, stream: IOStream, address: Any) -> None:
-        """Accepts a new connection and switches off its delay."""
+        """Accepts a new connection and switches off the delay of small messages (TCP_NODELAY)."""
         stream.set_nodelay(True)
         super().handle_stream(stream, address)
 
 
 class BatchConnection(ServerConnection):
-    """Connection to a page that sends all changes made by one callback in a single message. Bokeh sends a
-    message each.
+    """Connection to a page. All changes by one callback are sent in a single message; Bokeh itself sends one
+    message per change.
     """
 
     def __init__(self, *arguments: Any):
@@ -52,8 +52,8 @@ class BatchConnection(ServerConnection):
         self._changes: list[DocumentPatchedEvent] = []
 
     def send_patch_document(self, event: DocumentPatchedEvent) -> Awaitable[None]:
-        """Queues a change of the document. Bokeh awaits all returned results after the callback; the first
-        sends the queue.
+        """Queues a change of the document and returns a coroutine that sends the queue. Bokeh awaits the
+        coroutines of all changes after the callback; the first coroutine sends all changes.
         """
         self._changes.append(event)
         return self._send_all()
@@ -75,9 +75,10 @@ class BatchTornado(BokehTornado):
 
 
 class ExploreServer:
-    """Web server of the page, and its solver processes.
+    """Web server of the page, with the solver processes.
 
-    port: TCP port; 0 for any free port. Raises InputError if the port is in use.
+    state: state with which a page opens. stored: answers from a result file, or None. port: TCP port; 0 for
+    any free port. Raises InputError if the port is in use.
     """
 
     def __init__(self, state: PageState, stored: StoredResults | None = None, port: int = 0):
@@ -103,7 +104,9 @@ class ExploreServer:
         return f"http://{ADDRESS}:{self.port}/"
 
     def start(self) -> None:
-        """Starts the server and the solver processes. Browsers get answers once the event loop runs."""
+        """Starts the server and the solver processes. The server answers browsers once the event loop
+        runs.
+        """
         self.server.start()
         self.solvers.warm_up()
 
@@ -122,8 +125,8 @@ class ExploreServer:
 
 
 def _query(arguments: dict[str, list[bytes]]) -> str:
-    """Query string of an address, without Bokeh's own arguments. arguments: values by name, from the HTTP
-    request.
+    """Query string of the page's address, without Bokeh's own arguments. arguments: values by name, from the
+    HTTP request.
     """
     from urllib.parse import urlencode
 
@@ -139,12 +142,14 @@ def _bound(port: int) -> list[socket.socket]:
 
 
 async def serve(state: PageState, stored: StoredResults | None, port: int, is_opened: bool) -> None:
-    """Serves the page until Ctrl-C; is_opened: whether to open a browser."""
+    """Serves the page until Ctrl-C. state, stored, port: as in `ExploreServer`. is_opened: whether to open a
+    browser.
+    """
     stopped = asyncio.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(number, stopped.set)
     server = ExploreServer(state, stored, port)
-    print(f"{server.url} shows the page; Ctrl-C ends it", flush=True)
+    print(f"{server.url} shows the page; Ctrl-C stops the server", flush=True)
     server.start()
     if is_opened:
         import webbrowser

@@ -1,4 +1,4 @@
-"""Texts and files that leave the page or enter it: address, config, Python lines, pictures, films."""
+"""Export and import of texts and files by the page: address, config, Python lines, pictures, films."""
 
 from base64 import b64decode, b64encode
 from collections.abc import Callable, Sequence
@@ -25,9 +25,10 @@ FILM_SCRIPT = """
 const bytes = Uint8Array.from(atob(film.tags[0]), (letter) => letter.charCodeAt(0))
 if (bytes.length > 0) download(new Blob([bytes], {type: "image/gif"}), "explore.gif")
 """
-"""Browser script that saves a new film as a file."""
+"""Browser script that saves a film as a file."""
 COPY_SCRIPT = "navigator.clipboard.writeText(lines.{})"
-"""Browser script that copies a text to the clipboard; format argument: field of `SharedLines`."""
+"""Browser script that copies a text to the clipboard. The format argument is the name of a field of
+`SharedLines`."""
 CONFIG_TASKS = ["limit_cycle", "spectrum", "thresholds", "branch"]
 """Tasks for which the page writes a config; the first is the default."""
 FILM_COMMANDS = """# the film of the arm:
@@ -38,8 +39,8 @@ FILM_COMMANDS = """# the film of the arm:
 
 
 class SharedLines(DataModel):
-    """Config and Python lines that the buttons copy and save. They follow every change of the controls,
-    because no layout of the page depends on them.
+    """Config and Python lines that the buttons copy and save. These texts are updated at every change of the
+    controls, because they are not part of the page's layout.
     """
 
     config = String(default="")
@@ -49,7 +50,8 @@ class SharedLines(DataModel):
 class Sharing:
     """Texts and buttons with which the user exports and imports the state of the page.
 
-    arm: animated line of the arm. loaded: callback for the text of a config file that the user loads.
+    cards: pictures that can be saved. arm: animated line of the arm. loaded: callback for the text of a
+    config file that the user loads.
     """
 
     def __init__(self, cards: Sequence[Card], arm: GlyphRenderer, loaded: Callable[[str], None]):
@@ -93,15 +95,16 @@ class Sharing:
         )  # fmt: skip
 
     def show(self, state: PageState) -> None:
-        """Updates the texts that the buttons copy and save; `write` updates the visible texts."""
+        """Updates the texts that the buttons copy and save. The visible texts are updated by `write`."""
         self._state = state
         self.lines.update(config=self._config(), python=state.python())
 
     def write(self) -> None:
         """Writes the visible texts of the latest state.
 
-        Each visible text causes a new layout of the page, which would delay pictures that follow a slider.
-        Browsers also refuse to change an address more than six times a second.
+        The page calls this method only after a pause of the controls: each visible text causes a new layout,
+        which would delay pictures that follow a slider, and browsers limit changes of the address to about
+        six per second.
         """
         address = self._state.address()
         self.address.update(text=f'<a href="?{escape(address)}">This page as an address</a>', tags=[address])
@@ -111,7 +114,7 @@ class Sharing:
     def give_film(self, gif: bytes) -> None:
         """Makes the browser save a film; gif: content of the file."""
         self.film.tags = [b64encode(gif).decode()]
-        # Half a megabyte need not stay in the page; taken away in the same message, nothing would be saved.
+        # Remove half a megabyte from the page; removal in the same message would prevent saving.
         self.film.document.add_next_tick_callback(lambda: self.film.update(tags=[""]))
 
     def _choose_task(self, attribute: str, old: str, new: str) -> None:
@@ -128,8 +131,8 @@ class Sharing:
 
 
 def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select | Row]:
-    """Menu of the pictures, and a button for each file format in which the browser saves the
-    chosen picture.
+    """Menu of the pictures, and a row of buttons, each of which saves the chosen picture in one file format.
+    arm: animated line of the arm.
     """
     widgets = style_sheet("widgets.css")
     figures = {card.root.name: card.figure for card in cards}
@@ -146,8 +149,8 @@ def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select |
 
 
 def state_of_text(text: str) -> PageState:
-    """State of the page for a config in YAML. Raises the same InputError as the command line for an invalid
-    config.
+    """State of the page for `text`, a config in YAML. For an invalid config, raises the same InputError as
+    the command line.
     """
     where = "the loaded file"
     tree = parse(text, where)

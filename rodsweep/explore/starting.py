@@ -10,14 +10,15 @@ from .solving.forks import start_fork_server
 def explore(source: Path | None, port: int, is_opened: bool) -> None:
     """Serves the page until the user presses Ctrl-C.
 
-    source: result file or config with the first rod to show; None for a default rod. is_opened: whether to
-    open a browser. Raises InputError if bokeh is missing, the file is invalid, or the port is in use.
+    source: result file or config whose rod or arm is shown first; None for a default rod. port: TCP port; 0
+    for any free port. is_opened: whether to open a browser. Raises InputError if bokeh is missing, the file
+    is invalid, or the port is in use.
     """
     try:
         import bokeh  # noqa: F401 - only to check that bokeh is installed
     except ImportError:
         raise InputError(
-            "the page needs bokeh, which is not installed; pip install 'rodsweep[explore]' brings it"
+            "the page needs bokeh, which is not installed; pip install 'rodsweep[explore]' installs it"
         ) from None
     start_fork_server()
     from .server import serve

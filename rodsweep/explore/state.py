@@ -1,4 +1,6 @@
-"""State of the page: the texts of all controls. It can be written as an address, a config or Python lines."""
+"""State of the page: the texts of all controls. The state can be written as address, config or Python
+lines.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -26,7 +28,7 @@ LAW_NAMES = {
     "fixed": "neo-Hookean, fixed section",
     "swelling": "neo-Hookean, swelling section",
 }
-"""Words for each choice of the constitutive law on the page."""
+"""Menu entry for each choice of the constitutive law on the page."""
 DEFAULT_ROD = {"F": "50", "k1": "1e4", "k2": "100", "gamma3": "0.01", "gamma1": "1", "taper": "1"}
 """Parameters of the rod with which the page opens: the rod of the paper's Fig. 5, which flutters."""
 DEFAULT_ARM = {
@@ -38,7 +40,7 @@ DEFAULT_ARM = {
 }
 """Quantities of the arm with which the page opens: silicone in silicone oil."""
 TAB_DEFAULTS = {"rod": DEFAULT_ROD, "arm": DEFAULT_ARM}
-"""First values of each tab, as texts by name."""
+"""Initial values on each tab, as texts by name."""
 SECOND_PARAMETERS = {
     "rod": ("k2", "k1", "gamma3", "taper"),
     "arm": ("length", "radius", "young", "viscosity"),
@@ -53,7 +55,7 @@ class PageState:
     """Values of all controls of the page, as texts in the user's notation."""
 
     tab: str = "rod"
-    """The visible tab, whose rod or arm is solved: "rod" or "arm"."""
+    """Visible tab, "rod" or "arm": the rod or the arm of this tab is solved."""
     rod: Mapping[str, str] = field(default_factory=lambda: dict(DEFAULT_ROD))
     """Texts on the tab "rod", by name of the parameter."""
     arm: Mapping[str, str] = field(default_factory=lambda: dict(DEFAULT_ARM))
@@ -61,7 +63,7 @@ class PageState:
     law: str = "linear"
     """Constitutive law, a key of `LAWS`."""
     across: str = ""
-    """Second parameter of the diagram as chosen by the user; empty for the default of the tab."""
+    """Second parameter of the diagram that the user has chosen; empty for the default of the tab."""
     F_max: str = DEFAULT_F_MAX
     """Largest force of thresholds, branches and diagram, in k3/L^2."""
 
@@ -86,8 +88,8 @@ class PageState:
         return replace(self, rod=values) if self.tab == "rod" else replace(self, arm=values)
 
     def subject(self) -> SoftRod | Arm:
-        """Rod or arm of the visible tab. Raises the same InputError as the command line for
-        invalid values.
+        """Rod or arm of the visible tab. For invalid values, raises the same InputError as the command
+        line.
         """
         material: dict[str, Any] = dict(LAWS[self.law])
         if self.tab == "arm":
@@ -98,14 +100,14 @@ class PageState:
         return SoftRod(**self.parameters(), **material)
 
     def parameters(self) -> dict[str, Any]:
-        """Parameters of the tab "rod" by name, without a taper of 1. A text that is no number
-        stays a text.
+        """Parameters of the tab "rod" as numbers by name, without a taper of 1. A text that is not a number
+        is returned as text.
         """
         found = {name: number(text) for name, text in self.rod.items()}
         return {name: value for name, value in found.items() if name != "taper" or value != 1}
 
     def largest_force(self) -> float:
-        """`F_max` as a number. Raises InputError unless it is finite and above 0."""
+        """`F_max` as a number. Raises InputError unless the number is finite and positive."""
         value = number(self.F_max)
         if not (isinstance(value, float) and 0 < value < float("inf")):
             raise InputError(
@@ -119,7 +121,7 @@ class PageState:
         return urlencode(keys)
 
     def yaml(self, task: str) -> str:
-        """Config in YAML for `rodsweep run` with this rod or arm and the given task."""
+        """Config for `rodsweep run`, in YAML, with the rod or arm of the visible tab and the given task."""
         taken = (*CONFIGS[task].taken_of_a_rod({}), *OPTIONAL_PARAMETERS)
         values: dict[str, Any] = {n: v for n, v in self.parameters().items() if n in taken}
         if self.tab == "arm":
@@ -129,7 +131,7 @@ class PageState:
         return yaml_of(tree)
 
     def python(self) -> str:
-        """Python lines that solve this rod or arm with `rodsweep`."""
+        """Python lines that solve the rod or arm of the visible tab with `rodsweep`."""
         made = f"{self.tab} = rs.{self.subject()!r}"
         return f"import rodsweep as rs\n\n{made}\n" + "".join(
             f"print({self.tab}.{method}())\n" for method in ("spectrum", "thresholds", "cycle")
@@ -142,7 +144,7 @@ def rod_of(subject: SoftRod | Arm) -> Mapping[str, float]:
 
 
 def number(text: str) -> Any:
-    """`text` as a number; the text itself if it is no number, for an error message later."""
+    """`text` as a float; the unchanged text if it is not a valid number, for a later error message."""
     try:
         value = float(text)
     except ValueError:
@@ -152,7 +154,7 @@ def number(text: str) -> Any:
 
 def from_address(query: str, default: PageState | None = None) -> PageState:
     """State of the page from the query string of its address. Raises InputError for an unknown name or
-    choice.
+    choice. default: state whose values are used where the query has none.
     """
     state = default or PageState()
     given = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))

@@ -1,4 +1,4 @@
-"""State of the page for a result file or a config: its first rod, and the diagram of a result file."""
+"""State with which the page opens for a result file or a config, and the diagram stored in a result file."""
 
 import json
 from collections.abc import Mapping
@@ -19,12 +19,12 @@ from .stored_results import StoredResults
 RESULT_SUFFIXES = (".h5", ".hdf5", ".nc")
 """Suffixes of result files; a file with any other suffix is read as a config."""
 HIDDEN_QUANTITIES = ("density_difference", "fluid_density", "law", "section")
-"""Quantities of an arm that have no effect on the page, or whose control is outside the tab of the arm."""
+"""Keys of an arm that are ignored or have a control outside the tab of the arm."""
 
 
 def page_state_of_file(path: Path) -> tuple[PageState, StoredResults | None]:
-    """(state with which the page opens, stored answers) for a result file or a config; the answers of a
-    config are None.
+    """Returns (state, stored). state: state with which the page opens for a result file or a config. stored:
+    answers of a result file; None for a config.
 
     Raises InputError for any other file, and for an arm that the page cannot show.
     """
@@ -41,8 +41,8 @@ def page_state_of_file(path: Path) -> tuple[PageState, StoredResults | None]:
 def state_of(config: Config, path: Path) -> PageState:
     """State of the page for a config.
 
-    Every axis takes its middle value. The axis with most values, other than the load, is the second parameter
-    of the diagram.
+    Each parameter has the middle value of its axis. The parameter with the most values, except the load, is
+    the second parameter of the diagram. path: file of the config, for error messages.
     """
     if config.parameters.arm is not None:
         return _state_of_arm(config, path)
@@ -76,15 +76,15 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
 
 
 def _across(tab: str, axes: Mapping[str, np.ndarray]) -> str:
-    """Possible second parameter of a tab's diagram with most values in `axes`; "" without one. Values:
-    (values,) each.
+    """Of the possible second parameters of a tab's diagram, the parameter with the most values in `axes`; ""
+    if no parameter has several values. axes: values, (n,), by name.
     """
     several = [name for name in SECOND_PARAMETERS[tab] if name in axes and len(axes[name]) > 1]
     return max(several, key=lambda name: len(axes[name]), default="")
 
 
 def _law(config: Config, path: Path) -> str:
-    """Constitutive law of a config, as a key of `LAWS`."""
+    """Constitutive law of a config, as a key of `LAWS`. Raises InputError if the arm has a profile."""
     build = config.build
     if build.profile is not None:
         raise InputError(f"{path}: the page cannot show an arm with a profile, only uniform arms and cones")
@@ -97,8 +97,8 @@ def _text(values: np.ndarray) -> str:
 
 
 def stored_diagram(data: Dataset, state: PageState) -> dict[str, Any] | None:
-    """Diagram of a result file over the load and the second parameter of `state`; None if the
-    file has none.
+    """Diagram of a result file over the load and the second parameter of `state`; None if the file contains
+    no such diagram.
     """
     second = state.second
     dims = set(data["status"].dims)

@@ -1,4 +1,4 @@
-"""Answers read from a result file instead of solved: diagram, cycles and branches."""
+"""Answers to questions of the page from a result file, without solving: diagram, cycles and branches."""
 
 import json
 from collections.abc import Collection
@@ -23,21 +23,23 @@ from .state import PageState
 AnswerVariables = dict[str, Any]
 """Variables of an answer, by name."""
 CONTROL_DIGITS = (5, 6)
-"""Numbers of significant digits to which controls round values. A rounded value in a control matches the
-stored value."""
+"""Numbers of significant digits to which controls round values. A value in a control that equals the rounded
+stored value matches the stored value."""
 EQUALITY_TOLERANCE = 1e-12
-"""Relative difference up to which two values are equal; conversion of units causes rounding errors."""
+"""Values that differ by at most this relative difference are equal; conversion of units causes rounding
+errors."""
 POINT_DIMENSION = "number_of_point"
-"""Name of the dimension along which selected points of the file lie."""
+"""Name of the dimension of selected points of the file."""
 CLICK_TOLERANCE = 0.25
-"""Distance of a click from a stored load within which the click selects this load, as a fraction of the
-spacing of stored loads."""
+"""A click selects the nearest stored load if its distance from this load, divided by the smallest spacing of
+stored loads, is below this number."""
 
 
 class StoredResults:
     """Answers to questions of the page from a result file of rods or arms.
 
-    state: state with which the page opens. diagram: answer to the question "diagram" for this state, or None.
+    data: content of the file `path`. state: state with which the page opens. diagram: answer to the question
+    "diagram" for this state, or None.
     """
 
     def __init__(self, path: Path, data: Dataset, state: PageState, diagram: AnswerVariables | None):
@@ -46,13 +48,13 @@ class StoredResults:
         self.state = state
         self.diagram = diagram
         self.dims = data["status"].dims
-        """Dimensions of the points; none of a single point."""
+        """Names of the dimensions of the sweep; empty for a single point."""
         self.has_cycles = "tip_y_max" in data and data["tip_y_max"].dims == self.dims
-        """Whether each point has one cycle."""
+        """Whether the file has one limit cycle per point."""
 
     def answer(self, kind: str, state: PageState) -> AnswerVariables | None:
-        """Stored answer to a question of the kind `kind` for a state of the page; None if the
-        file has none.
+        """Stored answer to a question of the kind `kind` for the state `state` of the page; None if the file
+        has no such answer.
         """
         if state.tab != self.state.tab or state.law != self.state.law:
             return None
@@ -63,8 +65,8 @@ class StoredResults:
         return None
 
     def cycle_to_film(self, state: PageState) -> Dataset | None:
-        """Stored cycle of the rod of `state`, with axes of length 1; None if there is none, or too few shapes
-        for a film.
+        """Stored cycle of the rod of `state`, with axes of length 1; None if no such cycle is stored, or too
+        few shapes for a film.
         """
         numbers = self._points(state)
         is_other = state.tab != self.state.tab or state.law != self.state.law
@@ -76,8 +78,8 @@ class StoredResults:
         return point if is_filmed else None
 
     def load_near(self, state: PageState, at: float) -> float:
-        """Stored load nearest to `at` if a click there selects it, else `at`; both in the unit of the
-        control.
+        """Load that a click at `at` selects: the nearest stored load if it is close, see `CLICK_TOLERANCE`,
+        else `at`. Loads are in the unit of the control.
         """
         if state.tab != self.state.tab or not self.has_cycles:
             return at
@@ -89,8 +91,8 @@ class StoredResults:
         return nearest if abs(nearest - at) < CLICK_TOLERANCE * spacing else at
 
     def _values(self, tab: str, name: str) -> Array:
-        """Values of a parameter or of an arm's quantity at all points of the file, (points,), in the unit of
-        the control.
+        """Values of the parameter or quantity `name` at all points of the file, (points,), in the unit of the
+        control on the tab `tab`.
         """
         default = PARAMETERS[name].default if name in PARAMETERS else None
         missing = nan if default is None else default
@@ -100,8 +102,8 @@ class StoredResults:
         return values
 
     def _points(self, state: PageState, free: Collection[str] = ()) -> NDArray[np.integer]:
-        """Indices of the points of the file whose parameters equal those of `state`, except for the
-        parameters in `free`.
+        """Indices of the points of the file that have the parameters of `state`; the parameters in `free` may
+        have any value.
         """
         same = np.ones(self.data["status"].size, dtype=bool)
         for name, text in state.values.items():
@@ -112,7 +114,9 @@ class StoredResults:
         return np.flatnonzero(same)
 
     def _at(self, numbers: NDArray[np.integer]) -> Dataset:
-        """Points of the file with the given indices, along the dimension `POINT_DIMENSION`."""
+        """Data at the points with the indices `numbers`, with the dimension `POINT_DIMENSION` for the
+        points.
+        """
         if not self.dims:
             return self.data.expand_dims(POINT_DIMENSION)
         return self.data.stack({POINT_DIMENSION: self.dims}, create_index=False).isel(
@@ -141,7 +145,9 @@ class StoredResults:
         }  # fmt: skip
 
     def _cycles_over_force(self, state: PageState) -> AnswerVariables | None:
-        """Stored cycles of the rod of `state` at all forces; None if the file has fewer than two forces."""
+        """Stored cycles of the rod of `state` at all forces; None if the file has fewer than two such
+        points.
+        """
         numbers = self._points(state, (state.load,))
         if len(numbers) < 2:
             return None
@@ -155,7 +161,9 @@ class StoredResults:
         return {"pieces": [], "special": [], "cycles": cycles, **self._found()}
 
     def _branch(self, state: PageState) -> AnswerVariables | None:
-        """Stored branches of the rod of `state` along the force; None if the file has none."""
+        """Stored branches of the rod of `state` along the force; None if the file has no branches of this
+        rod.
+        """
         numbers = self._points(state, (state.load,))
         if len(numbers) == 0 or "branch_F" not in self.data:
             return None
@@ -171,8 +179,8 @@ class StoredResults:
 
 
 def _stands_for(value: float, stored: float) -> bool:
-    """Whether a control's value equals the stored value, possibly after rounding the stored value to
-    CONTROL_DIGITS.
+    """Whether `value`, from a control, equals the value `stored`, or `stored` rounded to one of the
+    CONTROL_DIGITS, up to EQUALITY_TOLERANCE.
     """
     rounded = [float(f"{stored:.{digits}g}") for digits in CONTROL_DIGITS]
     return any(

@@ -1,5 +1,5 @@
-"""Texts of the page that change with every answer. They are outside Bokeh's layout, because each change of a
-Bokeh `Div` causes a new layout of the whole page.
+"""Texts of the page that change with every answer. These texts are outside Bokeh's layout, because each
+change of a Bokeh `Div` causes a new layout of the whole page.
 """
 
 from collections.abc import Sequence

@@ -1,3 +1,3 @@
-"""Summaries, tables, figures and reports from result files. Only this package imports matplotlib. It contains
-no solver.
+"""Summaries, tables, figures and reports from result files. Only this package imports matplotlib. The package
+contains no solver.
 """

@@ -1,8 +1,8 @@
 """Branches of cycles in a result file of the task `branch`: curves, stability, and ranges of the parameter.
 
-A branch is a curve through cycles and special points, at which Floquet multipliers cross the unit circle. A
-cycle with a multiplier on the circle, within the error, therefore takes the stability of the other cycles
-between the same two special points, if all agree.
+A branch is a curve through cycles and special points. Floquet multipliers cross the unit circle only at
+special points. A cycle with a multiplier that lies on the circle within its error therefore has the stability
+of the other cycles between the same two special points, if these cycles have equal stability.
 """
 
 from collections.abc import Iterable, Iterator
@@ -22,16 +22,16 @@ from ..results.layouts.branch import END_REASONS, SPECIAL_KINDS
 HOPF, FOLD, END = (SPECIAL_KINDS.index(kind) for kind in ("hopf", "fold", "end"))
 """Codes of the kinds of special points in a result file."""
 STOP_REASONS = ("no_cycle_found", "list_full")
-"""Reasons why following a branch stopped before the branch ended."""
+"""Reasons for which the continuation of a branch stopped before the end of the branch."""
 RANGE_GAP_TOLERANCE = 1e-9
-"""Largest relative gap between two ranges that are joined to one."""
+"""Two ranges are joined if the relative gap between the ranges is at most this number."""
 Range = tuple[float, float]
 """(smallest, largest) value of the followed parameter."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoredSpecialPoint:
-    """Special point of a branch of cycles: its variables in a result file, without the prefix `special_`."""
+    """Special point of a branch of cycles. The fields are the variables `special_...` of the result file."""
 
     kind: str
     at: float
@@ -59,7 +59,7 @@ class StoredBranch:
     stable: NDArray[np.integer]
     """Stability between neighbouring vertices, (n - 1,): 1 stable, 0 unstable, -1 unknown."""
     cycles: NDArray[np.bool_]
-    """Whether a vertex is a stored cycle, (n,)."""
+    """Mask of the vertices that are stored cycles, (n,)."""
     special: tuple[StoredSpecialPoint, ...]
 
     @property
@@ -70,19 +70,19 @@ class StoredBranch:
 
     @property
     def errors(self) -> dict[float, float]:
-        """Absolute error of each special point, by its parameter value."""
+        """Absolute error of the parameter at each special point, by parameter value."""
         return {float(special.at): special.error for special in self.special}
 
     @property
     def is_decided(self) -> bool:
-        """Whether the branch was followed to its end and the stability of all its cycles is known."""
+        """Whether the branch was followed to its end and the stability of all cycles is known."""
         return self.special[-1].reason not in STOP_REASONS and bool((self.stable >= 0).all())
 
     def near_hopf_points(self) -> list[tuple[Array, Array, NDArray[np.integer]]]:
         """For each Hopf point at an end: (|at/at_H - 1|, y/|a|, stability) up to the first fold.
 
-        at_H, a: parameter and amplitude coefficient of the Hopf point, which itself is left out, as are Hopf
-        points without a. Shapes (n,), (n,) and (n - 1,), n > 1.
+        at_H, a: parameter and amplitude coefficient of the Hopf point. Hopf points with unknown or zero a are
+        skipped, and the vertex of the Hopf point is left out. Shapes (n,), (n,) and (n - 1,), n > 1.
         """
         found = []
         for special, order in ((self.special[0], slice(None)), (self.special[-1], slice(None, None, -1))):
@@ -110,10 +110,10 @@ def ends_of(view: View) -> Range:
 
 
 class RodBranches:
-    """Branches of cycles of one rod, and ranges of the parameter in which its states are stable.
+    """Branches of cycles of one rod, and ranges of the parameter in which states of the rod are stable.
 
     rod: index among the points of the file. curves: branches whose special points are all stored. hidden:
-    number of all other branches.
+    number of the remaining branches.
     """
 
     def __init__(self, view: View, rod: int = 0):
@@ -122,7 +122,7 @@ class RodBranches:
         self._v = view.of_point(rod)
         count = max(int(self._v["branch_count"]), 0)
         listed = self._v["special_branch"][self._v["special_kind"] > 0]
-        # Of a full list the last branch and the branches behind it may lack special points.
+        # If the list is full, special points of the last listed branch and of later branches may be missing.
         complete = count if len(listed) >= self._v["special_count"] else int(listed.max(initial=1)) - 1
         self.hidden = count - complete
         along = followed_parameter(view)
@@ -130,7 +130,7 @@ class RodBranches:
 
     @property
     def errors(self) -> dict[float, float]:
-        """Absolute error of each special point of all branches, by its parameter value."""
+        """Absolute error of the parameter at each special point of all branches, by parameter value."""
         return {at: error for curve in self.curves for at, error in curve.errors.items()}
 
     @property
@@ -157,7 +157,7 @@ class RodBranches:
         return straight and all(curve.is_decided for curve in self.curves)
 
     def straight_ranges(self, ends: Range) -> tuple[list[Range], list[Range]]:
-        """(ranges in which the straight rod is stable, ranges in which it is unstable) within `ends`.
+        """Returns (stable, unstable): ranges within `ends` in which the straight rod is stable, or unstable.
 
         Both lists are empty if special points of some branch are not stored.
         """
@@ -166,7 +166,7 @@ class RodBranches:
         return stable, unstable
 
     def straight_pieces(self, ends: Range) -> list[tuple[float, float, int]]:
-        """(from, to, stability) of the straight rod between Hopf points: 1 stable, 0 unstable, -1 unknown."""
+        """(low, high, stability) between Hopf points within `ends`: 1 stable, 0 unstable, -1 unknown."""
         v = self._v
         hopf = v["special_kind"] == HOPF
         at, first = np.unique(v["special_at"][hopf], return_index=True)
@@ -180,13 +180,13 @@ class RodBranches:
 
 
 def runs_of(stable: NDArray[np.integer]) -> Iterator[tuple[slice, int]]:
-    """Yields (vertices, stability) of each run of equal values in `stable`, (n - 1,), between vertices."""
+    """Yields (vertices, stability) of each run of equal values in `stable`, (n - 1,). vertices: a slice."""
     starts = [0, *(np.flatnonzero(np.diff(stable)) + 1), len(stable)]
     yield from ((slice(a, b + 1), int(stable[a])) for a, b in pairwise(starts) if b > a)
 
 
 def _stored_branch(v: dict[str, Array], along: str, number: int) -> StoredBranch:
-    """Branch number `number`, from 1, of a rod. v: variables of the rod. along: followed parameter."""
+    """Branch with the given number, from 1. v: variables of the rod. along: followed parameter."""
     cycles = np.flatnonzero(v["branch"] == number)
     special = np.flatnonzero(v["special_branch"] == number)
     before = special[v["special_point"][special] == 0]

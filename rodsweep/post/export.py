@@ -15,15 +15,16 @@ from .whole_file import written_whole
 SEPARATORS = {".csv": ",", ".tsv": "\t"}
 """Character between two columns, by the suffix of the output file."""
 EXPORT_BATCH_ROWS = 4096
-"""Number of rows converted to text at a time, which bounds the memory."""
+"""Number of rows that are converted to text at a time, to limit the memory."""
 
 
 @dataclass(frozen=True, slots=True)
 class ExportRequest:
     """Options for the export of a table.
 
-    table: name; by default the table that has the columns, or the first table of the task. columns: names; by
-    default all. units: whether headings contain units. replace: whether to overwrite an existing file.
+    table: name; by default the table that has `columns`, or the default table of the task. columns: names; by
+    default all columns. units: whether headings contain units. replace: whether to overwrite an existing
+    file.
     """
 
     table: str | None = None
@@ -33,8 +34,9 @@ class ExportRequest:
 
 
 def export(view: View, output: Path, request: ExportRequest) -> str:
-    """Writes one table of a result to a file and returns a sentence about it. Raises InputError for an
-    unknown table or column, and for a bad output name.
+    """Writes one table of a result to the file `output`, and returns a sentence about the table. Raises
+    InputError for an unknown table or column, for an invalid file name, and if the file exists and may not be
+    replaced.
     """
     if output.is_dir() or output.suffix not in SEPARATORS:
         endings = "; ".join((".csv separates columns by commas", ".tsv by tabs"))
@@ -48,7 +50,9 @@ def export(view: View, output: Path, request: ExportRequest) -> str:
 
 
 def _write(table: Table, separator: str, units: bool, stream: TextIO) -> None:
-    """Writes a table to `stream`, EXPORT_BATCH_ROWS rows at a time."""
+    """Writes a table to `stream` as CSV. separator: character between columns. units: whether headings
+    contain units.
+    """
     lines = csv.writer(stream, delimiter=separator, lineterminator="\n")
     lines.writerow(f"{c.name} [{c.unit}]" if units and c.unit != "1" else c.name for c in table.columns)
     for start in range(0, table.rows, EXPORT_BATCH_ROWS):
@@ -57,10 +61,12 @@ def _write(table: Table, separator: str, units: bool, stream: TextIO) -> None:
 
 
 def _sentence(table: Table, view: View) -> str:
-    """Sentence on the written table: its size, points without a row, and the names of the other tables."""
+    """Sentence on the written table: numbers of rows and columns, number of points without a row, and names
+    of the other tables.
+    """
     text = f"{counted(table.rows, 'row')} of {table.name} in {counted(len(table.columns), 'column')}"
     if table.empty_points:
-        text += f"; {table.empty_points} of {counted(view.variables['status'].size, 'point')} without any"
+        text += f"; {table.empty_points} of {counted(view.variables['status'].size, 'point')} without a row"
     if table.others:
         text += f"; --table takes {words(table.others, 'or')} instead"
     return text

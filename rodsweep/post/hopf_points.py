@@ -1,7 +1,7 @@
 """Changes of stability of the straight rod along a line of points of a result file, located or bracketed.
 
-The task has located the changes and stored them. Nothing is solved or interpolated here. A change that no
-solver has located is known only to lie between two points of the file.
+Located changes are read from the file; this module does not solve or interpolate. A change that the task did
+not locate is bracketed by two points of the file.
 """
 
 from collections.abc import Mapping
@@ -18,19 +18,19 @@ from ..results.layouts.thresholds import CROSSING_KINDS
 from ..sweep.points.points import ParameterLine
 
 HOPF_POINT_TOLERANCE = 1e-9
-"""Relative distance of a point of the file from a Hopf point below which the growth rate at the point is
+"""At points of the file that are closer to a Hopf point than this relative distance, the growth rate is
 rounding error."""
 STABILITY_CHANGES = {("hopf", 2), ("restabilization", 0)}
-"""(kind, number of unstable modes beyond) of Hopf points at which the stability of the straight rod changes.
-At all other Hopf points the rod stays unstable."""
+"""(kind, number of unstable modes above) of the Hopf points at which the stability of the straight rod
+changes. At all other Hopf points the rod is unstable on both sides."""
 
 
 @dataclass(frozen=True, slots=True)
 class LocatedChange:
-    """Change of the straight rod at a parameter value `position`, with an absolute error estimate.
+    """Change of the straight rod at the parameter value `position`. error: absolute error estimate.
 
-    kind: `hopf` if a pair of eigenvalues crosses the imaginary axis and the rod is unstable above;
-    `restabilization` if the rod is stable above; `onset` if two real eigenvalues merge into a pair and the
+    kind: `hopf` if a pair of eigenvalues crosses the imaginary axis and the rod is unstable above `position`;
+    `restabilization` if the rod is stable above; `onset` if two real eigenvalues merge into a pair while the
     rod stays stable.
     """
 
@@ -43,29 +43,29 @@ class LocatedChange:
 
     @property
     def is_hopf(self) -> bool:
-        """Whether the stability of the straight rod changes."""
+        """Whether the change is a change of stability of the straight rod, not an onset of oscillation."""
         return self.kind != "onset"
 
     def agrees(self, other: "LocatedChange") -> bool:
-        """Whether two located changes may be the same: equal kind, and equal position within the errors."""
+        """Whether two located changes have equal kinds, and positions that are equal within the errors."""
         return self.kind == other.kind and abs(self.position - other.position) <= self.error + other.error
 
 
 @dataclass(frozen=True, slots=True)
 class BracketedChange:
-    """Interval between two neighbouring points of a file, in which the stability of the straight
-    rod changes.
+    """Interval between two neighbouring points of a file in which the stability of the straight rod changes.
+    low, high: parameter values of the two points.
     """
 
     low: float
     high: float
     kind: str
-    """`hopf` if the rod is unstable above the interval, `restabilization` if it is stable."""
+    """`hopf` if the rod is unstable above the interval, `restabilization` if the rod is stable above."""
 
 
 def sort_position(change: LocatedChange | BracketedChange) -> float:
-    """Parameter value by which changes are sorted: the position, or the lower end of the
-    bracketing interval.
+    """Parameter value by which changes are sorted: the position, or the lower end of a bracketing
+    interval.
     """
     return change.position if isinstance(change, LocatedChange) else change.low
 
@@ -91,8 +91,8 @@ class StoredChanges:
             self._read(v, name, "change", np.ones(len(v["change_kind"]), bool))
 
     def _read(self, v: Mapping[str, np.ndarray], name: str, prefix: str, along: NDArray[np.bool_]) -> None:
-        """Reads the changes selected by the mask `along` from the variables whose names start
-        with `prefix`.
+        """Reads the changes selected by the mask `along` from the variables whose names start with `prefix`.
+        name: parameter along which the changes are located.
         """
         rods = np.stack([v[f"{prefix}_{other}"] for other in self.others], axis=-1)
         fields = (name, "error", "frequency", "kind")
@@ -110,11 +110,13 @@ class StoredChanges:
             self.by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
 
     def up_to(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
-        """Changes on a line and at smaller values of the parameter, as far down as the search reached."""
+        """Changes on a line of points, and at parameter values below the line down to the start of the
+        search.
+        """
         return sorted({*self.on(line), *self._stored(line, -inf)}, key=sort_position)
 
     def _stored(self, line: ParameterLine, low: float) -> list[LocatedChange]:
-        """Located changes between the parameter value `low` and the last point of a line."""
+        """Located changes between the parameter value `low` and the largest parameter value of a line."""
         rod = tuple(line.parameters[other] for other in self.others)
         high = line.x.max(initial=-inf)
         return [point for point in self.by_rod.get(rod, []) if _within(point, low, high)]
@@ -122,8 +124,8 @@ class StoredChanges:
     def on(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
         """Changes on a line, in increasing order of the parameter.
 
-        If the growth rates at two neighbouring points differ in sign and no located change lies between,
-        because the search failed, the two points bracket a change.
+        Two neighbouring points bracket a change if their growth rates differ in sign and the number of
+        located changes of stability between them is even, because a search failed.
         """
         if not len(line.x):
             return []
@@ -143,6 +145,6 @@ class StoredChanges:
 
 
 def _within(point: LocatedChange, low: float, high: float) -> bool:
-    """Whether a located change lies between `low` and `high`, up to rounding error."""
+    """Whether a located change lies between `low` and `high`, within its error or rounding error."""
     margin = max(point.error, HOPF_POINT_TOLERANCE * abs(point.position))
     return bool(low - margin <= point.position <= high + margin)

@@ -12,8 +12,8 @@ from ..wording import counted, duration, plural
 
 
 def time_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
-    """Lines about the computing time of the points in the mask `done`, of any shape; empty if no point is
-    computed.
+    """Lines about the computing time of the points in the mask `done`, of any shape; an empty list if no
+    point is computed. noun: noun for a point.
     """
     if not done.any():
         return []
@@ -36,8 +36,8 @@ def origin_lines(a: dict[str, Any]) -> list[str]:
 
 
 def _when(a: dict[str, Any]) -> str:
-    """Dates between which a file was computed. For the file of one shard, also whether the whole run is
-    complete.
+    """Clause with the dates of start and end of the computation. The file of a shard has no end; the clause
+    then says whether all points of the shard are computed.
     """
     if "started" not in a:
         return "not finished yet"
@@ -48,8 +48,8 @@ def _when(a: dict[str, Any]) -> str:
 
 
 def rank_lines(a: dict[str, Any], noun: str) -> list[str]:
-    """Lines about the MPI ranks of the last run: time spent solving, and number of points. noun: name of a
-    point.
+    """Lines about the MPI ranks of the last run: fraction of the time spent solving, and number of points. a:
+    attributes of the result file. noun: noun for a point.
     """
     if RANK_SHARES[0] not in a:
         return []

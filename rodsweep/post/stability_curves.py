@@ -1,5 +1,5 @@
-"""Curves of Hopf points that bound the region of stable straight rods, and curves of Hopf points of further
-modes.
+"""Distinction between curves of Hopf points that bound the region of stable straight rods, and curves of Hopf
+points of further modes.
 """
 
 import numpy as np
@@ -11,10 +11,10 @@ from .hopf_points import STABILITY_CHANGES
 
 
 def bounds_stability(view: View, line: str, row: str) -> dict[int, bool]:
-    """Whether each curve of Hopf points bounds the region of stable rods, by number of the curve.
+    """For each curve of Hopf points, by number: whether the curve bounds the region of stable rods.
 
-    A curve bounds the region if a change of stability on some row lies on it. A change lies on the curve
-    nearest along its row.
+    A curve bounds the region if it is, for some change of stability on a row, the nearest curve along the
+    row. line: parameter along a row. row: parameter constant on a row.
     """
     v = view.variables
     numbers = np.unique(v["curve_number"][v["curve_kind"] == 1]).astype(int).tolist()
@@ -33,8 +33,8 @@ def bounds_stability(view: View, line: str, row: str) -> dict[int, bool]:
 
 
 def _distance(x: Array, y: Array, at: float, height: float) -> float:
-    """Distance along the row at height `height` between the position `at` and a curve with vertices x, y,
-    (n,).
+    """Distance, along the row y = `height`, between x = `at` and a curve; inf if the curve does not cross the
+    row. x, y: vertices of the curve, (n,).
     """
     low = np.minimum(y[:-1], y[1:])
     high = np.maximum(y[:-1], y[1:])

@@ -10,26 +10,25 @@ from ..errors import InputError
 
 
 def require_name(output: Path, endings: Sequence[str], noun: str, inputs: Sequence[Path] = ()) -> None:
-    """Raises InputError unless a file can be written under the name `output`.
-
-    endings: allowed suffixes. noun: kind of file, for the message. inputs: files that must not be
-    overwritten.
+    """Raises InputError if `output` has a suffix not in `endings`, if its directory does not exist, or if
+    `output` is a directory or one of the files `inputs`. noun: noun for the file, for the message.
     """
     if output.suffix not in endings:
         raise InputError(f"--output {output}: the name must end in {', '.join(endings)}")
     if not output.parent.is_dir():
         raise InputError(f"--output {output}: there is no directory {output.parent}")
     if output.exists() and not output.is_file():
-        raise InputError(f"--output {output} is not a name for a {noun}; choose another")
+        raise InputError(f"--output {output} is not a regular file; choose another name for the {noun}")
     if output.exists() and any(output.samefile(path) for path in inputs if path.exists()):
-        raise InputError(f"--output {output} is a file to report and would be overwritten; choose another")
+        raise InputError(f"--output {output} is an input file and would be overwritten; choose another name")
 
 
 @contextmanager
 def written_whole(output: Path) -> Iterator[TextIO]:
-    """Context manager that opens a text file under a temporary name and, at the end, renames it to `output`.
+    """Context manager that opens a text file with a temporary name and, at the end, renames the file to
+    `output`.
 
-    A killed process therefore leaves no incomplete file named `output`.
+    A killed process therefore leaves no incomplete file with the name `output`.
     """
     partial = output.with_name(f".{output.name}.partial")
     try:

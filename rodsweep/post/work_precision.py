@@ -15,13 +15,13 @@ from ..results.file.measurements import Table
 from .figures.style import BLUE, FIGURE_STYLE, GREEN, VERMILION
 
 GROUP_COLOURS = (BLUE, VERMILION, GREEN, "black", "0.55")
-"""Colours of the groups of methods, in order of appearance. The first group has thicker lines."""
+"""Colours of the groups of methods, in order of appearance."""
 METHOD_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 """Markers that distinguish the methods within one group."""
 WIDE_TIME_RATIO = 1e3
-"""Ratio of the longest to the shortest time above which only powers of ten have tick labels."""
+"""If the longest time exceeds this multiple of the shortest time, only powers of ten have tick labels."""
 MIN_DRAWN_ERROR = 1e-17
-"""Relative error at which smaller errors are drawn; an error of zero has no logarithm."""
+"""Smaller relative errors are drawn at this value, because zero has no logarithm."""
 PANEL_SIZE = 3.6
 """Width and height of a panel, in inches."""
 PANEL_TITLE_WIDTH = 36
@@ -30,9 +30,10 @@ PANEL_TITLE_WIDTH = 36
 
 def draw_work_precision(measured: Table, xlabel: str, target: float | None, output: Path) -> None:
     """Writes a figure with a panel for each case, a curve for each method, and a horizontal line at the error
-    `target`.
+    `target` to the file `output`.
 
-    measured: columns case, method, group, seconds and error. Rows without a finite error are left out.
+    measured: table with columns case, method, group, seconds and error. Rows without a finite error are left
+    out. xlabel: label of the time axis. Raises EnvironmentIncomplete if the file cannot be written.
     """
     columns = {name: np.array(measured[name]) for name in ("case", "method", "group", "seconds", "error")}
     cases, methods, groups, seconds, errors = (
@@ -70,8 +71,8 @@ def draw_work_precision(measured: Table, xlabel: str, target: float | None, outp
 
 
 def _looks(groups: dict[str, str]) -> dict[str, dict]:
-    """Arguments of matplotlib for the curve of each method: colour by group, marker within the group. groups:
-    group by method.
+    """Keywords of matplotlib for the curve of each method: a colour for each group, a marker for each method
+    of a group. groups: group of each method.
     """
     order = list(dict.fromkeys(groups.values()))
     looks = {}

@@ -1,3 +1,3 @@
-"""Verdict on an arm, in sentences: whether it flutters, at which load, and whether the model applies. All
-thresholds are solved for a range of drag coefficients.
+"""Verdict on an arm, in sentences: whether the arm flutters, at which load, and whether the model applies.
+All thresholds are solved for a range of drag coefficients.
 """

@@ -15,20 +15,19 @@ from .table import NumberRow, number_rows
 from .validity import Assessment
 
 BRACKETS_NOTE = "In brackets: the range over drag, which is known only up to a factor."
-"""Sentence below the table of numbers. It explains the brackets: no drag coefficient is known exactly."""
+"""Sentence below the table of numbers, which explains the values in brackets."""
 VALUE_COLUMN = 18
-"""Column, in characters, at which the values of the table start; the names of the numbers stand
-left of it."""
+"""Width of the table's first column (names of the numbers), in characters."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmReport:
-    """Report on an arm. `lines` and `str` give text for a terminal; a notebook shows HTML."""
+    """Report on an arm: text for a terminal by `lines` and `str`, HTML in a notebook."""
 
     validity: Validity
     """Whether the model applies to the arm, at the flutter threshold and under the load."""
     warnings: tuple[Check, ...]
-    """Checks that make the verdict doubtful; the report shows them above the verdict."""
+    """Checks that make the verdict doubtful; the report shows these checks above the verdict."""
     verdict: tuple[str, ...]
     """Sentences of the verdict; the first is the headline."""
     rows: tuple[NumberRow, ...]
@@ -70,8 +69,8 @@ class ArmReport:
 
 
 def arm_report(arm: SlenderArm) -> ArmReport:
-    """Report on an arm; solves for the thresholds. Raises InputError if the load is given relative to the
-    flutter load and the arm does not flutter.
+    """Solves for the thresholds of an arm and returns the report. Raises InputError if the load is given
+    relative to the flutter load and the arm does not flutter.
     """
     planes = with_load(planes_of(arm))
     first = planes.first

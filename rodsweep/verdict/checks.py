@@ -1,4 +1,4 @@
-"""Checks of the effects that the model neglects, for one arm. Each check is a sentence, or a warning."""
+"""Checks of the effects that the model neglects, for one arm: one sentence or warning per check."""
 
 from dataclasses import dataclass
 from math import isnan
@@ -19,9 +19,10 @@ velocity caused by inertia."""
 SAG_AT_SELF_BUCKLING = SELF_BUCKLING / 8
 """Sag over length, w L^3/(8 E I), of a horizontal arm whose weight w L just buckles an upright arm."""
 MAX_STATED_SAG = 0.25
-"""Largest sag over length for which a check states the number. Beyond, the linear formula is inaccurate."""
+"""A check states the ratio of sag to length only below this ratio. At a larger sag the linear formula is
+inaccurate."""
 USUAL_POISSON = (0.3, 0.5)
-"""Range of Poisson's ratio of rubbers and gels; a check warns of a ratio outside."""
+"""Range of Poisson's ratio of rubbers and gels; a check warns of a Poisson's ratio outside this range."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,13 +35,13 @@ class Check:
     validity: Validity
     sentence: str
     of_verdict: bool = False
-    """Whether the effect can change the verdict. False for effects on beating of large amplitude, or on the
-    range of drag."""
+    """Whether the effect can change the verdict. False for effects only on beating of large amplitude, or
+    only on the width of the range of drag."""
 
     @property
     def doubts_the_verdict(self) -> bool:
-        """Whether the check makes the verdict doubtful. False beyond the model's limit, which the verdict
-        itself states.
+        """Whether the check makes the verdict doubtful. False for an effect beyond the limit of the model,
+        because the verdict itself then says that the model does not apply.
         """
         return self.of_verdict and self.validity == Validity.doubtful
 
@@ -51,7 +52,7 @@ class Check:
 
     @property
     def text(self) -> str:
-        """The sentence, with the prefix "warning: " unless the effect is small enough to neglect."""
+        """The sentence of the check, with the prefix "warning: " if the effect cannot be neglected."""
         return self.sentence if self.is_negligible else f"warning: {self.sentence}"
 
 
@@ -77,7 +78,7 @@ def slenderness(arm: SlenderArm) -> Check:
     why = (
         "slender enough for local drag"
         if fine
-        else f"below {MIN_SLENDERNESS:g} local drag is rough, and the range of drag wide"
+        else f"below {MIN_SLENDERNESS:g} local drag is inaccurate, and the range of drag is wide"
     )
     return Check(_doubt(not fine), f"Slenderness: the arm is {ratio:.3g} radii long; {why}.")
 
@@ -94,7 +95,7 @@ def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
         verb = "shortens" if assessment.arm.F >= 0 else "lengthens"
         says.append(f"the load {verb} the arm by {_percent(assessment.under_load[0])}")
     if not isnan(at_flutter.value):
-        says.append(f"{'that of flutter' if says else 'flutter shortens the arm'} by {_percent(at_flutter)}")
+        says.append(f"the flutter load shortens {'it' if says else 'the arm'} by {_percent(at_flutter)}")
     validity = max(map(_validity, effects))
     largest = max(float(effect.value) for effect in effects if not isnan(effect.value)) if says else 0.0
     ending = (
@@ -108,8 +109,8 @@ def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
 
 
 def _compression_of_rubber(assessment: "Assessment") -> Check:
-    """Statement of the compressive strain of an arm of rubber. It always passes, because the law of rubber
-    includes the strain.
+    """Check of the compressive strain of a rubber arm. The check always passes, because the law of rubber is
+    valid for large strains.
     """
     arm = assessment.arm
     says = []
@@ -117,7 +118,7 @@ def _compression_of_rubber(assessment: "Assessment") -> Check:
     if arm.load is not None:
         says.append(f"the load shortens the arm by {100 * _shortening(arm, arm.F):.2g} %")
     if flutter is not None:
-        shortens = "that of flutter" if says else "flutter shortens the arm"
+        shortens = "the flutter load shortens it" if says else "the flutter load shortens the arm"
         says.append(f"{shortens} by {100 * _shortening(arm, flutter):.2g} %")
     shares = " and ".join(says) or "there is no load"
     where = " at the weakest section" if arm.shape.varies else ""
@@ -125,7 +126,7 @@ def _compression_of_rubber(assessment: "Assessment") -> Check:
 
 
 def _shortening(arm: SlenderArm, F: float) -> float:
-    """Compressive strain of the arm's weakest section under the force F, in k3/L^2."""
+    """Compressive strain of the arm's weakest section under the force F. F: in k3/L^2."""
     smallest = min(each.young * each.section.area for each in arm.shape.stations)
     largest = arm.shape.base.young * arm.cross_section.area
     return float(arm.build.constitutive_law.shortening(F / (arm.k1 * smallest / largest)))
@@ -139,8 +140,8 @@ def stiffening(strain: float) -> float:
 
 
 def inertia(of_arm: Effect, of_fluid: Effect) -> list[Check]:
-    """Check of the inertia of the arm and of the fluid, at the flutter threshold; an empty list without
-    flutter.
+    """Check of the inertia of the arm and of the fluid at the flutter threshold; an empty list if the arm
+    does not flutter.
     """
     if isnan(of_arm.value):
         return []
@@ -149,7 +150,7 @@ def inertia(of_arm: Effect, of_fluid: Effect) -> list[Check]:
     ending = (
         "neither matters",
         f"they lower the threshold of flutter by some {lowered:.1g} %",
-        f"the model leaves both out, and allows {of_arm.limit:g}",
+        f"the model neglects both and applies only up to {of_arm.limit:g}",
     )[validity]
     sentence = (
         f"Inertia: at flutter mass times rate over drag is {float(of_arm.value):.2g} for the arm and "
@@ -160,45 +161,45 @@ def inertia(of_arm: Effect, of_fluid: Effect) -> list[Check]:
 
 def reynolds(number: Effect) -> list[Check]:
     """Check of the Reynolds number of beating with amplitude L/2 at the frequency of flutter; an empty list
-    without flutter.
+    if the arm does not flutter. number: the effect "Reynolds number".
     """
     if isnan(number.value):
         return []
     validity = _validity(number)
     ending = (
-        "the drag stays that of slow flow",
-        "wide beating meets somewhat more drag than the model's",
-        "wide beating meets more drag than the model's, and is slower",
+        "the drag equals the drag in slow flow",
+        "at wide beating the drag is somewhat larger than in the model",
+        "at wide beating the drag is larger than in the model, and the beating slower",
     )[validity]
     value = f"{float(number.value):.2g}"
     return [Check(validity, f"Reynolds number: {value} if the tip moves by half the length; {ending}.")]
 
 
 def wall(effect: Effect | None) -> list[Check]:
-    """Check of the flattening of a tube's section in beating of large amplitude; an empty list for other
-    sections.
+    """Check of the flattening of a tube's section in beating of large amplitude; an empty list if the section
+    is not a tube (`effect` is None).
     """
     return [] if effect is None else [wall_check(effect)]
 
 
 def wall_check(effect: Effect) -> Check:
-    """Check of a tube's wall. effect: relative loss of bending stiffness by flattening, for a tip that moves
-    by L/2.
+    """Check of a tube's wall. effect: relative loss of bending stiffness by flattening of the section, if the
+    tip moves by L/2.
     """
     lost = float(effect.value)
     loses = f"takes some {100 * lost:.2g} % of its bending stiffness" if lost < 1 else "folds the tube"
     validity = _validity(effect)
     ending = (
-        "left out with reason",
-        "the model leaves that out",
-        "the wall is too thin for the model, which leaves that out",
+        "negligible",
+        "the model neglects this",
+        "the wall is too thin for the model, which neglects this",
     )[validity]
     sentence = f"Wall: as the tip moves by half the length, the section flattens, which {loses}; {ending}."
     return Check(validity, sentence)
 
 
 def weight(effect: Effect | None, arm: SlenderArm) -> Check:
-    """Check of weight minus buoyancy against bending stiffness; `effect` is None if the density difference is
+    """Check of weight minus buoyancy against bending stiffness. effect: None if the density difference is
     unknown.
     """
     if effect is None:
@@ -211,11 +212,11 @@ def weight(effect: Effect | None, arm: SlenderArm) -> Check:
         f"a level arm sags by {sag:.2g} of its length" if sag < MAX_STATED_SAG else "a level arm hangs down"
     )
     ending = (
-        "left out with reason",
-        "it bends the arm a little, which the model leaves out",
-        "it bends the arm, which the model leaves out",
+        "negligible",
+        "weight bends the arm a little, which the model neglects",
+        "weight bends the arm, which the model neglects",
     )[validity]
-    upright = f"weight less buoyancy is {share:.2g} of what buckles an upright arm"
+    upright = f"weight less buoyancy is {share:.2g} of the weight that buckles an upright arm"
     sags = "" if arm.shape.varies else f"; {level}"  # the formula of the sag is valid for uniform arms
     return Check(validity, f"Weight: {upright}{sags}; {ending}.", of_verdict=True)
 

@@ -1,5 +1,5 @@
-"""Thresholds of an arm for each drag of its range: flutter, its frequency, restabilization.
-Forces in k3/L^2.
+"""Thresholds of an arm for each drag of its range: flutter, frequency at flutter, restabilization.
+Forces are in k3/L^2.
 """
 
 from dataclasses import dataclass, replace
@@ -15,8 +15,8 @@ from .relative import SEARCH_END, SEARCH_ENDS_OF_VARIED, rod_with
 SEARCH_REQUEST = ThresholdsRequest(F_max=SEARCH_END, accuracy=1e-6, certify=True, crossings=1000)
 """Request for all thresholds of an arm, with relative accuracy 1e-6 and a proof that none is missing."""
 MIN_SEARCH_RATIO = 2.0
-"""Least ratio of the end of the search to the first flutter force and to the load, for an arm that is not
-uniform or not of linear material."""
+"""For an arm that is not uniform or not of linear material, the search is extended until its largest force is
+at least this number times the first flutter force and this number times the load."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,28 +28,34 @@ class FlutterForces:
     thresholds: Thresholds
 
     def first(self, kind: ChangeKind) -> Crossing | None:
-        """The change of stability of the given kind at the smallest force; None without one."""
+        """The change of stability of the given kind at the smallest force; None if no change has this
+        kind.
+        """
         return next((c for c in self.thresholds.crossings if c.kind == kind), None)
 
     def frequency(self, kind: ChangeKind) -> float | None:
-        """Frequency, in Hz, at the first change of stability of the given kind; None without one."""
+        """Frequency, in Hz, at the first change of stability of the given kind; None if no change has this
+        kind.
+        """
         found = self.first(kind)
         return None if found is None else abs(found.frequency) / (2 * pi * self.tau2)
 
     def force(self, kind: ChangeKind) -> float | None:
-        """Force, in k3/L^2, at the first change of stability of the given kind; None without one."""
+        """Force, in k3/L^2, at the first change of stability of the given kind; None if no change has this
+        kind.
+        """
         found = self.first(kind)
         return None if found is None else found.at
 
     def unstable_at(self, F: float) -> bool:
-        """Whether the straight arm is unstable at the force F. Beyond the end of the search, the end counts
-        instead of F.
+        """Whether the straight arm is unstable at the force F. For an F beyond the end of the search, the
+        stability at this end is returned.
         """
         before = [c.unstable_after for c in self.thresholds.crossings if c.at <= F]
         return bool(before) and before[-1] != 0
 
     def up_to(self, end: float) -> "FlutterForces":
-        """A copy without the changes of stability at forces beyond `end`."""
+        """A copy without the changes of stability at forces larger than `end`."""
         found = self.thresholds
         crossings = tuple(c for c in found.crossings if c.at <= end)
         cut = replace(found, transitions=replace(found.transitions, crossings=crossings), end=end)
@@ -76,8 +82,8 @@ class FlutterRange:
 
     @property
     def failures(self) -> list[str]:
-        """Distinct error messages of failed searches. A search that stopped before the requested force has
-        not failed.
+        """Distinct error messages of failed searches. A search that stopped before the requested force did
+        not fail.
         """
         searches = [f.thresholds for f in self.forces]
         usable = (ThresholdStatus.ok, ThresholdStatus.ended_early)
@@ -89,19 +95,19 @@ class FlutterRange:
         return self.forces[0].thresholds.end
 
     def force(self, kind: ChangeKind) -> Span | None:
-        """Range, over the drags, of the force at the first change of stability of a kind, in k3/L^2; None
-        without one.
+        """Range, over the drags, of the force at the first change of stability of the given kind, in k3/L^2;
+        None if no drag has such a change.
         """
         return span_of([f.force(kind) for f in self.forces])
 
     def frequency(self, kind: ChangeKind) -> Span | None:
-        """Range, over the drags, of the frequency at the first change of stability of a kind, in Hz; None
-        without one.
+        """Range, over the drags, of the frequency at the first change of stability of the given kind, in Hz;
+        None if no drag has such a change.
         """
         return span_of([f.frequency(kind) for f in self.forces])
 
     def unstable_at(self, F: float) -> list[bool]:
-        """Whether the straight arm is unstable at the force F, for each drag."""
+        """For each drag: whether the straight arm is unstable at the force F."""
         return [f.unstable_at(F) for f in self.forces]
 
 
@@ -112,7 +118,7 @@ def span_of(values: list[float | None]) -> Span | None:
 
 
 def flutter_forces(arm: SlenderArm, drag: Drag, end: float = SEARCH_END) -> FlutterForces:
-    """All changes of stability of the straight arm with one drag, at forces from 0 to `end`."""
+    """All changes of stability of the straight arm with the given drag, at forces from 0 to `end`."""
     thresholds = solve_thresholds(rod_with(arm, drag), replace(SEARCH_REQUEST, F_max=end))
     return FlutterForces(tau2=arm.tau2_with(drag), thresholds=thresholds)
 
@@ -121,8 +127,8 @@ def flutter_forces(arm: SlenderArm, drag: Drag, end: float = SEARCH_END) -> Flut
 def flutter_range(arm: SlenderArm) -> FlutterRange:
     """All changes of stability of the straight arm for each drag, up to a force common to all drags.
 
-    The search with the most likely drag sets this force. A search that stops at a smaller force lowers it for
-    all drags.
+    The search with the most likely drag sets this force. If a search stops at a smaller force, this smaller
+    force is used for all drags.
     """
     likeliest, *others = arm.drags
     end, first = _first_search(arm, likeliest)
@@ -132,9 +138,9 @@ def flutter_range(arm: SlenderArm) -> FlutterRange:
 
 
 def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, FlutterForces]:
-    """(end of the search, changes of stability up to the end). For an arm that is not uniform or not of
-    linear material, the end exceeds the first flutter force and the load by the factor MIN_SEARCH_RATIO, if
-    possible.
+    """Returns (end, forces): the largest force requested, and the changes of stability up to this force. For
+    an arm that is not uniform or not of linear material, `end` exceeds the first flutter force and the load
+    by at least the factor MIN_SEARCH_RATIO, if possible.
     """
     known_load = arm.load is not None and arm.share_of_flutter is None
     for end in SEARCH_ENDS_OF_VARIED if arm.shape.varies else (SEARCH_END,):

@@ -7,7 +7,7 @@ WIDTH = 80
 
 
 def folded(text: str, first: str = "", further: str = "  ") -> str:
-    """`text` wrapped to lines of WIDTH characters. first, further: indents of the first line and of all
-    further lines.
+    """`text` wrapped to lines of at most WIDTH characters. first: indent of the first line. further: indent
+    of the following lines.
     """
     return textwrap.fill(text, WIDTH, initial_indent=first, subsequent_indent=further)

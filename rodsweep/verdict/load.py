@@ -8,24 +8,24 @@ from ..model.units import compact, split_quantity, unit_of, written_in
 from .flutter import Span
 
 TYPICAL_FLUTTER_FORCE = 36.0
-"""Typical force of flutter, in k3/L^2. If the user gave no load, it decides between units such as
-Pa and kPa."""
+"""Typical flutter force, in k3/L^2. If the user gave no load, the SI prefix of the load (Pa, kPa) is chosen
+for this force."""
 ROUNDING = 1e-12
-"""Relative tolerance when rounding down: without it, the rounding error of 4.7 could print as 4.69."""
+"""Relative tolerance when rounding down. Without this tolerance, 4.7 could be printed as 4.69."""
 MAX_TYPED_LENGTH = 6
-"""Longest number, in characters, that a report repeats as the user typed it. A longer number is rounded to
+"""A number of at most this many characters is reported as the user typed it; a longer number is rounded to
 four digits."""
 
 
 def three_digits(value: float) -> str:
-    """A number as text with three significant digits; no exponent below a million."""
+    """A number as text with three significant digits; with an exponent only from a million on."""
     short = float(f"{value:.3g}")
     return f"{short:.0f}" if 1000 <= abs(short) < 1e6 else f"{short:g}"
 
 
 def range_text(low: float, high: float) -> str:
-    """The range from `low` to `high` as text, with three significant digits; a single number if the digits
-    are equal.
+    """The range from `low` to `high` as text, with three significant digits; a single number if both ends
+    round to the same number.
     """
     ends = [three_digits(low), three_digits(high)]
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
@@ -53,7 +53,7 @@ class Load:
             else compact(TYPICAL_FLUTTER_FORCE * arm.load_scale, si)[1]
         )
         self.given = "" if given is None else _short(given, float(getattr(arm.si, self.name)), si)
-        """The load as the user typed it, as rounded by `_short`; empty without a load."""
+        """The load as the user typed it, rounded by `_short` if long; empty if the arm has no load."""
         self.scale = written_in(arm.load_scale, self.unit, si)
         """The load that corresponds to F = 1, in `unit`."""
 
@@ -69,8 +69,8 @@ class Load:
 
 
 def _short(given: object, value: float, si: str) -> str:
-    """The load as the user typed it, or rounded to four digits if long. value: the load in the SI
-    unit `si`.
+    """The load as the user typed it, rounded to four digits if its number is long. value: the load in
+    the SI unit `si`.
     """
     if not isinstance(given, str):
         return f"{value:.4g} {si}"

@@ -17,17 +17,18 @@ A = TypeVar("A", bound=SlenderArm)
 
 @dataclass(frozen=True, slots=True)
 class PlaneOfMotion:
-    """An arm that bends in one plane, and the thresholds of this motion for every drag."""
+    """Motion of an arm in one plane, with its thresholds for every drag."""
 
     arm: SlenderArm
-    """The arm, with its cross-section turned so that its height lies in the plane of motion."""
+    """The arm, with its cross-section turned so that the height of the section lies in the plane of
+    motion."""
     found: FlutterRange
     name: str = ""
-    """Name of the plane, to follow the word "in"; empty if all planes of motion are equivalent."""
+    """Name of the plane, such as "the plane of its height"; empty if all planes of motion are equivalent."""
 
     @property
     def flutter_loads(self) -> list[float]:
-        """Force of the first flutter, in N, for each drag; inf without flutter."""
+        """Force of the first flutter, in N, for each drag; inf for a drag without flutter."""
         forces = [each.force(ChangeKind.hopf) for each in self.found.forces]
         return [inf if force is None else force * self.arm.force_scale for force in forces]
 
@@ -43,7 +44,7 @@ class Planes:
 
     @property
     def always_first(self) -> bool:
-        """Whether flutter in the plane `first` needs the smaller load for every drag."""
+        """Whether, for every drag, the flutter load in the plane `first` is not larger than in `second`."""
         if self.second is None:
             return True
         loads = zip(self.first.flutter_loads, self.second.flutter_loads, strict=True)
@@ -65,10 +66,10 @@ def planes_of(arm: SlenderArm) -> Planes:
 
 
 def with_load(planes: Planes) -> Planes:
-    """The planes, with a load given relative to flutter replaced by the load in a unit.
+    """The planes with a load relative to the flutter load replaced by the load in a physical unit.
 
-    The reference is the first flutter in any plane for the most likely drag. Raises InputError without
-    flutter.
+    The flutter load is the smallest over all planes, for the most likely drag. Raises InputError if the arm
+    does not flutter.
     """
     first = planes.first
     share = first.arm.share_of_flutter
@@ -80,8 +81,8 @@ def with_load(planes: Planes) -> Planes:
     if force is None:
         end = f"{float(f'{first.found.end * scale:.3g}'):g} {UNITS[load][0]}"
         raise InputError(
-            f"{load} = '{getattr(first.arm, load)}' has no value: with the likeliest drag the arm does not "
-            f"flutter up to {end}"
+            f"{load} = '{getattr(first.arm, load)}' cannot be computed: with the likeliest drag the arm does "
+            f"not flutter up to {end}"
         )
     factor, unit = compact(share * force * scale, UNITS[load][0])
     given: dict[str, Any] = {load: f"{share * force * scale * factor:.15g} {unit}"}
@@ -90,7 +91,9 @@ def with_load(planes: Planes) -> Planes:
 
 
 def with_known_load(arm: A) -> A:
-    """The arm with its load in a unit. Solves for the flutter load if the load is given relative to it."""
+    """The arm with its load in a physical unit. Solves for the flutter load if the load is relative to the
+    flutter load.
+    """
     load = arm.load
     if load is None or arm.share_of_flutter is None:
         return arm

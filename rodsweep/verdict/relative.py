@@ -2,7 +2,7 @@
 drag.
 
 The search for a uniform arm of linear material must run without PETSc. The search for any other arm starts
-PETSc, which all MPI ranks must have started before they divide such searches among them.
+PETSc; all MPI ranks must have started PETSc before such searches are divided among the ranks.
 """
 
 from dataclasses import replace
@@ -25,23 +25,23 @@ from ..solve.changes.unstable_modes import ChangeKind, end_below_crushing
 
 A = TypeVar("A", bound=SlenderArm)
 SEARCH_END = 1000.0
-"""Largest force of the search, in k3/L^2: 25 times the flutter force of a filament. An arm crushed by a
-smaller force is searched up to this smaller force."""
+"""Largest force of the search, in k3/L^2: 25 times the flutter force of a filament. An arm that a smaller
+force crushes is searched only up to the crushing force."""
 FIRST_SEARCH_END = 200.0
-"""Largest force of the first search, in k3/L^2. It takes half the time of the full search, and most arms
-flutter below."""
+"""Largest force of the first search, in k3/L^2. Most arms flutter at a smaller force, and the first search
+takes half the time of the full search."""
 SEARCH_ENDS_OF_VARIED = (3.0, 10.0, 30.0, 100.0, 300.0, SEARCH_END)
 """Largest forces of successive searches, in k3/L^2 at the base, for an arm that is not uniform or not of
 linear material. The first search that finds flutter is the last: far beyond flutter, where many modes are
 unstable, a search takes up to half a minute for each drag."""
 REFERENCE_DIGITS = 10
 """Significant digits to which the reference force is rounded. Ten digits are more than the data of an arm
-have, and few enough to be equal on all machines: a run resumed on another machine then has the same points.
+have, and few enough to be equal on all machines. A run resumed on another machine then has the same points.
 """
 
 
 class FlutterSearchFailed(InputError):
-    """Raised if the search for the flutter load behind a relative load fails; the message states
+    """Raised if the search for the flutter load to which a relative load refers fails; the message states
     the reason.
     """
 
@@ -56,10 +56,11 @@ def quarter_turned(arm: A) -> A:
 def plane_rods(
     arm: SlenderArm, build: Build | None = None, taper: float | None = None
 ) -> list[tuple[Rod, float]]:
-    """(dimensionless rod, its k3/L^2 divided by the k3/L^2 of the arm) for each plane of motion, for the most
-    likely drag and without load.
+    """Pairs (rod, scale), one per plane of motion. rod: dimensionless rod without load, for the most likely
+    drag. scale: k3/L^2 of the rod divided by k3/L^2 of the arm.
 
-    build, taper: law with profile, and ratio of tip to base radius, used instead of the arm's if given.
+    build: constitutive law and profile. taper: ratio of tip to base radius. If given, `build` and `taper`
+    replace the values of the arm.
     """
     planes = [(_in_its_plane(arm, build, taper), 1.0)]
     if not arm.isotropic:
@@ -70,22 +71,22 @@ def plane_rods(
 
 
 def _in_its_plane(arm: SlenderArm, build: Build | None, taper: float | None) -> Rod:
-    """The arm as a rod that bends in the plane of its height."""
+    """The arm as a rod that bends in the plane of the section's height. build, taper: as in `plane_rods`."""
     rod = rod_with(arm, arm.drags[0], build)
     return rod if taper is None else replace(rod, taper=taper)
 
 
 def rod_with(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Rod:
-    """The arm with the given drag as a dimensionless rod without load, which bends in the plane of its
-    height. build: law and profile, used instead of the arm's if given.
+    """The arm with the given drag as a dimensionless rod without load, which bends in the plane of the
+    section's height. build: constitutive law and profile; if given, replaces those of the arm.
     """
     own = {"k1": arm.k1, "k2": arm.k2, "gamma3": arm.gamma3_with(drag), "taper": arm.taper}
     return Rod(F=0.0, **own, build=build or arm.build_with(drag))
 
 
 def first_flutter(arm: SlenderArm) -> float:
-    """Smallest flutter force of an arm over its planes of motion, in its k3/L^2; inf without flutter. Raises
-    FlutterSearchFailed if the search fails.
+    """Smallest flutter force of an arm over its planes of motion, in k3/L^2 of the arm; inf if the arm does
+    not flutter. Raises FlutterSearchFailed if the search fails.
     """
     return min(first_hopf_force(rod) * scale for rod, scale in plane_rods(arm))
 
@@ -95,7 +96,7 @@ def first_hopf_force(rod: Rod) -> float:
     """Smallest F at which a pair of modes of `rod` becomes unstable, rounded to REFERENCE_DIGITS digits.
 
     inf if no pair becomes unstable up to the end of the search. Raises FlutterSearchFailed if the search
-    overflows, or cannot exclude a smaller F.
+    overflows or cannot exclude a Hopf point at a smaller F.
     """
     path = Path(rod, "F")
     first_up_to = _first_up_to if rod.standard else _first_of_varied
@@ -107,34 +108,34 @@ def first_hopf_force(rod: Rod) -> float:
     except (ArithmeticError, MemoryError, np.linalg.LinAlgError) as error:
         why = str(error) or type(error).__name__
         raise FlutterSearchFailed(
-            f"the search for the flutter threshold of a relative load fails: {why}"
+            f"the search for the flutter threshold to which a relative load refers fails: {why}"
         ) from error
     return inf
 
 
 def _first_up_to(path: Path, end: float) -> float:
-    """Smallest F up to `end` at which a pair of modes becomes unstable; inf without one. Uses the
-    determinant.
+    """Smallest F up to `end` at which a pair of modes becomes unstable; inf if no pair does. Covers the zeros
+    of the determinant with boxes.
     """
     boxes = first_boxes(path, 0.0, end)
     if boxes is None:
         raise FlutterSearchFailed(
-            "the flutter threshold of a relative load is not found: no a-priori bound on the eigenvalues "
-            "applies to this rod"
+            "the flutter threshold to which a relative load refers is not found: no a-priori bound on the "
+            "eigenvalues applies to this rod"
         )
     zeros, left, _ = cover_with_boxes(boxes, path.origin, path.direction)
     first = min((zero.p for zero in zeros if _grows(path, zero)), default=inf)
     if any(min(box.p_from, box.p_to) < first for box in left):
         raise FlutterSearchFailed(
-            "the flutter threshold of a relative load is not decided: a narrow window of flutter may lie "
-            "below the first Hopf point found"
+            "the flutter threshold to which a relative load refers is uncertain: a narrow window of flutter "
+            "may lie below the first Hopf point found"
         )
     return first
 
 
 def _first_of_varied(path: Path, end: float) -> float:
-    """Smallest F up to `end` at which a pair of modes becomes unstable; inf without one. Uses a search along
-    F for arms that are not uniform or not of linear material.
+    """Smallest F up to `end` at which a pair of modes becomes unstable; inf if no pair does. Uses a search
+    along F for arms that are not uniform or not of linear material.
     """
     from ..solve.changes.along_path import pair_crossings
     from ..solve.point import FAILURES, cause_of
@@ -143,21 +144,21 @@ def _first_of_varied(path: Path, end: float) -> float:
         found = pair_crossings(path, 0.0, end)
     except FAILURES as error:
         raise FlutterSearchFailed(
-            f"the search for the flutter threshold of a relative load fails: {cause_of(error)}"
+            f"the search for the flutter threshold to which a relative load refers fails: {cause_of(error)}"
         ) from error
     first = min(
         (crossing.at for crossing in found.crossings if crossing.kind == ChangeKind.hopf), default=inf
     )
     if not found.proved or (found.ended_early and first == inf):
         raise FlutterSearchFailed(
-            "the flutter threshold of a relative load is not decided: a Hopf point may be missing"
+            "the flutter threshold to which a relative load refers is uncertain: a Hopf point may be missing"
         )
     return first
 
 
 def _grows(path: Path, zero: LocatedZero) -> bool:
-    """Whether dRe w/dF > 0 for the pair of eigenvalues on the imaginary axis at `zero`: whether it becomes
-    unstable.
+    """Whether the pair of eigenvalues that lies on the imaginary axis at `zero` becomes unstable as p grows:
+    d Re w/dp > 0.
     """
     there = determinant_along(
         complex(0.0, zero.eta_or_x), coefficients_at(zero.p, path.origin, path.direction), path.direction

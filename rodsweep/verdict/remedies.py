@@ -13,12 +13,13 @@ from .load import Load
 from .validity import Assessment, rounded_down, rounded_up, thickness_factor, viscosity_factor
 
 FOUR_DIGIT_EXCESS = 1.1
-"""Ratio of an effect to its limit below which the ratio has four digits. Two digits could read 1.0."""
+"""Ratios of an effect to its limit below this number are printed with four digits; two digits could read
+1.0."""
 
 
 def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[str]:
-    """Sentence on the neglected effect furthest beyond its limit, then a sentence for each other kind of
-    effect beyond its limit.
+    """One sentence per kind of neglected effect beyond its limit, the effect with the largest ratio to its
+    limit first.
     """
     first, *others = _one_of_a_kind(assessment.effects_with(Validity.does_not_apply))
     remedy = _remedy(first, arm, assessment)
@@ -40,8 +41,8 @@ def effect_kinds_in_words(effects: Iterable[Effect]) -> str:
 
 
 def kind_of(effect: Effect) -> str:
-    """Kind of a neglected effect: the first word of its name, so inertia of the arm and of the fluid are one
-    kind.
+    """Kind of a neglected effect: the first word of the effect's name. Inertia of the arm and inertia of the
+    fluid therefore have the same kind.
     """
     return effect.name.split()[0]
 
@@ -53,12 +54,12 @@ def as_multiple(effect: Effect) -> str:
 
 
 def _one_of_a_kind(effects: list[Effect]) -> list[Effect]:
-    """The largest effect of each kind, in decreasing order."""
+    """The first effect of each kind. effects: in decreasing order of the ratio to the limit."""
     return list({kind_of(effect): effect for effect in reversed(effects)}.values())[::-1]
 
 
 def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
-    """Clause that names the change of arm, fluid or load that lowers an effect to its limit."""
+    """Clause that names the change of arm, fluid or load by which the effect is reduced to its limit."""
     share = float(1 / effect.excess)
     if kind_of(effect) == "inertia":
         return _thicker_fluid_or_thinner_arm(arm, assessment)
@@ -74,7 +75,9 @@ def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
 
 
 def _thicker_fluid_or_thinner_arm(arm: SlenderArm, assessment: Assessment) -> str:
-    """Clause on the least viscosity, or the largest thickness, at which inertia is within its limit."""
+    """Clause with the smallest viscosity of the fluid, and the largest thickness of the arm if known, for
+    which inertia is within its limit.
+    """
     si = UNITS["viscosity"][0]
     unit = unit_of(arm.viscosity, si)
     factor = viscosity_factor(assessment.at_flutter)

@@ -1,7 +1,7 @@
 """Verdict on an arm in sentences: flutter load, frequency of beating, return to stability.
 
-The first sentence is the headline. If the model does not apply, the headline says so, and all further
-sentences are conditional: "Without inertia it would flutter ...".
+The first sentence is the headline. If the model does not apply at the flutter threshold, the headline says
+so, and the sentences on flutter are conditional: "Without inertia the arm would flutter ...".
 """
 
 from ..model.arm.neglected import Validity
@@ -14,10 +14,12 @@ from .validity import Assessment
 
 
 def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
-    """Verdict on an arm in the plane in which it flutters first, over the range of drag."""
+    """Sentences of the verdict on an arm, over the range of drag: flutter in the plane with the smaller
+    flutter load, then in the second plane.
+    """
     plane = planes.first
     if plane.found.failures:
-        return ["The thresholds could not be found with every drag: " + "; ".join(plane.found.failures) + "."]
+        return ["For some drags the thresholds could not be found: " + "; ".join(plane.found.failures) + "."]
     beyond = assessment.effects_with(Validity.does_not_apply)
     if not beyond:
         return [*_verdict(plane), *_other_plane(planes, "is")]
@@ -30,7 +32,7 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
 
 
 def _verdict(plane: PlaneOfMotion) -> list[str]:
-    """Sentences for an arm to which the model applies, perhaps doubtfully."""
+    """Sentences on flutter of an arm for which no neglected effect exceeds its limit."""
     arm = plane.arm
     found = plane.found
     load = Load(plane.arm)
@@ -39,7 +41,7 @@ def _verdict(plane: PlaneOfMotion) -> list[str]:
     if flutter is None:
         stays = f": it stays straight at {load.given}" if load.given else ""
         if found.end < arm.F:
-            stays = f": whether it beats at {load.given} is not known"
+            stays = f": whether the arm beats at {load.given} is not known"
         return [f"The arm does not flutter {_until(plane, load)}{stays}."]
     rate = found.frequency(ChangeKind.hopf)
     beats = "" if rate is None else f" begins to beat at {range_text(rate.low, rate.high)} Hz"
@@ -50,7 +52,7 @@ def _verdict(plane: PlaneOfMotion) -> list[str]:
     if not flutter.for_every_drag:
         says.append("Part of the range of drag has no flutter at all.")
     if back is not None:
-        some = "" if back.for_every_drag else ", with part of the range of drag"
+        some = "" if back.for_every_drag else ", for part of the range of drag"
         says.append(f"The straight arm is stable again above {load.of(back)}{some}.")
     else:
         says.append(f"The straight arm does not become stable again {_until(plane, load)}.")
@@ -58,15 +60,17 @@ def _verdict(plane: PlaneOfMotion) -> list[str]:
 
 
 def _where(plane: PlaneOfMotion, flutter: Span) -> str:
-    """Range of the flutter load over the drags as text, with the name of the plane for a
-    rectangular section.
+    """Range of the flutter load over the drags as text; for a rectangular section, followed by the name of
+    the plane of motion.
     """
     where = Load(plane.arm).of(flutter)
     return f"{where} in {plane.name}" if plane.name else where
 
 
 def _place(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
-    """Sentence that compares the arm's load with the range of its flutter load: whether the arm beats."""
+    """Sentence that compares the arm's load with the range of the flutter load over the drags and says
+    whether the arm beats.
+    """
     F = plane.arm.F
     found = plane.found
     where = _where(plane, flutter)
@@ -88,7 +92,9 @@ def _place(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
 
 
 def _above(F: float, flutter: Span) -> str:
-    """How far the force F exceeds the range of flutter, as text: in percent, or as a factor above 2."""
+    """Excess of the force F over the range of the flutter load, as text: "20 to 30 % above", or as a factor,
+    "3 times", if the factor is larger than 2.
+    """
     low, high = (F / edge for edge in (flutter.high, flutter.low))
     return f"{range_text(low, high)} times" if low > 2 else f"{percent_range_text(low - 1, high - 1)} % above"
 
@@ -101,9 +107,9 @@ def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
     flutter = found.force(ChangeKind.hopf)
     rate = found.frequency(ChangeKind.hopf)
     if flutter is None:
-        return [f"Without {neglected} it would not flutter {_until(plane, load)}."]
-    beats = "" if rate is None else f", where it would begin to beat at {range_text(rate.low, rate.high)} Hz"
-    says = [f"Without {neglected} it would flutter at {_where(plane, flutter)}{beats}."]
+        return [f"Without {neglected} the arm would not flutter {_until(plane, load)}."]
+    beats = "" if rate is None else f" and begin to beat at {range_text(rate.low, rate.high)} Hz"
+    says = [f"Without {neglected} the arm would flutter at {_where(plane, flutter)}{beats}."]
     if arm.load is None or arm.F <= 0:
         return says
     if flutter.low > arm.F:
@@ -125,12 +131,12 @@ def _other_plane(planes: Planes, verb: str) -> list[str]:
     flutter = second.found.force(ChangeKind.hopf)
     if flutter is None:
         return [f"In {second.name} there {verb} no flutter {_until(second, Load(second.arm))}."]
-    decides = "" if planes.always_first else "; with part of the range of drag this plane goes first"
+    decides = "" if planes.always_first else "; for part of the range of drag, flutter starts in this plane"
     return [f"In {second.name} flutter {verb} at {Load(second.arm).of(flutter)}{decides}."]
 
 
 def _until(plane: PlaneOfMotion, load: Load) -> str:
-    """Clause on the end of the search: at a load, or at the load that crushes the arm."""
+    """Clause that states the load at which the search ends, and whether this load crushes the arm."""
     end = load.of(Span(plane.found.end, plane.found.end))
     if plane.found.end > 0.999 * plane.arm.crushing_force:
         return f"before it is crushed at {end}"
@@ -138,6 +144,8 @@ def _until(plane: PlaneOfMotion, load: Load) -> str:
 
 
 def _swinging(found: FlutterRange, load: Load) -> list[str]:
-    """Sentence on the load from which decaying disturbances oscillate; an empty list without such a load."""
+    """Sentence on the load above which a decaying disturbance oscillates; an empty list if no such load was
+    found.
+    """
     onset = found.force(ChangeKind.onset)
     return [] if onset is None else [f"From {load.of(onset)} on a disturbance swings as it dies away."]

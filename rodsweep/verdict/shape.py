@@ -1,4 +1,4 @@
-"""Shape and material of an arm in words, such as "a cone of rubber"."""
+"""Phrases for the shape and material of an arm, such as "a cone of rubber"."""
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.section import Tube
@@ -8,7 +8,9 @@ from ..model.units import compact
 
 
 def shape_words(arm: SlenderArm) -> str:
-    """Shape of an arm, and its material if rubber, in words: "a cone of rubber", "an arm of segments"."""
+    """Phrase for the shape of an arm, and for its material if it is rubber: "a cone of rubber", "an arm of
+    segments".
+    """
     shape = "an arm"
     if arm.shape.varies:
         shape = "a cone" if arm.taper != 1 else "an arm of segments"
@@ -16,14 +18,14 @@ def shape_words(arm: SlenderArm) -> str:
 
 
 def law_words(arm: SlenderArm) -> str:
-    """Constitutive law of an arm in words: "linear", or "neo-Hookean" with the kind of section."""
+    """Phrase for the constitutive law of an arm: "linear", or "neo-Hookean" and the kind of section."""
     law = "linear" if arm.law == LINEAR.law else "neo-Hookean"
     return f"{law}, {arm.section} section" if arm.law != LINEAR.law else law
 
 
 def station_words(station: Station) -> str:
-    """Radius, inner radius of a tube, and Young's modulus of a segment: "radius 6 mm, inner radius 3 mm, 80
-    kPa".
+    """Phrase for the radius, the inner radius (of a tube) and Young's modulus of a segment: "radius 6 mm,
+    inner radius 3 mm, 80 kPa".
     """
     sides = {"radius": station.section.drag_radius}
     if isinstance(station.section, Tube):

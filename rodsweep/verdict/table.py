@@ -9,7 +9,7 @@ from .planes import PlaneOfMotion
 from .shape import law_words, station_words
 
 LAW_FORMULA = "stress E (h - 1/h^2)/3 at the stretch h, incompressible"
-"""Formula of the stress in neo-Hookean rubber, as the table shows it."""
+"""Formula of the stress in neo-Hookean rubber, for the table."""
 
 
 class NumberRow(NamedTuple):
@@ -22,7 +22,7 @@ class NumberRow(NamedTuple):
 
 
 def number_rows(plane: PlaneOfMotion) -> list[NumberRow]:
-    """Rows with all numbers of an arm, in the plane in which it flutters first. Dimensional numbers come
+    """Rows with all numbers of an arm, dimensional numbers first. plane: plane in which the arm flutters
     first.
     """
     arm = plane.arm
@@ -36,8 +36,8 @@ def number_rows(plane: PlaneOfMotion) -> list[NumberRow]:
 
 
 def plane_row(plane: PlaneOfMotion) -> list[NumberRow]:
-    """Row with width w and height h of a rectangular section, h in the plane of motion; an empty list for
-    other sections.
+    """Row with the plane of motion and the width w and height h of a rectangular section, h in this plane; an
+    empty list for other sections.
     """
     if not plane.name:
         return []
@@ -46,18 +46,18 @@ def plane_row(plane: PlaneOfMotion) -> list[NumberRow]:
 
 
 def shape_rows(arm: SlenderArm) -> list[NumberRow]:
-    """Rows with the taper or the segments, and with the law of rubber; an empty list for a uniform arm of
-    linear material.
+    """Rows with the taper or the segments, and with the constitutive law if it is not linear; an empty list
+    for a uniform arm of linear material.
     """
     rows = []
     if arm.taper != 1:
-        formula = "tip radius/radius; all other rows are of the base"
+        formula = "tip radius/radius; all other rows are for the base"
         rows.append(NumberRow("taper", f"{arm.taper:.4g}", formula, "k1, k2, gamma3 ~ r^2, k3 ~ r^4"))
     elif arm.shape.varies:
         start = 0.0
         for number, station in enumerate(arm.shape.stations, 1):
             place = f"u = {start:.4g} to {station.end:.4g}"
-            source = "all other rows are of it" if number == 1 else "drag of its own radius"
+            source = "all other rows are for segment 1" if number == 1 else "drag by its own radius"
             rows.append(NumberRow(f"segment {number}", place, station_words(station), source))
             start = station.end
     if arm.law != LINEAR.law:
@@ -89,14 +89,14 @@ def load_row(arm: SlenderArm) -> list[NumberRow]:
 
 
 def with_drag_range(arm: SlenderArm, values: list[float], unit: str = "") -> str:
-    """values[0] as text, which belongs to the most likely drag, with the range of `values` over all drags in
-    brackets.
+    """values[0], followed by the range of all values in brackets and by `unit`, as text. values: a quantity
+    for each drag, the most likely drag first.
     """
     return f"{values[0]:.3g} ({range_text(min(values), max(values))}){unit}"
 
 
 def drag_rows(arm: SlenderArm) -> list[NumberRow]:
-    """Rows with the drag coefficients and the time scale tau2, each with its range over the drags."""
+    """Rows with the drag coefficients and the time scale tau2, with their ranges over the drags."""
     drags = arm.drags
     translation = "Cox 1970; Gray & Hancock 1955, Lighthill 1976"
     return [

@@ -1,5 +1,5 @@
-"""Whether the model applies to an arm at its flutter threshold and under its load, and which changes of the
-arm or fluid make it apply.
+"""Validity of the model for an arm at its flutter threshold and under its load, and the changes of arm or
+fluid with which the model would apply.
 """
 
 from dataclasses import dataclass
@@ -25,20 +25,20 @@ from .flutter import FlutterRange, flutter_forces
 REMEDY_DIGITS = 2
 """Significant digits of the factors in remedies, which are rounded to the safe side."""
 MAX_THINNING_ITERATIONS = 20
-"""Maximum number of iterations of `thickness_factor`. Ten suffice if inertia of arm and fluid are
-comparable."""
+"""Maximum number of iterations of `thickness_factor`. Ten iterations suffice if the inertia of the arm and of
+the fluid are comparable."""
 VISCOSITY_TARGET = 0.995
-"""Ratio of required to actual viscosity at which an iteration of `thickness_factor` aims; below 1, so that
-inertia ends within its limit."""
+"""Target of the iterations of `thickness_factor` for the ratio of required to actual viscosity. The target is
+below 1, so that inertia ends within its limit."""
 MIN_VISCOSITY_RATIO = 0.99
-"""Stopping criterion of `thickness_factor`: a ratio of required to actual viscosity between this number and
-1. The thickness then has two correct digits."""
+"""`thickness_factor` stops iterating when the ratio of required to actual viscosity is between this number
+and 1. The thickness then has two correct digits."""
 
 
 @dataclass(frozen=True)
 class Assessment:
-    """Neglected effects on an arm, at the flutter threshold and under the load, compared with the limits of
-    the model.
+    """Neglected effects on an arm, at the flutter threshold and under the load, compared with their limits in
+    the model. found: thresholds of the arm for every drag.
     """
 
     arm: SlenderArm
@@ -46,22 +46,22 @@ class Assessment:
 
     @cached_property
     def at_flutter(self) -> tuple[Effect, ...]:
-        """Neglected effects at the first flutter force for the most likely drag. The rate is the largest over
-        all drags.
+        """Neglected effects at the first flutter force for the most likely drag. The rate of motion is the
+        largest rate over all drags.
         """
         return effects_at_flutter(self.arm, self.found)
 
     @cached_property
     def under_load(self) -> tuple[Effect, ...]:
-        """Compression by the arm's load, the only neglected effect that depends on it; empty
-        without a load.
+        """Compression by the arm's load, the only neglected effect that depends on the load; empty if the arm
+        has no load.
         """
         return () if self.arm.load is None else (compression(self.arm, weakest_load(self.arm, self.arm.F)),)
 
     @property
     def force_at_flutter(self) -> float | None:
-        """Smallest force of flutter, in k3/L^2, for the most likely drag that has flutter; None without
-        flutter.
+        """Smallest flutter force, in k3/L^2, for the most likely drag for which the arm flutters; None if the
+        arm flutters for no drag.
         """
         first = first_flutter_of(self.found)
         return None if first is None else first.at
@@ -73,31 +73,33 @@ class Assessment:
 
     @property
     def of_thresholds(self) -> Validity:
-        """Whether the model applies at the flutter threshold."""
+        """Validity of the model at the flutter threshold."""
         return Validity(int(worst_validity(self.at_flutter, of_cycles=False)))
 
     @property
     def of_verdict(self) -> Validity:
-        """Whether the model applies at the flutter threshold and under the load."""
+        """Validity of the model at the flutter threshold and under the load: the worse of both."""
         return Validity(int(worst_validity(self.effects, of_cycles=False)))
 
     def effects_with(self, validity: Validity) -> list[Effect]:
-        """Neglected effects with the given validity, the largest ratio to the limit first. Effects on cycles
-        alone are left out.
+        """Neglected effects with the given validity, in decreasing order of their ratio to the limit. Effects
+        on cycles alone are left out.
         """
         counted = [e for e in self.effects if e.validity == validity and not e.of_cycles_only]
         return sorted(counted, key=lambda effect: -float(effect.excess))
 
 
 def first_flutter_of(found: FlutterRange) -> Crossing | None:
-    """First flutter for the most likely of all drags for which the arm flutters; None if it flutters for
-    none.
+    """First Hopf point for the most likely drag for which the arm flutters; None if the arm flutters for no
+    drag.
     """
     return next((each for c in found.forces if (each := c.first(ChangeKind.hopf))), None)
 
 
 def effects_at_flutter(arm: SlenderArm, found: FlutterRange) -> tuple[Effect, ...]:
-    """Neglected effects at the first flutter of `found`. Inertia and compression are NaN without flutter."""
+    """Neglected effects at the first flutter in `found`. Inertia and compression are NaN if the arm does not
+    flutter.
+    """
     first = first_flutter_of(found)
     if first is None:
         return effects_of(arm, nan, nan)
@@ -105,19 +107,17 @@ def effects_at_flutter(arm: SlenderArm, found: FlutterRange) -> tuple[Effect, ..
 
 
 def viscosity_factor(effects: tuple[Effect, ...]) -> float:
-    """Factor by which to multiply the viscosity so that inertia just reaches its limit; NaN
-    without flutter.
-    """
+    """Factor on the viscosity with which inertia just reaches its limit; NaN if the arm does not flutter."""
     return max(float(e.viscosity_factor) for e in effects if e.name.startswith("inertia"))
 
 
 @solving
 def thickness_factor(arm: SlenderArm) -> float:
-    """Largest factor for the thickness of an arm with which inertia, in the same fluid, is within its limit.
+    """Largest factor on the thickness of an arm with which inertia, in the same fluid, is within its limit.
 
-    Multiplies all sides of the section, and solves for thresholds of the thinner arms. NaN if the arm does
-    not flutter, or if a further effect, such as weight, exceeds its limit for the thinner arm. NaN also for
-    an arm that varies along its length, because each solve would take a second.
+    The factor multiplies all sides of the section; the thresholds of the thinner arms are solved. NaN if the
+    arm does not flutter, or if another effect, such as weight, exceeds its limit for the thinner arm. NaN
+    also for an arm that varies along its length, because each solve would take a second.
     """
     if arm.shape.varies:
         return nan
@@ -136,7 +136,7 @@ def thickness_factor(arm: SlenderArm) -> float:
 
 
 def _scaled(arm: SlenderArm, factor: float) -> SlenderArm:
-    """The arm without load, with all sides of its section multiplied by `factor`."""
+    """The arm without its load, with all sides of the section multiplied by `factor`."""
     given = {name: value for name, value in vars(arm.si).items() if not isnan(value) and name not in LOADS}
     section = {name: factor * given[name] for name in chain(*SECTION_SIDES) if name in given}
     return SlenderArm(**(given | section), poisson=arm.poisson, law=arm.law, section=arm.section)

@@ -428,7 +428,9 @@ def test_a_cycle_without_stored_shapes_is_drawn_with_the_shapes_that_it_would_ha
     assert picture.shown.startswith("shapes through the cycle")
     assert [*picture.choices["shapes"].solved] == [(1,)]
     assert rs.plot(cycle, what="energy").shown.startswith("energy, injection and dissipation")
-    with pytest.raises(rs.InputError, match="no cycle that could be drawn; its points are: straight"):
+    with pytest.raises(
+        rs.InputError, match="no cycle that could be drawn; the statuses of its points are: straight"
+    ):
         rs.plot(rs.Rod(F=5, k1=1e4, k2=100, gamma3=0.01).cycle(accuracy=1e-4))
 
 

@@ -76,8 +76,8 @@ def test_the_paragraph_of_an_arm_is_in_si_units(portrait, of_arm):
     frequency = portrait.thresholds.crossings["crossing_frequency"].iloc[1:]
     assert numbers(text, "(frequency ") == pytest.approx((frequency / (2 * np.pi * 3.5)).tolist(), rel=1e-5)
     cycle = list(portrait.cycles.values())[0]
-    assert numbers(text, "its period is ")[0] == pytest.approx(3.5 * cycle.period, rel=1e-3)
-    assert numbers(text, "largest y of its tip ")[0] == pytest.approx(10 * cycle.tip_y_max, rel=1e-3)
+    assert numbers(text, "the period is ")[0] == pytest.approx(3.5 * cycle.period, rel=1e-3)
+    assert numbers(text, "largest y of the tip ")[0] == pytest.approx(10 * cycle.tip_y_max, rel=1e-3)
     assert "F = " not in text.replace("F = 1 stands for", "")
 
 
@@ -130,7 +130,7 @@ def test_branches_without_all_special_points_are_counted(portrait):
     more = {"special_count": view.variables["special_count"] + 1}
     views = {**portrait.results.views, "branch": replace(view, variables={**view.variables, **more})}
     text = paragraph(replace(portrait.results, views=views))
-    assert "1 of its branches of cycles is not drawn: not all special points are" in text
+    assert "1 of its branches of cycles is not drawn: some special points are not" in text
 
 
 def test_a_search_that_ended_early_is_not_said_to_end_where_the_rod_is_crushed(portrait):
@@ -149,8 +149,8 @@ def test_cycles_are_those_of_the_limit_cycle_task(portrait):
         alone = FOLDED.replace(F=F).cycle(start="hopf", accuracy=ACCURACY)
         assert cycle.status == "cycle"
         assert cycle.period == alone.period
-        assert f"at F = {F:.6g} its period is " in portrait.paragraph
-    periods = numbers(portrait.paragraph, "its period is ")
+        assert f"at F = {F:.6g} the period is " in portrait.paragraph
+    periods = numbers(portrait.paragraph, "the period is ")
     assert periods == pytest.approx([cycle.period for cycle in portrait.cycles.values()], rel=1e-3)
 
 

@@ -20,11 +20,14 @@ def results(command):
         (("c.yaml",), "c.yaml is a config, not a result file; `rodsweep run` makes a result file from it"),
         (("c.h5", "-o", "p.txt"), "--output p.txt: the name must end in .html"),
         (("c.h5", "-o", "no/p.html"), "--output no/p.html: there is no directory no"),
-        (("c.h5", "-o", "folder.html"), "--output folder.html is not a name for a page; choose another"),
+        (
+            ("c.h5", "-o", "folder.html"),
+            "--output folder.html is not a regular file; choose another name for the page",
+        ),
         ((".",), ". is a directory; name a file"),
         (
             ("c.h5", "copy.html", "-o", "copy.html"),
-            "--output copy.html is a file to report and would be overwritten; choose another",
+            "--output copy.html is an input file and would be overwritten; choose another name",
         ),
     ],
 )
@@ -60,7 +63,10 @@ def test_a_portrait_is_drawn_and_said(command):
         ((*ROD, "-o", "p.txt"), "--output p.txt: the name must end in .png, .pdf, .svg, .html"),
         ((*ROD, "-o", "no/p.png"), "--output no/p.png: there is no directory no"),
         ((*ROD, "-o", "no/p.html"), "--output no/p.html: there is no directory no"),
-        ((*ROD, "-o", "folder.png"), "--output folder.png is not a name for a picture; choose another"),
+        (
+            (*ROD, "-o", "folder.png"),
+            "--output folder.png is not a regular file; choose another name for the picture",
+        ),
         (
             (*ROD, "--F-max", "-1"),
             "thresholds.F_max = -1.0 is not allowed; it should be a finite number above 0",

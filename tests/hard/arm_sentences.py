@@ -35,9 +35,9 @@ SIDES = ("radius", "inner_radius", "width", "height")
 LOADS = ("pressure", "force")
 WITHOUT_CYCLE = {
     "straight": "does not beat",
-    "unstable": "has a cycle that it leaves at the least disturbance",
+    "unstable": "has an unstable cycle",
     "torus": "beats without repeating",
-    "not_settled": "is not settled: no stable cycle was found, but one may exist",
+    "not_settled": "is not settled: no stable cycle was found, but a stable cycle may exist",
     "left_the_model": "is crushed somewhere or loses its stiffness, where the model ends",
     "failed": "is not known: the integration failed",
 }
@@ -354,7 +354,12 @@ def _answer(view, page, fine, scales):
     """The check of the line that answers first, of all points or of those where the model applies."""
     inside = (np.asarray(view.variables["model_applies"]) != Validity.does_not_apply).ravel()
     prefix = next(
-        (p for p in ("where it applies: ", "if it applied: ") if any(x.startswith(p) for x in page)), ""
+        (
+            p
+            for p in ("where the model applies: ", "if the model applied: ")
+            if any(x.startswith(p) for x in page)
+        ),
+        "",
     )
     chosen = inside if prefix.startswith("where") else np.ones_like(inside)
     start, count, found = f"^{re.escape(prefix)}", int(chosen.sum()), []
@@ -429,7 +434,7 @@ def _flutter_answer(view, page, told, start, chosen, scales):
 def _extremes(view, page, start, loads, chosen):
     """The check of which arms flutter at the least and at the largest of loads."""
     loads, found = np.where(chosen, loads, np.nan), []
-    for line, match in read(page, rf"{start}least at (.*); most at (.*)$"):
+    for line, match in read(page, rf"{start}smallest at (.*); largest at (.*)$"):
         ends = (np.nanmin(loads), np.nanmax(loads))
         why = [_of_one(view, text, loads, end) for text, end in zip(match.groups(), ends, strict=True)]
         found.append((line, "; ".join(filter(None, why))))
@@ -607,7 +612,7 @@ class ArmTruth:
         told(rf"lies in the range of flutter, {value}{name}: drag", loads)
         told(rf"^Flutter is at {value}{name};", loads)
         told(rf"^Flutter, at {value}{name}, is within", loads)
-        told(rf"would flutter at {value}{name}[,.]", loads)
+        told(rf"would flutter at {value}{name}(?:\.| and)", loads)
         told(rf"begins? to beat at {value}", own["hertz"])
         told(rf"straight arm is stable again above {value}", self._loads(own["restabilization"]))
         told(rf"^From {value} on a disturbance", self._loads(own["onset"]))
@@ -775,7 +780,7 @@ class ArmTruth:
         compression += [abs(self.F) / self.own["k1"]] if self.F is not None else []
         for line, match in read(page, r"the load \w+ the arm by NUMBER %"):
             found.append((line, _two(match[1], 100 * abs(self.F) / self.own["k1"])))
-        for line, match in read(page, r"(?:that of flutter|flutter shortens the arm) by NUMBER %"):
+        for line, match in read(page, r"the flutter load shortens (?:it|the arm) by NUMBER %"):
             found.append((line, _two(match[1], 100 * effects["compression"])))
         for line, match in read(page, r"rubber is some NUMBER % stiffer"):
             c = max(compression)
@@ -790,7 +795,7 @@ class ArmTruth:
             found.append((line, _two(match[1], 64 * both, 0.6)))
         found += [
             (line, "" if match[1] == "0.1" else "the limit is 0.1")
-            for line, match in read(page, r"and allows NUMBER\.?$")
+            for line, match in read(page, r"and applies only up to NUMBER\.?$")
         ]
         for line, match in read(page, r"Reynolds number: NUMBER if"):
             found.append((line, _two(match[1], effects["Reynolds number"])))
@@ -798,7 +803,7 @@ class ArmTruth:
             lost = lost_by_flattening(self.q)
             why = _two(match[1], 100 * lost) if match[1] else "" if lost >= 1 else f"it loses {lost}"
             found.append((line, why))
-        for line, match in read(page, r"buoyancy is NUMBER of what buckles"):
+        for line, match in read(page, r"buoyancy is NUMBER of the weight that buckles"):
             found.append((line, _two(match[1], effects["weight"])))
         for line, match in read(page, r"sags by NUMBER of its length"):
             found.append((line, _two(match[1], 7.837 / 8 * effects["weight"])))

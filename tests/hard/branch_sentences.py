@@ -31,7 +31,7 @@ LEADS_TO = {
     "a cycle with h1 = 0": "left_the_model",
     "the end of the range": "range_end",
     "a force that almost crushes the rod": "crushed",
-    "a cycle beyond which none is found": "no_cycle_found",
+    "a cycle after which no further cycle was found": "no_cycle_found",
 }
 CURVED = 2e-3
 """Relative error of a spline through the cycles of a finer branch, which stands for cycles between them."""

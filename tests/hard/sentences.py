@@ -742,17 +742,20 @@ def diagram_sentences(view, page, keywords, fine):
         table.append([_class_of(replace(rod, F=float(F))) if rod.k1 > F else "crushed" for F in values])
     table = np.array(table)
     found = _search_sentences(view, page, every, "row")
-    found += counts(page, "^of NUMBER places on the rows", table.size)
+    found += counts(page, "^of NUMBER grid points on the rows", table.size)
     found += ranges(page, "where the rows begin, of RANGE rows?:", [len(rows)])
     found += ranges(page, "^at F = RANGE, where the rows begin", [values[0]])
     for word in ("monotone", "oscillatory", "flutter", "crushed"):
         there = table == word
         found += ranges(page, rf"^of the grid:.*?RANGE % {word}", [100 * there.mean()])
-        found += counts(page, rf"^of \d+ places on the rows:.*?NUMBER {word}", there.sum())
+        found += counts(page, rf"^of \d+ grid points on the rows:.*?NUMBER {word}", there.sum())
         found += counts(page, rf"where the rows begin.*: .*{word} on NUMBER", there[:, 0].sum())
     beats = (table == "flutter").any(axis=1)
     found += ranges(
-        page, rf"^flutter on the rows {row} = RANGE; on none of {row} = RANGE", rows[beats], rows[~beats]
+        page,
+        rf"^flutter on the rows {row} = RANGE; no flutter on the rows {row} = RANGE",
+        rows[beats],
+        rows[~beats],
     )
     for kind in ("onset", "hopf", "restabilization", "real_again", "hopf_reverse"):
         of_kind = [[c.at for c in each if c.kind.name == kind] for each in every]
@@ -787,7 +790,7 @@ def _curve_sentences(view, page, row):
         return []
     kinds = [int(v["curve_kind"][v["curve_number"] == n][0]) for n in np.unique(v["curve_number"])]
     for_line = "^curves: NUMBER of Hopf points, NUMBER of double eigenvalues; "
-    for_line += "crossings on rows lie within NUMBER of them, over F; NUMBER lie"
+    for_line += "crossings on rows lie within NUMBER of these curves along F; NUMBER (?:is|are) on no curve"
     found = []
     for line, match in read(page, for_line):
         told = [int(match[1]), int(match[2]), int(match[4])]
@@ -797,7 +800,7 @@ def _curve_sentences(view, page, row):
             [] if abs(float(v["curve_agreement"]) - float(match[3])) <= unit_of(match[3]) else ["agreement"]
         )
         found.append((line, "; ".join(why)))
-    cut = rf"^curve NUMBER, of [a-zA-Z ]+, is not whole: at {row} = NUMBER, F = NUMBER "
+    cut = rf"^curve NUMBER, of [a-zA-Z ]+, is incomplete: at {row} = NUMBER, F = NUMBER "
     for line, match in read(page, cut):
         here = v["curve_number"] == int(match[1])
         off = [np.abs(v[f"curve_{n}"][here][[0, -1]] - float(match[i])) for n, i in ((row, 2), ("F", 3))]
@@ -961,7 +964,7 @@ def _state_sentences(view, page, fine, row):
     for line, match in read(
         page,
         "^curves of cycles: NUMBER; folds and torus points of rows lie within NUMBER "
-        "of them, over F; NUMBER lie",
+        "of these curves along F; NUMBER (?:is|are) on no curve",
     ):
         true = (
             len(np.unique(view.variables["cycle_curve_number"])),

@@ -135,7 +135,7 @@ def test_a_branch_is_a_table_of_cycles_with_its_special_points_marked(command):
     assert marks == ["hopf", "fold", "hopf"]
     assert (columns["special_kind"][0], columns["special_kind"][-1]) == ("hopf", "hopf")
     assert set(columns["k1"]) == {"150"}
-    assert "1 of 2 points without any" in said
+    assert "1 of 2 points without a row" in said
     F, fold = np.array(columns["branch_F"], float), columns["special_kind"].index("fold")
     assert F[fold] == F.max() == pytest.approx(85.6055765, abs=1e-6)
     places = [int(text) for text in columns["branch_point"] if text]
@@ -242,7 +242,7 @@ def test_results_of_every_task_are_exported(command, task):
         assert table_of(head, rows)["status"] == ("straight",)
         refused = command("export", "c.h5", "--table", "harmonics", "--replace")
         assert "0 rows of harmonics in " in refused.stdout
-        assert "1 of 1 point without any" in refused.stdout
+        assert "1 of 1 point without a row" in refused.stdout
     for table in [name for name in TABLE_NAMES.values() if name in said.replace(",", "").split()]:
         done = command("export", "c.h5", "--table", table, "--replace")
         assert done.returncode == 0, done.stderr
@@ -264,7 +264,7 @@ def test_missing_points_have_a_row_of_points_and_no_items(command):
     command.write("c.yaml", SPECTRA)
     command("run", "c.yaml", "--shard", "1/2", "-o", "c.h5")
     done = command("export", "c.h5")
-    assert "21 rows of modes in 9 columns; 7 of 14 points without any; " in done.stdout
+    assert "21 rows of modes in 9 columns; 7 of 14 points without a row; " in done.stdout
     assert command("export", "c.h5", "--table", "points", "--replace").returncode == 0
     lines = (command.directory / "c.csv").read_text().splitlines()
     assert sum(line.endswith(",missing,,,,,") for line in lines) == 7

@@ -141,7 +141,7 @@ def test_a_page_of_a_part_says_what_is_missing(command):
     assert command("run", "c.yaml", "--shard", "1/2", "-o", "c.h5").returncode == 0
     assert command.drawn("report", "c.h5").returncode == 0
     page = read_page(command.directory / "c.html")
-    (told,) = [text for text in page.texts("p") if text.startswith("2 rods are not here")]
+    (told,) = [text for text in page.texts("p") if text.startswith("2 rods are not in this file")]
     assert "rodsweep merge" in told
     assert {"missing", "not computed yet"} <= set(page.texts("td"))
     assert [row["status"] for row in page.table("points")].count("missing") == 2

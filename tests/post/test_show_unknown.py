@@ -67,7 +67,7 @@ def test_a_branch_that_is_cut_short_leaves_open_where_cycles_are_stable(tmp_path
 def test_a_boundary_curve_that_is_cut_short_is_not_whole(tmp_path, monkeypatch):
     plane = {"F": rs.linspace(0.0, 90.0, 10), "k1": [100.0, 300.0], "k2": 1e4, "gamma3": 1e-4}
     (tmp_path / "whole").mkdir()
-    assert "is not whole" not in told(view_of_sweep(tmp_path / "whole", "phase_diagram", **plane))
+    assert "is incomplete" not in told(view_of_sweep(tmp_path / "whole", "phase_diagram", **plane))
     few = replace(boundary_curves.BOUNDARY_STEPS, max_solutions=5)
     monkeypatch.setattr(boundary_curves, "BOUNDARY_STEPS", few)
     view = view_of_sweep(tmp_path, "phase_diagram", **plane)
@@ -77,7 +77,7 @@ def test_a_boundary_curve_that_is_cut_short_is_not_whole(tmp_path, monkeypatch):
     said = told(view)
     for i in full:
         k1, F = (float(view.variables[f"curve_{name}"][i]) for name in ("k1", "F"))
-        where = f"is not whole: at k1 = {k1:.6g}, F = {F:.6g} the curve has the maximum number of points"
+        where = f"is incomplete: at k1 = {k1:.6g}, F = {F:.6g} the curve has the maximum number of points"
         assert where in said
 
 
@@ -138,11 +138,11 @@ def test_a_row_that_is_undecided_is_no_row_without_flutter(tmp_path):
     view = view_of_sweep(
         tmp_path, "phase_diagram", **ROWS | {"k1": [100.0, 200.0], "k2": 1e4, "F": [0.0, 60.0]}
     )
-    assert "flutter on the rows k1 = 200; on none of k1 = 100" in told(view)
+    assert "flutter on the rows k1 = 200; no flutter on the rows k1 = 100" in told(view)
     classes = np.asarray(view.variables["class"]).copy()
     classes[..., 0, 0, 0, 1] = next(number for number, word in CLASSES if word == "undecided")
     shown = told(changed(view, **{"class": classes}))
-    assert "on none of" not in shown
+    assert "no flutter on" not in shown
     assert "undecided: on 1 of 2 rows, F = 60, k1 = 100" in shown
 
 

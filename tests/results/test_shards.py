@@ -82,8 +82,8 @@ def test_merged_shards_are_the_undivided_run(command):
         names.append(f"c-{number}-of-3.h5")
         assert "328 of other shards, 164 ok" in done.stdout
     told = command("show", names[1]).stdout
-    assert "328 points are not here: the file is shard 2/3" in told
-    assert "missing; if no run is going on" not in told
+    assert "328 points are not in this file: it is shard 2/3" in told
+    assert "missing; if no run is in progress" not in told
     assert re.search(r"computed from \S+ on, all points of shard 2/3; rodsweep", told)
     some = command("merge", "m.h5", *names[:2])
     assert (some.returncode, "164 missing" in some.stdout) == (75, True)

@@ -134,6 +134,6 @@ def test_a_search_that_overflows_fails_in_words(monkeypatch, error):
 
     monkeypatch.setattr(relative, "cover_with_boxes", overflowing)
     with pytest.raises(
-        relative.FlutterSearchFailed, match="relative load fails: (too large|ZeroDivisionError)"
+        relative.FlutterSearchFailed, match="relative load refers fails: (too large|ZeroDivisionError)"
     ):
         relative.first_hopf_force(Rod(F=0.0, k1=1234.5, k2=1e3, gamma3=1e-4))

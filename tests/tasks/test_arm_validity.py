@@ -203,7 +203,8 @@ def test_show_begins_with_the_answer_in_the_units_that_were_typed(command):
     )
     assert float(worst[1]) == pytest.approx(float(data.neglected_excess.max()), rel=6e-2)
     found = re.fullmatch(
-        rf"where it applies: flutters from {number} to {number} kPa; beats at {number} to {number} Hz", second
+        rf"where the model applies: flutters from {number} to {number} kPa; beats at {number} to {number} Hz",
+        second,
     ).groups()
     inside = data.where(rods & (data.model_applies != Validity.does_not_apply))
     span(found[:2], inside.pressure_hopf / 1e3)
@@ -215,7 +216,7 @@ def test_show_of_an_arm_in_water_says_nothing_without_reservation(command):
     command.solved("w.yaml")
     first, second, *_ = command("show", "w.h5").stdout.splitlines()[1:]
     assert first.startswith("the model does not apply at all 6 points: inertia of the arm is up to")
-    assert second.startswith("if it applied: flutters from ")
+    assert second.startswith("if the model applied: flutters from ")
 
 
 @pytest.mark.parametrize(
@@ -256,7 +257,7 @@ def test_lines_that_are_asked_for_over_an_arm_name_what_draws_them(command):
     refused = command("plot", "a.h5", "--what", "lines")
     assert refused.returncode == 2
     assert (
-        "--what lines is not for a grid over an arm's quantities; remove it, or draw lines over"
+        "--what lines is not for a grid over an arm's quantities; remove --what or draw lines over"
         in refused.stderr
     )
 
@@ -355,7 +356,7 @@ def test_a_thin_wall_ends_the_model_where_the_arm_beats_widely(command):
     assert view.variables["model_applies"].item() == Validity.does_not_apply
     shown = command("show", "w.h5").stdout.splitlines()[1:3]
     assert shown[0] == "the model does not apply: flattening of the wall is 5.2 times its limit"
-    assert shown[1].startswith("if it applied: beats at")
+    assert shown[1].startswith("if the model applied: beats at")
     assert command("check", "w.yaml").stdout.count("the section flattens") == 1
     command.write("t.yaml", f"task: thresholds\nparameters: {{arm: {{{tube}}}}}\n")
     command.solved("t.yaml")
@@ -372,15 +373,15 @@ STATUSES = {
         (
             "not_settled",
             "not_settled",
-            "is not settled: no stable cycle was found, but one may exist at 2 of 2",
+            "is not settled: no stable cycle was found, but a stable cycle may exist at 2 of 2",
         ),
         ("torus", "left_the_model", "beats without repeating at 1 of 2", "is crushed somewhere"),
-        ("failed", "unstable", "is not known: the integration failed at 1 of 2", "leaves at the least"),
+        ("failed", "unstable", "is not known: the integration failed at 1 of 2", "has an unstable cycle"),
     ),
     "spectrum": (
-        (2, -1, "gives way at 1 of 2 points", "whether it gives way is not known at 1 of 2 points"),
-        (-1, -1, "whether it gives way is not known at 2 of 2 points"),
-        (0, -1, "whether it gives way is not known at 1 of 2 points"),
+        (2, -1, "gives way at 1 of 2 points", "whether the arm gives way is not known at 1 of 2 points"),
+        (-1, -1, "whether the arm gives way is not known at 2 of 2 points"),
+        (0, -1, "whether the arm gives way is not known at 1 of 2 points"),
         (0, 0, "stays straight"),
     ),
     "thresholds": (

@@ -82,7 +82,7 @@ def test_show_names_the_branch_that_could_not_be_followed(command):
     reasons = view.variables["special_reason"]
     reasons[reasons > 0] = END_REASONS.index("no_cycle_found")
     told = summary.branch_summary(view, np.ones((2, 1, 1, 1), bool)).answer
-    assert "1 branch leads to a cycle beyond which none is found: F = 80" in told
+    assert "1 branch leads to a cycle after which no further cycle was found: F = 80" in told
     assert "  k1 = 150: branch 1, at F = 80" in told
 
 
@@ -201,7 +201,9 @@ def test_figure_that_shows_nothing_is_refused(command, k1, said):
 
 def test_branches_of_several_rods_are_drawn_together_and_one_of_them_by_at(command):
     shown(command, CONFIG.format(k1="[100, 150]", stop=90))
-    assert "1 of 2 rods has none" in " ".join(command.drawn("plot", "c.h5", "-o", "c.png").stdout.split())
+    assert "1 of 2 rods has no branch" in " ".join(
+        command.drawn("plot", "c.h5", "-o", "c.png").stdout.split()
+    )
     alone = command.drawn("plot", "c.h5", "--at", "k1=150", "-o", "one.png")
     assert alone.returncode == 0, alone.stderr
     assert "none" not in alone.stdout
@@ -231,7 +233,7 @@ def test_branches_without_room_for_their_special_points_are_told_of_and_not_draw
     done = command("show", "c.h5")
     assert done.returncode == 0, done.stderr
     told = " ".join(done.stdout.split())
-    assert "not known for 1 rod: they have more special points than the list holds" in told
+    assert "not known for 1 rod: the list of special points is full" in told
     assert "stable cycles beside a stable straight rod at 0 of 1 rod" in told
     view = read_view(command.directory / "c.h5")
     assert [len(RodBranches(view, rod).curves) for rod in (0, 1)] == [0, 0]

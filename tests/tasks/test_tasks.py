@@ -288,7 +288,7 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
             "the list of crossings is proved complete on 6 of 6 rods",
         ],
         "phase_diagram": [
-            "of 6 places on the rows: 2 monotone, 2 oscillatory, 2 flutter",
+            "of 6 grid points on the rows: 2 monotone, 2 oscillatory, 2 flutter",
             "absolute error at most 1e-12",
         ],
         "modes": [

@@ -302,7 +302,7 @@ def verdict(rod, *forces):
         ),
         (
             False,
-            ["drag decides", "Part of the range of drag has no", "is stable again above 2.5 kPa, with part"],
+            ["drag decides", "Part of the range of drag has no", "is stable again above 2.5 kPa, for part"],
         ),
     ],
 )
@@ -325,7 +325,7 @@ def test_arm_without_flutter_and_failed_search_are_told():
         "The arm does not flutter up to 12.5 kPa, where the search ends: it stays straight at 2 kPa."
     ]
     failed = FlutterForces(tau2=1.0, thresholds=nothing_found(ThresholdStatus.failed, 200.0, "no box"))
-    assert verdict(arm(), failed) == ["The thresholds could not be found with every drag: no box."]
+    assert verdict(arm(), failed) == ["For some drags the thresholds could not be found: no box."]
 
 
 def test_a_search_that_ended_early_limits_the_verdict_with_every_drag(monkeypatch):

@@ -231,7 +231,10 @@ def test_drags_are_words_in_tables_and_in_sections(command):
     assert command("plot", "a.h5", "-o", "a.png", "--at", "drag=most").returncode == 0
     refused = command("plot", "a.h5", "-o", "b.png", "--at", "drag=least")
     assert refused.returncode == 2 and "no point there" in refused.stderr
-    assert "is none of likeliest, least," in command("plot", "a.h5", "-o", "b.png", "--at", "drag=x").stderr
+    assert (
+        "the drag must be one of likeliest, least,"
+        in command("plot", "a.h5", "-o", "b.png", "--at", "drag=x").stderr
+    )
 
 
 @pytest.mark.parametrize("task", ["thresholds", "limit_cycle"])

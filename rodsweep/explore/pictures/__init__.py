@@ -1,1 +1,1 @@
-"""Pictures of the page, one module each: a Bokeh figure, and a method that fills it from an answer."""
+"""Pictures of the page. Each class holds a Bokeh figure, and methods that fill the figure from an answer."""

@@ -1,5 +1,5 @@
 """Picture of the arm: its limit cycle, its shape while the user drags the tip, and its motion after the
-release. The browser animates shapes that are already solved.
+release. The browser animates the solved shapes.
 """
 
 from collections.abc import Callable
@@ -28,14 +28,15 @@ from .card import (
 PERIOD_SECONDS = 2.0
 """Duration of one period of a cycle on the screen, in seconds."""
 END_WORDS = {"cycle": "it beats", "straight": "it comes to rest", "torus": "it beats with two frequencies"}
-"""Words for the state that a released arm reaches, by status; an unlisted status has its own sentence."""
+"""Clause for the state that a released arm reaches, by status. For other statuses the sentence of the status
+is used."""
 SHAPE_COLUMNS = ("x", "y", "number")
-"""Columns of a Bokeh source of shapes: coordinates of all nodes of all shapes, and the number of nodes of a
-shape."""
+"""Columns of a Bokeh source of shapes: coordinates x, y of all nodes of all shapes, and in each row the
+number of nodes per shape."""
 
 
 class BeatingPicture:
-    """Animated picture of the arm over a period, in slow motion, with the path of its tip."""
+    """Animated picture of the arm with the path of its tip; one period of a cycle takes `PERIOD_SECONDS`."""
 
     def __init__(self) -> None:
         figure = new_figure(
@@ -51,7 +52,7 @@ class BeatingPicture:
         self.length = PictureAxis("L", 1.0)
         figure.line("x", "y", color=NEUTRAL_COLOUR, line_width=1, source=self.path)
         for source in (self.shapes, self.motion, self.reached, self.bent, self.grip):
-            figure.scatter("x", "y", visible=False, source=source)  # so that the source is on the page
+            figure.scatter("x", "y", visible=False, source=source)  # sends the source to the browser
         self.line = figure.line(
             "x", "y", color=STABLE_COLOUR, line_width=5, line_cap="round", source=self.arm, visible=False
         )  # fmt: skip
@@ -63,15 +64,17 @@ class BeatingPicture:
         self.card.entitle("")
 
     def animation(self) -> CustomJS:
-        """Browser script that animates the arm; it runs once, when the page is ready."""
+        """Browser script that animates the arm; the page runs this script once, when the document is
+        ready.
+        """
         names = ("shapes", "motion", "reached", "arm", "bent")
         sources: dict[str, Any] = {name: getattr(self, name) for name in names}
         more = {"period": PERIOD_SECONDS, "figure": self.card.figure, "colour": STABLE_COLOUR}
         return CustomJS(args=sources | more, code=template_text("beating.js"))
 
     def on_drag(self, drag: Callable[[str, Tip], None]) -> None:
-        """Registers `drag`, which is called with the kind of question and the position of the tip, in L, when
-        the user drags the tip.
+        """Registers the callback `drag(kind, tip)`, called when the user drags or releases the tip. kind:
+        "bent" or "motion". tip: position of the tip, in L.
         """
 
         def dragged(attribute: str, old: Any, new: dict[str, list[Any]]) -> None:
@@ -82,7 +85,9 @@ class BeatingPicture:
         self.grip.on_change("data", dragged)
 
     def show(self, found: dict[str, Any], length: PictureAxis) -> None:
-        """Draws the cycle of a `limit_cycle` answer; without a cycle, the straight arm and a sentence."""
+        """Draws the cycle of an answer `found` of the task `limit_cycle`; if there is no cycle, the straight
+        arm and a sentence.
+        """
         self.length = length
         self.let_go()
         x, y = (found[name] * length.factor for name in ("shape_x", "shape_y"))
@@ -110,7 +115,9 @@ class BeatingPicture:
         self.bent.data = {name: found[name] * self.length.factor for name in "xy"}
 
     def show_motion(self, found: dict[str, Any]) -> None:
-        """Starts the animation of a released arm, and writes into the title which state the arm reaches."""
+        """Starts the animation of a released arm, and writes the state that the arm reaches into the
+        title.
+        """
         factor = self.length.factor
         step = found["step"]
         x = found["x"] * factor
@@ -140,8 +147,8 @@ class BeatingPicture:
         self.shapes.data = {name: [] for name in SHAPE_COLUMNS}
 
     def _fit(self, x: Array, y: Array) -> None:
-        """Sets the ranges of the axes so that all shapes x, y, (shapes, nodes), fit; in the picture's unit of
-        length.
+        """Sets the ranges of the axes so that all shapes fit. x, y: coordinates, (shapes, nodes), in the unit
+        of the axes.
         """
         factor = self.length.factor
         reach = 1.15 * max(0.3 * factor, float(np.abs(y).max()))
@@ -150,8 +157,8 @@ class BeatingPicture:
 
 
 def source_of(x: Array, y: Array) -> dict[str, Any]:
-    """Columns of a Bokeh source, see `SHAPE_COLUMNS`, for shapes x, y, (shapes, nodes). Single precision is
-    enough for a picture.
+    """Columns of a Bokeh source, see `SHAPE_COLUMNS`, in single precision. x, y: coordinates of the shapes,
+    (shapes, nodes).
     """
     number = np.full(x.size, x.shape[1], dtype=np.float32)
     return {"x": x.ravel().astype(np.float32), "y": y.ravel().astype(np.float32), "number": number}

@@ -1,6 +1,4 @@
-"""Picture of the bifurcation diagram: largest deflection of the tip in stable and unstable cycles over the
-load.
-"""
+"""Picture of the bifurcation diagram: largest tip deflection of stable and unstable cycles over the load."""
 
 from math import nan
 from typing import Any
@@ -25,10 +23,10 @@ from .card import (
 STABILITY_COLOURS = {1: STABLE_COLOUR, 0: UNSTABLE_COLOUR, -1: NEUTRAL_COLOUR}
 """Colour of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
 NO_CYCLES = {"F": np.zeros(0), "y": np.zeros(0), "stable": np.zeros(0, dtype=int)}
-"""Empty columns for an answer that contains branches but no separately solved cycles."""
+"""Columns without values, for an answer that has branches but no separately solved cycles."""
 SIDE_MARGIN = 0.03
-"""Margin left and right of separately solved cycles, as a fraction of the range; without it their dots would
-be cut off."""
+"""Margin left and right of the dots of separately solved cycles, as a fraction of their range of loads.
+Without a margin the outermost dots would be cut off."""
 STABILITY_DASHES = {1: "solid", 0: "dashed", -1: "dotted"}
 """Line style of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
 
@@ -75,7 +73,7 @@ class BranchPicture:
         self.card.entitle("")
 
     def show(self, found: dict[str, Any], load: PictureAxis, length: PictureAxis) -> None:
-        """Draws the branches of the answer `found`, in the units of the axes `load` and `length`."""
+        """Draws the branches of the answer `found`. load: horizontal axis. length: vertical axis."""
         pieces = found["pieces"]
         self.pieces.data = {
             "F": [at * load.factor for at, _, _ in pieces],

@@ -1,4 +1,4 @@
-"""Card of a picture: a figure that a sentence can replace; and the style that all figures share."""
+"""Card of a picture (a figure, or a sentence in its place), and the common style of all figures."""
 
 from collections.abc import Sequence
 from html import escape
@@ -17,11 +17,12 @@ FOLD_COLOUR, TORUS_COLOUR = "#8a63d2", "#2a9d5c"
 TICK_COUNT = 5
 """Desired number of tick labels along the lower axis."""
 PLAIN_DIGITS = 7
-"""Largest power of ten that tick labels show without an exponent."""
+"""Tick labels below 10 to this power are written without an exponent."""
 NO_TITLE = "\u00a0"
-"""A line of a title without words: a picture that is drawn with an empty title shows no later one."""
+"""Blank line of a title (a no-break space). Bokeh never shows the title of a figure first drawn with an empty
+title."""
 TITLE_WIDTH = 46
-"""Largest number of characters in a line of a title: the narrowest figure would cut a longer line."""
+"""Largest number of characters per line of a title; a longer line would be cut in the narrowest figure."""
 AXIS_ALPHAS = (
     "axis_line_alpha",
     "axis_label_text_alpha",
@@ -29,18 +30,20 @@ AXIS_ALPHAS = (
     "major_tick_line_alpha",
     "minor_tick_line_alpha",
 )
-"""Opacities of all that an axis paints."""
+"""Names of the opacities of an axis: line, label, tick labels and tick marks."""
 FIGURE_HEIGHT = 300
 """Height of a picture in pixels."""
 
 
 def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any) -> figure:
-    """Empty Bokeh figure with the page's style, as wide as a column of the page."""
+    """Empty Bokeh figure with the page's style, as wide as a column of the page. options: further keywords of
+    Bokeh's `figure`.
+    """
     made = figure(
         height=FIGURE_HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
         x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
     )  # fmt: skip
-    made.toolbar.autohide = True  # beside the frame, so that no button covers a place to click
+    made.toolbar.autohide = True  # moves the toolbar outside the frame, so that no button covers the plot
     made.toolbar.logo = None
     made.toolbar.active_drag = None
     made.min_border_right = 10
@@ -52,8 +55,8 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
 
 
 def vertical_line(at: float, colour: str, dash: str = "solid") -> Span:
-    """Vertical line at x = `at` over the whole height of a figure. Bokeh redraws only the top canvas when it
-    moves.
+    """Vertical line at x = `at` over the whole height of a figure. When the line moves, Bokeh redraws only
+    the top canvas.
     """
     return Span(
         location=at, dimension="height", line_color=colour, line_dash=dash, line_width=1.5, level="overlay"
@@ -61,19 +64,21 @@ def vertical_line(at: float, colour: str, dash: str = "solid") -> Span:
 
 
 def empty_source(names: Sequence[str], name: str | None = None) -> ColumnDataSource:
-    """Bokeh data source whose columns `names` are empty."""
+    """Bokeh data source with the empty columns `names`. name: name of the source."""
     return ColumnDataSource({each: [] for each in names}, name=name)
 
 
 def columns(**arrays: Array) -> dict[str, list[Any]]:
-    """Columns of a Bokeh data source as lists; an array of a few numbers would be sent in two messages of its
-    own.
+    """Columns of a Bokeh data source, as lists by name. Bokeh would send each array in two separate
+    messages.
     """
     return {name: array.tolist() for name, array in arrays.items()}
 
 
 def limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
-    """Range of `values`, (n,), widened at both ends by the fraction `margin`; (-1, 1) for an empty array."""
+    """(lower, upper) limit of an axis for `values`, (n,): their range, widened at both ends by the fraction
+    `margin`; (-1, 1) for an empty array.
+    """
     if len(values) == 0:
         return -1.0, 1.0
     low = float(values.min())
@@ -83,20 +88,22 @@ def limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
 
 
 def set_axis_range(axis: Range1d, start: float, end: float) -> None:
-    """Sets the ends of an axis, now and after a click on the reset button of the figure."""
+    """Sets the ends of an axis, and the ends that the reset button of the figure restores."""
     axis.update(start=start, end=end, reset_start=start, reset_end=end)
 
 
 def sentence_of(found: dict[str, Any]) -> str:
-    """Meaning of the status of the answer `found`, followed by the message of the solver."""
+    """Meaning of the status of the answer `found`, followed by the solver's message if there is one."""
     return "; ".join(filter(None, (found["sentence"], found["message"])))
 
 
 class Card:
-    """A figure that can be replaced by a sentence. It has no axes until it shows something."""
+    """A figure, or a sentence in its place. The axes of the figure are invisible until the first `reveal`."""
 
     def __init__(self, name: str, figure: figure, title_lines: int = 1):
-        """title_lines: room for the title; a longer one is cut until the browser lays the figure out."""
+        """title_lines: number of lines reserved for the title; further lines are cut until the browser lays
+        out the figure again.
+        """
         self.figure = figure
         self.title_lines = title_lines
         figure.name = f"{name}_figure"
@@ -105,7 +112,7 @@ class Card:
         self.root = Column(self.message, figure, name=name, sizing_mode="stretch_width")
 
     def entitle(self, text: str) -> None:
-        """Writes a title, which may be empty, in lines that fit above the figure."""
+        """Sets the title of the figure, wrapped to lines of at most TITLE_WIDTH characters."""
         lines = wrap(text, TITLE_WIDTH)
         self.figure.title.text = "\n".join(lines + [NO_TITLE] * (self.title_lines - len(lines)))
 
@@ -116,7 +123,7 @@ class Card:
         self.figure.visible = False
 
     def tell(self, sentence: str) -> None:
-        """Shows a sentence above the figure."""
+        """Shows a sentence above the figure, and the figure."""
         self.message.text = escape(sentence)
         self.message.visible = True
         self.figure.visible = True
@@ -128,8 +135,8 @@ class Card:
         self.figure.visible = True
 
     def _paint_axes(self, alpha: float) -> None:
-        """Makes the axes transparent or opaque. Axes that come and go would move the frame and leave parts of
-        an earlier title.
+        """Makes the axes transparent or opaque. Removing and adding axes instead would move the frame and
+        leave parts of an earlier title.
         """
         for axis in self.figure.axis:
             axis.update(**dict.fromkeys(AXIS_ALPHAS, alpha))

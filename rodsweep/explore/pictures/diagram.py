@@ -1,5 +1,5 @@
-"""Picture of the stability diagram over the load and a second parameter. A click selects other values of
-both.
+"""Picture of the stability diagram over the load and a second parameter. A click selects new values of the
+two parameters.
 """
 
 from itertools import groupby
@@ -27,18 +27,18 @@ from .card import (
 )
 
 BOUNDARY_COLOURS = {"double": NEUTRAL_COLOUR, "onset": NEUTRAL_COLOUR, "hopf": UNSTABLE_COLOUR}
-"""Colour of a stability boundary, by kind; an unlisted kind has the colour of stable states."""
+"""Colour of a stability boundary, by kind; other kinds have the colour STABLE_COLOUR."""
 CYCLE_CURVE_LOOKS = {
     "fold": ("folds of cycles", FOLD_COLOUR, "solid"),
     "torus": ("torus points", TORUS_COLOUR, "dashed"),
 }
-"""(legend entry, colour, line style) of the curves of folds and torus points of cycles, by kind."""
+"""(legend entry, colour, line style) of curves of folds and of torus points of cycles, by kind of point."""
 DARKEST_COUNT = 6
-"""Number of unstable modes that has the darkest colour; larger numbers have the same colour."""
+"""Cells with this number of unstable modes, or more, have the darkest colour."""
 
 
 class DiagramCell(NamedTuple):
-    """Rectangle that covers neighbouring grid points of a row with equal numbers of unstable modes."""
+    """Rectangle around neighbouring grid points of a row that have equal numbers of unstable modes."""
 
     left: float
     right: float
@@ -48,7 +48,9 @@ class DiagramCell(NamedTuple):
 
 
 def cell_edges(values: Array) -> Array:
-    """Edges, (n + 1,), of cells around n increasing positive values: the geometric means of neighbours."""
+    """Edges, (n + 1,), of the cells around n increasing positive values, (n,): the geometric means of
+    neighbouring values, and an edge beyond each end.
+    """
     logs = np.log(values)
     if len(logs) == 1:
         return np.exp(logs[0] + np.array([-0.1, 0.1]))
@@ -57,8 +59,8 @@ def cell_edges(values: Array) -> Array:
 
 
 def cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
-    """Coloured rectangles of a grid; x: (columns,), y: (rows,), counts: numbers of unstable modes, (rows,
-    columns).
+    """Rectangles of equal numbers of unstable modes on a grid. x: loads, (columns,). y: second parameter,
+    (rows,). counts: numbers of unstable modes, (rows, columns).
     """
     sides = np.concatenate(([x[0]], (x[1:] + x[:-1]) / 2, [x[-1]]))
     levels = cell_edges(y)
@@ -84,7 +86,7 @@ def stability_colour(count: int) -> tuple[str, float]:
 
 
 def unstable_count_words(count: int) -> str:
-    """Words for a number of unstable modes, or for CRUSHED or NOT_KNOWN."""
+    """Phrase for a number of unstable modes, or for CRUSHED or NOT_KNOWN."""
     special = {0: "stable", CRUSHED: "crushed by the load", NOT_KNOWN: "not searched, or not known"}
     return special.get(count, counted(count, "unstable mode"))
 
@@ -140,8 +142,8 @@ class DiagramPicture:
         return len(self.cells.data["left"]) > 0
 
     def show(self, found: dict[str, Any], load: ControlScale, second: ControlScale) -> None:
-        """Draws the answer `found` to the question `diagram`, in the units of the controls `load` and
-        `second`.
+        """Draws the answer `found` to the question "diagram". load, second: scales of the controls whose
+        units the axes have.
         """
         x = found["x"] * load.factor
         y = found["y"] * second.factor
@@ -183,15 +185,13 @@ class DiagramPicture:
         self.legend.visible = len(kinds) > 0
 
     def move_point(self, x: float, y: float) -> None:
-        """Moves the mark of the page's rod to the load x and the second parameter y, in the units of the
-        axes.
-        """
+        """Moves the mark of the page's rod. x: load, y: second parameter, in the units of the axes."""
         self.point.data = {"x": [x], "y": [y]}
 
 
 def _lines(found: dict[str, Any], name: str) -> tuple[list[Array], list[Array], list[str]]:
-    """(x, y, kind) of every curve in the answer `found`; x and y: (points,). name: prefix of the variables,
-    such as "curve".
+    """Returns (x, y, kinds), lists with one entry per curve of the answer `found`. x, y: arrays, (points,).
+    name: prefix of the curves' variables, such as "curve".
     """
     numbers = np.asarray(found[f"{name}_number"])
     lines = [np.flatnonzero(numbers == number) for number in np.unique(numbers)]

@@ -22,23 +22,23 @@ from .card import (
 from .numbers import SI_NAMES
 
 NAMED_THRESHOLDS = ("F_onset", "F_hopf", "F_restabilization")
-"""Variables of the thresholds whose values stand in the title."""
+"""Variables of the thresholds in the title."""
 ROD_THRESHOLD_FORMATS = ("F* = {:.7g}", "F** = {:.7g}", "stable from {:.7g}")
-"""Formats of `NAMED_THRESHOLDS` in the title, for a rod over F."""
+"""Formats of `NAMED_THRESHOLDS` in the title, for a rod (load F)."""
 ARM_THRESHOLD_FORMATS = ("oscillates from {:.5g} kPa", "flutters from {:.5g} kPa", "stable from {:.5g} kPa")
-"""Formats of `NAMED_THRESHOLDS` in the title, for an arm over the pressure."""
+"""Formats of `NAMED_THRESHOLDS` in the title, for an arm (load: pressure)."""
 THRESHOLD_LOOKS = {
     "onset": ("oscillates from F*", NEUTRAL_COLOUR),
     "hopf": ("flutters, Hopf point F**", UNSTABLE_COLOUR),
     "hopf_reverse": ("a mode becomes stable", STABLE_COLOUR),
     "restabilization": ("stable again", STABLE_COLOUR),
 }
-"""(legend entry, colour) of each kind of threshold in the picture."""
+"""(tooltip, colour) of each kind of threshold in the picture."""
 
 
 class GrowthPicture:
-    """Growth rates of the leading modes over the load. Thin vertical lines are thresholds; the thick line is
-    the load of the page.
+    """Growth rates of the leading modes over the load. Dotted vertical lines mark thresholds; the thick
+    vertical line marks the load of the page.
     """
 
     def __init__(self) -> None:
@@ -70,7 +70,7 @@ class GrowthPicture:
         self.card.entitle("")
 
     def show_rates(self, found: dict[str, Any], load: PictureAxis) -> None:
-        """Draws the growth rates of the answer `found`; `load` is the horizontal axis."""
+        """Draws the growth rates of the answer `found`. load: horizontal axis."""
         rates = found["growth_rate"]
         names = ("first", "second", "third")
         F = found["F"] * load.factor
@@ -84,7 +84,7 @@ class GrowthPicture:
 
     def show_thresholds(self, found: dict[str, Any], load: PictureAxis) -> None:
         """Draws the thresholds of the answer `found`, and writes the first threshold of each kind into the
-        title.
+        title. load: horizontal axis.
         """
         own = found.get(SI_NAMES["crossing_frequency"], found["crossing_frequency"])
         rows = [
@@ -102,7 +102,7 @@ class GrowthPicture:
 
 
 def threshold_title(found: dict[str, Any], load: PictureAxis) -> str:
-    """Title with the first threshold of each kind in `found`, in the unit of the axis `load`."""
+    """Title with the first threshold of each kind in the answer `found`, in the unit of the axis `load`."""
     words = ARM_THRESHOLD_FORMATS if SI_NAMES["F_hopf"] in found else ROD_THRESHOLD_FORMATS
     parts = [
         word.format(load.factor * float(found[name]))

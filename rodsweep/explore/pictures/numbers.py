@@ -1,4 +1,4 @@
-"""Table of the numbers in the latest answers, with eight digits and units."""
+"""Table of numbers from the latest answers, with eight digits and units."""
 
 from html import escape
 from typing import Any
@@ -26,7 +26,7 @@ TABLE_ROWS = {
         "pressure_hopf": "flutters from", "frequency_hopf_hz": "frequency at flutter",
     },
 }  # fmt: skip
-"""Rows of the table for each kind of question: label by variable."""
+"""Rows of the table for each kind of question: label of each variable."""
 HEADINGS = {"spectrum": "Leading mode", "cycle": "Cycle", "thresholds": "Thresholds"}
 """Heading above the rows of each kind of question."""
 TABLE_DIGITS = 8
@@ -39,19 +39,20 @@ SI_NAMES = {
     "F_hopf": "pressure_hopf",
     "F_restabilization": "pressure_restabilization", "hopf_frequency": "frequency_hopf_hz",
 }  # fmt: skip
-"""Name of the SI variable, by dimensionless variable; an unlisted variable has the same name with `_si`."""
+"""Name of the variable in SI units, by name of the dimensionless variable. For other variables the suffix
+`_si` is appended."""
 
 
 class NumbersTable:
-    """Table of the numbers in the latest answer to each kind of question."""
+    """Table of numbers from the latest answer to each kind of question."""
 
     def __init__(self) -> None:
         self.root = PageText(name="numbers")
         self.found: dict[str, dict[str, Any]] = {}
 
     def show(self, kind: str, found: dict[str, Any] | None) -> None:
-        """Replaces the rows for a kind of question by the numbers of the answer `found`; None removes the
-        rows.
+        """Replaces the rows for the kind of question `kind` by numbers of the answer `found`; None removes
+        these rows.
         """
         if kind not in TABLE_ROWS:
             return
@@ -64,8 +65,8 @@ class NumbersTable:
 
 
 def number_text(value: Any, factor: float = 1.0) -> str:
-    """First number of the array `value` times `factor` as text; "" for a nonfinite number or a negative
-    count.
+    """First element of the array `value` as text: a real number times `factor`, or an integer; "" for a
+    nonfinite number or a negative integer.
     """
     first = np.ravel(value)[0]
     if np.issubdtype(np.asarray(first).dtype, np.integer):

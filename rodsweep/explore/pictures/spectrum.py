@@ -1,4 +1,4 @@
-"""Pictures of the leading eigenvalues in the complex plane, and of the leading mode."""
+"""Pictures of the leading eigenvalues in the complex plane, and of the shape of the leading mode."""
 
 from typing import Any
 
@@ -22,8 +22,8 @@ from .numbers import SI_NAMES
 
 
 class SpectrumPicture:
-    """Eigenvalues of the straight rod in the complex plane. Eigenvalues right of the dashed line, the
-    imaginary axis, are unstable.
+    """Eigenvalues of the straight rod in the complex plane. Eigenvalues to the right of the imaginary axis
+    (the dashed line) are unstable.
     """
 
     def __init__(self) -> None:
@@ -39,7 +39,7 @@ class SpectrumPicture:
         self.card.entitle("")
 
     def show(self, found: dict[str, Any]) -> None:
-        """Draws the eigenvalues of an answer of the task `spectrum`."""
+        """Draws the eigenvalues of `found`, an answer of the task `spectrum`."""
         names = [SI_NAMES[name] if SI_NAMES[name] in found else name for name in ("growth_rate", "frequency")]
         growth, frequency = (found[name] for name in names)
         known = np.isfinite(growth)
@@ -62,8 +62,8 @@ class SpectrumPicture:
 
 
 def unstable_count_sentence(found: dict[str, Any]) -> str:
-    """Sentence with the number of unstable modes and whether it is certified; the status if the number is
-    unknown.
+    """Sentence that states the number of unstable modes of the answer `found`, and whether this number is
+    certified; the meaning of the status if the number is unknown.
     """
     count = int(found["unstable_count"])
     if count < 0:
@@ -73,7 +73,7 @@ def unstable_count_sentence(found: dict[str, Any]) -> str:
 
 
 class ModePicture:
-    """Real and imaginary part of the deflection of the leading mode along the rod."""
+    """Real and imaginary part of the deflection Y(u) of the leading mode."""
 
     def __init__(self) -> None:
         figure = new_figure(
@@ -91,7 +91,7 @@ class ModePicture:
         self.card = Card("mode", figure)
 
     def show(self, found: dict[str, Any]) -> None:
-        """Draws the leading mode of an answer of the task `spectrum`."""
+        """Draws the leading mode of `found`, an answer of the task `spectrum`."""
         real = found["Y_real"][0]
         imaginary = found["Y_imag"][0]
         if not np.isfinite(real).all():

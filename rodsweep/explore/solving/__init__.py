@@ -1,1 +1,1 @@
-"""Questions of the page, and the processes that solve them. Knows nothing of controls and pictures."""
+"""Questions of the page, and the processes that solve them. Independent of controls and pictures."""

@@ -1,4 +1,4 @@
-"""Branches of cycles as the page draws them: parts of equal stability, and special points."""
+"""Branches of cycles for the page: parts of constant stability, and special points."""
 
 from typing import Any
 
@@ -13,10 +13,10 @@ unstable, -1 unknown."""
 
 
 def drawn_branches(rod: RodBranches, stop: float) -> dict[str, Any]:
-    """Curves for the picture of the branches of a rod.
+    """Variables of the answer "branch" for a rod, by name.
 
-    pieces: parts of the branches of cycles, and of the straight rod from F = 0 to `stop`. special: (F, y,
-    kind, period) of each special point other than ends.
+    pieces: parts of the branches of cycles, and of the straight rod from F = 0 to `stop`, see `Piece`.
+    special: (F, y, kind, period) of each special point except ends of branches.
     """
     pieces: list[Piece] = [
         (curve.at[run], curve.y[run], stable) for curve in rod.curves for run, stable in runs_of(curve.stable)

@@ -18,25 +18,26 @@ Dataset = Any
 ROW_COUNT = 20
 """Number of values of the second parameter, for uniform rods of linear material."""
 SLOW_ROW_COUNT = 8
-"""Number of values of the second parameter, for other rods, whose thresholds take seconds per value."""
+"""Number of values of the second parameter for other rods, for which each value takes seconds, and for
+diagrams with curves of cycles."""
 LOAD_COUNT = 121
-"""Number of values of the load. They are cheap: the thresholds of a row decide the stability at all its
-loads."""
+"""Number of load values. Additional values are cheap: the stability at all loads of a row follows from the
+thresholds on this row."""
 ARM_ROW_COUNT = 12
-"""Number of values of the second quantity, for arms in SI units."""
+"""Number of values of the second quantity of the diagram, for arms."""
 ARM_SPAN_RATIO = 2.0
-"""Ratio of the largest value of the second quantity of an arm to its present value. It is small, so that all
-arms are slender."""
+"""Ratio of the largest to the present value of an arm's second quantity, and of the present to the smallest
+value. The ratio is small, so that all arms are slender."""
 CYCLE_ACCURACY = 1e-4
-"""Relative error of the cycles between special points, which the diagram does not show. For the first rod of
-the page, up to F = 200, the default of 1e-6 takes three times as long, and moves the curves of folds and
-torus points by 2e-8 at most."""
+"""Relative error of the cycles between special points; the diagram does not show these cycles. For the first
+rod of the page and F up to 200, the default error of 1e-6 takes three times as long, and changes the curves
+of folds and torus points by 2e-8 at most."""
 NOT_KNOWN = -1
 """Value of `unstable_count` at a point whose number of unstable modes is unknown."""
 CRUSHED = -2
 """Value of `unstable_count` at a point whose load crushes the rod."""
 SPAN_RATIO = 10.0
-"""Ratio of the largest value of the second parameter to its present value, and of the present to the smallest
+"""Ratio of the largest to the present value of a rod's second parameter, and of the present to the smallest
 value."""
 TAPER_RANGE = (0.4, 1.6)
 """(smallest, largest) taper of the diagram. Cones with a smaller taper take minutes."""
@@ -45,10 +46,10 @@ TAPER_RANGE = (0.4, 1.6)
 def diagram(state: PageState) -> dict[str, Any]:
     """Stability diagram around the rod or arm of `state`, as arrays by name.
 
-    x: load, (columns,). y: second parameter, (rows,). unstable_count: (rows, columns), NOT_KNOWN or CRUSHED
-    if negative. curve_x, curve_y, curve_number, curve_kind: stability boundaries, (curve points,).
-    cycle_curve_*: the same for folds and torus points of cycles. crossing_x, crossing_y, crossing_kind:
-    thresholds on the rows, (crossings,), empty for uniform rods.
+    x: load, (columns,). y: second parameter, (rows,). unstable_count: number of unstable modes, NOT_KNOWN or
+    CRUSHED, (rows, columns). curve_x, curve_y, curve_number, curve_kind: stability boundaries, (curve
+    points,); cycle_curve_x, ...: curves of folds and torus points of cycles. crossing_x, crossing_y,
+    crossing_kind: thresholds on the rows, (crossings,), empty for uniform rods.
     """
     state.subject()
     if state.tab == "arm":
@@ -57,7 +58,9 @@ def diagram(state: PageState) -> dict[str, Any]:
 
 
 def cycle_diagram(state: PageState) -> dict[str, Any]:
-    """The result of `diagram` with curves of folds and torus points of cycles, and with fewer rows."""
+    """The result of `diagram` with curves of folds and torus points of cycles, and with SLOW_ROW_COUNT rows.
+    Raises InputError for rods that are not uniform or not of linear material.
+    """
     state.subject()
     if not can_follow_cycle_curves(state):
         raise InputError(
@@ -78,14 +81,14 @@ def has_uniform_rods(state: PageState) -> bool:
 
 
 def second_parameter_values(state: PageState, rows: int = ROW_COUNT) -> np.ndarray:
-    """Values of the second parameter, (rows,), around its present value; logarithmically spaced except for
-    the taper.
+    """Values of the second parameter, (rows,): logarithmically spaced around the present value, or linearly
+    over TAPER_RANGE for the taper. rows: number of values.
     """
     if state.second == "taper":
         return np.linspace(*TAPER_RANGE, rows)
     value = number(state.rod[state.second])
     if not (0 < value < np.inf):
-        raise InputError(f"{state.second} = {value:g} has no diagram; it must be finite and above 0")
+        raise InputError(f"{state.second} = {value:g} has no diagram; a diagram needs a finite value above 0")
     return np.geomspace(value / SPAN_RATIO, value * SPAN_RATIO, rows)
 
 
@@ -106,8 +109,8 @@ def _of_phases(state: PageState, with_cycles: bool = False) -> dict[str, Any]:
 
 
 def of_phases(data: Dataset, second: str) -> dict[str, Any]:
-    """Diagram, as in `diagram`, from a result of the task `phase_diagram` or `spectrum` over F and the
-    parameter `second`.
+    """Diagram, with the variables of `diagram`, from a result of the task `phase_diagram` or `spectrum` over
+    F and the parameter `second`.
     """
     counts = data["unstable_count"].transpose(second, "F").values
     if "class" in data:
@@ -144,10 +147,10 @@ def _of_arm(state: PageState) -> dict[str, Any]:
 
 
 def of_arms(data: Dataset, values: np.ndarray, pressure: float) -> dict[str, Any]:
-    """Diagram, as in `diagram`, from a result of the task `thresholds` for arms with different values of one
-    quantity, (rows,).
+    """Diagram, with the variables of `diagram`, from a result of the task `thresholds` for arms. values:
+    values of the second quantity, (rows,).
 
-    The load extends to twice the larger of `pressure`, in Pa, and the smallest pressure of flutter.
+    The load extends to twice the larger of `pressure`, in Pa, and the smallest flutter pressure.
     """
     flutter = data["pressure_hopf"].values
     known = flutter[np.isfinite(flutter)]
@@ -156,10 +159,11 @@ def of_arms(data: Dataset, values: np.ndarray, pressure: float) -> dict[str, Any
 
 
 def of_rows(data: Dataset, values: np.ndarray, name: str, largest: float) -> dict[str, Any]:
-    """Diagram, as in `diagram`, from a result of the task `thresholds` over a second parameter.
+    """Diagram, with the variables of `diagram`, from a result of the task `thresholds` over a second
+    parameter.
 
-    values: second parameter, (rows,). name: variable with the loads at the thresholds. largest: largest load
-    of the diagram.
+    values: second parameter, (rows,). name: name of the variable with the loads at the thresholds. largest:
+    largest load of the diagram.
     """
     at = data[name].values
     after = data["unstable_after"].values
@@ -187,8 +191,8 @@ def _no_curves() -> dict[str, Any]:
 
 
 def words_of(array: Dataset) -> Any:
-    """Words for an array of integer flags, an array of the same shape. The attributes of the array define the
-    words.
+    """Array of the words for an array of integer flags, with the same shape. Flags and words are listed in
+    the attributes of the array; an unlisted flag has the word "none".
     """
     words = str(array.attrs["flag_meanings"]).split()
     by_code = dict(zip(map(int, np.atleast_1d(array.attrs["flag_values"])), words, strict=True))

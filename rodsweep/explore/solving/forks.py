@@ -1,4 +1,4 @@
-"""Fork server for solver processes: a process that has imported all modules, and has not started MPI or
+"""Fork server for solver processes: a process that has imported all modules but has not started MPI or
 PETSc.
 """
 
@@ -9,6 +9,6 @@ FORK_SERVER = get_context("forkserver")
 
 
 def start_fork_server() -> None:
-    """Starts the fork server, so that it imports all modules while the page imports its own."""
+    """Starts the fork server, which imports its modules while the page imports its own modules."""
     FORK_SERVER.set_forkserver_preload([f"{__package__}.worker"])
     forkserver.ensure_running()

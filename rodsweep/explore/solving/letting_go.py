@@ -20,20 +20,20 @@ Tip = tuple[float, float]
 
 
 def bent(state: PageState, tip: Tip | None) -> dict[str, Any]:
-    """Equilibrium shape of the arm with its tip held at `tip`: x, y, (nodes,), in L. The straight arm for
-    None.
+    """Equilibrium shape of the arm with its tip held at `tip`: coordinates `x` and `y`, (nodes,), in L. tip:
+    None for the straight arm.
     """
     x, y = bent_shape(_job(state), tip)
     return {"x": x, "y": y}
 
 
 def motion(state: PageState, tip: Tip) -> dict[str, Any]:
-    """Motion of the arm after its tip is released at `tip`: fields of `ReleasedMotion`, and shapes of the
-    cycle that it reaches.
+    """Motion of the arm after its tip is released at `tip`: fields of `ReleasedMotion`, and the variables
+    below.
 
-    frames: number of shapes per return of the tip. period: period of the cycle, in tau2; NaN without a cycle.
-    shape_x, shape_y: (shapes, nodes) over a period, no shape without a cycle. Raises InputError if the motion
-    cannot be integrated.
+    frames: number of shapes per return of the tip. period: period, in tau2, of the cycle that the arm
+    reaches; NaN if the arm reaches no cycle. shape_x, shape_y: shapes over this period, (shapes, nodes), with
+    shapes = 0 if there is no cycle. Raises InputError if the motion cannot be integrated.
     """
     found = released_motion(_job(state, shapes=48), tip)
     if found is None:
@@ -50,7 +50,7 @@ def motion_film_answer(state: PageState, tip: Tip) -> dict[str, Any]:
 
 
 def filmed(state: PageState, found: Mapping[str, Any]) -> FilmedMotion:
-    """The motion `found`, as returned by `motion`, in the units of the page."""
+    """The motion after a release, in the units of the page. found: result of `motion`."""
     subject = state.subject()
     length = length_axis(state)
     tau2, time = (subject.tau2, "s") if isinstance(subject, Arm) else (1.0, "tau2")

@@ -1,6 +1,6 @@
-"""When each kind of question is sent to a solver, and on which part of the page's state its answer depends.
+"""When each kind of question is sent to a solver, and on which part of the page's state the answer depends.
 
-A question is not sent if its answer would equal the last answer of the same kind.
+A question is not sent if this part of the state has not changed since the last question of the same kind.
 """
 
 from dataclasses import replace
@@ -10,15 +10,15 @@ from .letting_go import Tip
 from .questions import Question
 
 Needs = tuple[PageState, Tip | None]
-"""Part of the page's state, and position of the dragged tip, that an answer depends on."""
+"""Part of the page's state, and position of the dragged tip, on which an answer depends."""
 INSTANT_KINDS = ("spectrum", "cycle", "thresholds", "growth")
 """Kinds of questions that are sent after every change of the controls."""
 IDLE_KINDS = ("branch", "diagram")
 """Kinds of questions that take seconds; they are sent once the controls have not changed for
 IDLE_MILLISECONDS."""
 MANUAL_KINDS = ("motion", "film", "cycles")
-"""Kinds of questions that are sent only when the user asks, by a button or a drag. A change of the rod
-cancels them."""
+"""Kinds of questions that are sent only when the user presses a button or drags the tip. A change of the rod
+cancels these questions."""
 STOPPABLE_KINDS = ("cycle", *IDLE_KINDS, *MANUAL_KINDS)
 """Kinds of questions that the button "Stop" cancels."""
 TIP_KINDS = ("bent", "motion")
@@ -26,8 +26,8 @@ TIP_KINDS = ("bent", "motion")
 
 
 def needs(question: Question) -> Needs:
-    """Copy of the state of a question in which all values without effect on the answer are blank, and the
-    position of the tip, or None.
+    """Returns (state, tip). state: copy of the question's state in which all values without effect on the
+    answer are blank. tip: position of the tip if the answer depends on the tip, else None.
     """
     kind = question.kind
     state = question.state

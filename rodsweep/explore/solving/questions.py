@@ -1,6 +1,6 @@
 """Questions of the page and the functions that answer them in a solver process. Answers are plain arrays.
 
-The page shows progress. No function displays progress on the terminal, which all solver processes share.
+The functions report progress to the page and never to the terminal, which all solver processes share.
 """
 
 from collections.abc import Callable, Mapping
@@ -24,23 +24,23 @@ from .diagrams import Dataset, cycle_diagram, diagram, words_of
 from .letting_go import Tip, bent, motion, motion_film_answer
 
 AnswerVariables = dict[str, Any]
-"""Variables of an answer, by name: arrays; text for `status`, `sentence` and `message`."""
+"""Variables of an answer, by name: arrays, and texts such as `status`, `sentence` and `message`."""
 MODE_COUNT = 6
 """Number of eigenvalues in the picture of the spectrum."""
 SHAPE_COUNT = 48
-"""Number of shapes of the arm per period of a cycle; the browser interpolates between them."""
+"""Number of shapes of the arm per period of a cycle; the browser interpolates between these shapes."""
 GROWTH_FORCE_COUNT = 121
 """Number of forces at which growth rates are computed."""
 MAX_CRUSHING_FRACTION = 0.98
-"""Largest force of the growth rates, as a fraction of the force that crushes the rod."""
+"""Largest force at which growth rates are computed, divided by the force that crushes the rod."""
 
 
 @dataclass(frozen=True)
 class Question:
     """Request of a page to a solver process.
 
-    kind: a key of `ANSWERS`, or of `ANSWERS_TO_TIP` if there is a `tip`. state: state of the page at the
-    request. tip: position of the dragged tip, in L. stored: cycle of a result file, from which a film is made
+    kind: a key of `ANSWERS`, or of `ANSWERS_TO_TIP` if `tip` is given. state: state of the page at the
+    request. tip: position of the dragged tip, in L. stored: cycle from a result file, of which a film is made
     without a solve.
     """
 
@@ -54,8 +54,9 @@ class Reply(NamedTuple):
     """Message of a solver process to the page.
 
     outcome: "answer", "refused", "failed" or "cancelled"; "ready" once the process has started; "progress"
-    during a long solve. content: variables of the answer by name; `words` and `share` of a `SolvePosition`
-    for progress; else an error message under the name `sentence`. seconds: time of the solve.
+    during a long solve. content: variables of the answer by name; for "progress", `words` and `share` of a
+    `SolvePosition`; for "refused" and "failed", an error message under the name `sentence`. seconds: time
+    since the start of the solve.
     """
 
     outcome: str
@@ -64,8 +65,8 @@ class Reply(NamedTuple):
 
 
 def variables(answer: Answer) -> AnswerVariables:
-    """All variables of the result `answer` by name, with its status, the meaning of the status, message and
-    units.
+    """All variables of `answer` by name, and its `status`, `sentence` (meaning of the status), `message` and
+    `units` (by variable).
     """
     found: AnswerVariables = {str(name): array.values for name, array in answer.data.variables.items()}
     return found | {
@@ -75,20 +76,20 @@ def variables(answer: Answer) -> AnswerVariables:
 
 
 def spectrum(state: PageState) -> AnswerVariables:
-    """Leading eigenvalues of the straight rod with the number of unstable modes, and the shapes
-    of the modes.
-    """
+    """Leading eigenvalues and modes of the straight rod, and the number of unstable modes."""
     return variables(state.subject().spectrum(modes=MODE_COUNT, vectors=True, progress=False))
 
 
 def thresholds(state: PageState) -> AnswerVariables:
-    """Forces at which the stability of the straight rod changes; `kinds`: words of `crossing_kind`."""
+    """Forces at which the stability of the straight rod changes. kinds: kind of each change, in words."""
     answer = state.subject().thresholds(F_max=state.largest_force(), progress=False)
     return variables(answer) | {"kinds": words_of(answer.data["crossing_kind"]).tolist()}
 
 
 def growth(state: PageState) -> AnswerVariables:
-    """Growth rates of the leading modes over F; `unit`: "1/tau2" for a rod, "1/s" for an arm."""
+    """Growth rates of the leading modes over F, as variables by name. unit: "1/tau2" for a rod, "1/s" for an
+    arm.
+    """
     subject = state.subject()
     tau2 = subject.tau2 if isinstance(subject, Arm) else 1.0
     rod = rod_of(subject)
@@ -105,13 +106,13 @@ def growth(state: PageState) -> AnswerVariables:
 
 
 def cycle(state: PageState) -> AnswerVariables:
-    """Limit cycle with shapes of the arm over a period; x, y: shape of the straight arm."""
+    """Limit cycle with shapes of the arm over a period. x, y: coordinates of the straight arm."""
     return variables(state.subject().cycle(shapes=SHAPE_COUNT, progress=False)) | bent(state, None)
 
 
 def film(state: PageState) -> AnswerVariables:
     """Film of the limit cycle, as made by `rodsweep plot`: the content of a GIF file, under the name `gif`.
-    Raises InputError for a rod without a cycle.
+    Raises InputError if the rod has no cycle.
     """
     answer = state.subject().cycle(shapes=SHAPE_COUNT, progress=False)
     if not np.isfinite(answer.data["shape_x"].values).all():
@@ -120,7 +121,7 @@ def film(state: PageState) -> AnswerVariables:
 
 
 def film_of(cycle: Answer | Dataset) -> AnswerVariables:
-    """Film of a limit cycle with solved shapes: the content of a GIF file, under the name `gif`."""
+    """Film of a limit cycle: the content of a GIF file, under the name `gif`. cycle: result with shapes."""
     return {"gif": plot(cycle, what="animation").image}
 
 
@@ -137,8 +138,8 @@ def branch(state: PageState) -> AnswerVariables:
 
 
 def crushing_force(rod: Mapping[str, float]) -> float:
-    """Force that crushes the thinnest section of a rod of linear material, in k3/L^2: k1, or less for a
-    thinner tip.
+    """Force that crushes the thinnest section of a rod of linear material, in k3/L^2: k1 min(1, taper)^2.
+    rod: parameters by name.
     """
     return rod["k1"] * min(1.0, rod.get("taper", DEFAULTS.get("taper", 1.0))) ** 2
 
@@ -153,18 +154,18 @@ ANSWERS: dict[str, Callable[[PageState], AnswerVariables]] = {
     "cycles": cycle_diagram,
     "film": film,
 }
-"""Function that answers each kind of question about the state of the page."""
+"""For each kind of question about the state of the page, the function that answers the question."""
 ANSWERS_TO_TIP: dict[str, Callable[[PageState, Tip], AnswerVariables]] = {
     "bent": bent,
     "motion": motion,
     "film": motion_film_answer,
 }
-"""Function that answers each kind of question about a dragged tip."""
+"""For each kind of question about a dragged tip, the function that answers the question."""
 
 
 def answer_to(question: Question) -> AnswerVariables:
-    """Answer to a question: variables by name. Raises InputError for invalid values in the state
-    of the page.
+    """Answer to a question, as variables by name. Raises InputError for invalid values in the state of the
+    page.
     """
     if question.stored is not None:
         return film_of(question.stored)

@@ -4,20 +4,20 @@ from collections.abc import Mapping, Sequence
 from html import escape
 
 KIND_WORDS = {"cycles": "folds and torus points", "growth": "growth rates", "branch": "branches"}
-"""Words for a kind of question in the text "solving ..."; an unlisted kind stands for itself."""
+"""Name of a kind of question in the text "solving ..."; a kind that is not listed is its own name."""
 
 
 def solving_text(kinds: Sequence[str], progress: Mapping[str, str]) -> str:
-    """Text "solving ..." for the given kinds of questions; empty without any. progress: progress as text, by
-    kind.
+    """Text "solving ..." for the given kinds of questions; empty if `kinds` is empty. progress: progress as
+    text, by kind.
     """
     names = [KIND_WORDS.get(kind, kind) + progress.get(kind, "") for kind in kinds]
     return f"solving {', '.join(names)} ..." if names else ""
 
 
 def progress_text(words: str, share: float | None) -> str:
-    """Progress of a solve as text in parentheses. share: fraction of the work that is done; None
-    if unknown.
+    """Progress of a solve as text in parentheses. words: present step of the solve. share: completed fraction
+    of the work; None if unknown.
     """
     percent = "" if share is None else f", {share:.0%}"
     return f" ({escape(words)}{percent})"

@@ -1,5 +1,5 @@
-"""Solver processes, each for a group of kinds of questions. A new question of a kind replaces an older
-question of this kind.
+"""Solver processes, one for each group of kinds of questions. A new question of a kind replaces the older
+question of the same kind.
 """
 
 import os
@@ -21,11 +21,11 @@ from .questions import Question, Reply
 Key = tuple[str, str]
 """(session, kind) of a question. A new question replaces an older question with an equal key."""
 ReplyCallback = Callable[[Reply], None]
-"""Callback for the reply to a question, or for a progress message."""
+"""Function that is called with the reply to a question, or with a progress message."""
 
 
 def ignore_progress(reply: Reply) -> None:
-    """Ignores progress messages; used for questions whose progress is not shown."""
+    """Callback for progress messages that are not shown; does nothing."""
 
 
 PROCESS_GROUPS = {
@@ -33,24 +33,24 @@ PROCESS_GROUPS = {
     "branch": "branch", "diagram": "diagram", "bent": "spectrum", "motion": "cycle", "film": "film",
     "cycles": "diagram",
 }  # fmt: skip
-"""Process group of each kind of question. Fast questions never wait for slow questions in the same group."""
+"""Process group of each kind of question, chosen so that fast questions do not wait for slow questions."""
 GROUP_NICENESS = {"spectrum": 0, "cycle": 10, "thresholds": 12, "branch": 15, "diagram": 15, "film": 15}
-"""Unix niceness of the solver process of each group. Only the spectrum has the priority of the page and the
-browser, so its picture is drawn while other processes solve."""
+"""Unix niceness of the solver process of each group. Only the group "spectrum" has the priority of the page
+and the browser, so its pictures are drawn while other processes solve."""
 INTERRUPT_RETRY = 0.1
-"""Time after which a cancellation is repeated if the process was not ready for it, in seconds."""
+"""Time after which a cancellation is repeated if the process was not yet ready, in seconds."""
 WARM_UP_KINDS = ("spectrum", "cycle", "thresholds")
-"""Kinds of questions that are solved once at the start, which starts their processes and loads
+"""Kinds of questions that are solved once at the start of the server, to start their processes and to load
 compiled code."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class SolverTimeLimits:
-    """Time limits of a solver process, in seconds, while a newer question waits.
+    """Time limits of a solver process, in seconds.
 
-    interrupt: age of a question from which it is cancelled. Younger solves finish, so that pictures follow a
-    moving slider. kill: time after a cancellation after which a process without reply is killed and
-    restarted.
+    interrupt: a solve of at least this age is cancelled when a newer question with the same key waits.
+    Younger solves finish, so that pictures follow a moving slider. kill: a process that has not replied this
+    time after a cancellation is killed, and restarted for the next question.
     """
 
     interrupt: float = 0.3
@@ -58,7 +58,9 @@ class SolverTimeLimits:
 
 
 class SolverProcess:
-    """One solver process. The first question starts it; the next question restarts it after it was killed."""
+    """One solver process, and the queue of its questions. A question starts the process if it is not running.
+    patience: time limits. niceness: Unix niceness.
+    """
 
     def __init__(self, patience: SolverTimeLimits | None = None, niceness: int = 0):
         self.patience = patience or SolverTimeLimits()
@@ -66,26 +68,27 @@ class SolverProcess:
         self.waiting: dict[Key, tuple[Question, ReplyCallback, ReplyCallback]] = {}
         self.asked: tuple[Key, ReplyCallback, ReplyCallback] | None = None
         self.number = 0
-        """Number of questions sent so far. A timer compares this number, to act only on the question for
-        which the timer was set."""
+        """Number of questions sent so far. A timer compares this number with the number at which the timer
+        was set, and acts only if both are equal."""
         self.since = 0.0
         self.starts = 0
         self.is_ready = False
-        """Whether the process handles signals; before, SIGINT would end the process."""
+        """Whether the process has installed its signal handlers. Before that, SIGINT would end the
+        process."""
         self._process: ForkServerProcess | None = None
         self._connection: Connection[Any, Any] | None = None
         self._life: Connection[Any, Any] | None = None
 
     @property
     def pid(self) -> int | None:
-        """Id of the operating system's process; None if none runs."""
+        """Id of the operating system's process; None if no process is running."""
         return None if self._process is None else self._process.pid
 
     def ask(
         self, key: Key, question: Question, done: ReplyCallback, progress: ReplyCallback = ignore_progress
     ) -> None:
-        """Queues a question. An older question with the same key leaves the queue, or is cancelled if it is
-        being solved.
+        """Queues a question. An older question with the same key is removed from the queue, or cancelled if
+        it is being solved. done: callback for the reply. progress: callback for progress messages.
         """
         self.waiting.pop(key, None)
         self.waiting[key] = question, done, progress
@@ -99,14 +102,16 @@ class SolverProcess:
             )
 
     def forget(self, session: str) -> None:
-        """Removes all questions of a session from the queue, and cancels the one being solved."""
+        """Removes all questions of a session from the queue, and cancels the session's question that is being
+        solved.
+        """
         for key in [key for key in self.waiting if key[0] == session]:
             del self.waiting[key]
         if self.asked is not None and self.asked[0][0] == session:
             self._interrupt(self.number)
 
     def drop(self, key: Key) -> None:
-        """Removes the question with the given key from the queue, or cancels its solve."""
+        """Removes the question with the given key from the queue, and cancels its solve if it has started."""
         self.waiting.pop(key, None)
         if self.asked is not None and self.asked[0] == key:
             self._interrupt(self.number)
@@ -117,7 +122,7 @@ class SolverProcess:
         self._end()
 
     def start(self) -> None:
-        """Starts the process unless it runs already."""
+        """Starts the process if it is not running."""
         if self._process is not None:
             return
         start_fork_server()
@@ -210,7 +215,9 @@ class Solvers:
         self.groups = {group: SolverProcess(patience, niceness) for group, niceness in GROUP_NICENESS.items()}
 
     def warm_up(self) -> None:
-        """Starts the processes of WARM_UP_KINDS with one question each, which loads compiled code."""
+        """Sends one question of each of the WARM_UP_KINDS, to start their processes and load compiled
+        code.
+        """
         for kind in WARM_UP_KINDS:
             self.ask("warm up", Question(kind, PageState()), lambda reply: None)
 

@@ -1,7 +1,8 @@
-"""Main loop of a solver process, which reads questions from a pipe and writes replies to it.
+"""Main loop of a solver process, which reads questions from a pipe and writes replies to the same pipe.
 
-SIGINT cancels the question being solved. The process ends when the pipe closes. Only the page's process holds
-the other end of a second pipe, so the solver process ends with it, even during a solve.
+SIGINT cancels the question being solved. The process ends when the pipe closes. The solver process also
+watches a second pipe, whose other end only the page's process holds; it therefore ends with the page, even
+during a solve.
 """
 
 import os
@@ -20,15 +21,15 @@ from ...watch import SolvePosition, reporting_to
 from .questions import Question, Reply, answer_to
 
 CANCELLATION_RETRY = 0.05
-"""Time, in seconds, after which a cancellation is repeated that arrived during an import, or while a progress
-message was sent."""
+"""A cancellation that arrives during an import, or while a progress message is sent, is repeated after this
+time, in seconds."""
 
 
 class Cancellation:
     """Handler of SIGINT that raises KeyboardInterrupt only during a solve.
 
-    It waits for the end of an import, because a module imported in part would stay broken, and of sending a
-    progress message, because the page could not read half a message. SIGALRM then calls the handler again.
+    During an import or while a progress message is sent, SIGALRM calls the handler again later: a partly
+    imported module would stay broken, and the page could not read half a message.
     """
 
     def __init__(self) -> None:
@@ -49,7 +50,7 @@ class Cancellation:
 
 
 def is_importing(frame: FrameType | None) -> bool:
-    """Whether the call stack above `frame` contains an import of a module."""
+    """Whether `frame` or one of its callers is importing a module."""
     while frame is not None:
         if frame.f_code.co_filename.startswith("<frozen importlib"):
             return True
@@ -58,10 +59,10 @@ def is_importing(frame: FrameType | None) -> bool:
 
 
 def reply_to(question: Question, cancellation: Cancellation, send: Callable[[Reply], None]) -> Reply:
-    """Reply to one question. An unexpected exception gives the outcome "failed", and is printed on standard
-    error.
+    """Solves a question and returns the reply. An unexpected exception gives the outcome "failed", and its
+    traceback is printed to standard error.
 
-    send: called with replies of the outcome "progress" during a long solve.
+    cancellation: handler of SIGINT. send: called with replies of the outcome "progress" during a long solve.
     """
 
     def send_progress(place: SolvePosition) -> None:
@@ -100,18 +101,18 @@ def reply_to(question: Question, cancellation: Cancellation, send: Callable[[Rep
 
 
 def end_with_page(life: "Connection[Any, Any]") -> None:
-    """Ends this process when the other end of the pipe `life` closes. Nothing is ever written to
-    this pipe.
+    """Waits until the other end of the pipe `life` closes, then ends this process. No data are written to
+    `life`.
     """
     life.poll(None)
     os._exit(0)
 
 
 def run(connection: "Connection[Reply, Question]", life: "Connection[Any, Any]", niceness: int) -> None:
-    """Answers the questions from a pipe until it closes. life: pipe that closes when the page's
-    process ends.
+    """Answers the questions from the pipe `connection` until the pipe closes. life: pipe that closes when the
+    page's process ends. niceness: Unix niceness.
     """
-    os.setpgid(0, 0)  # out of reach of Ctrl-C, which ends the page; a session of its own would undo niceness
+    os.setpgid(0, 0)  # protects from Ctrl-C, which ends the page; a separate session would undo the niceness
     os.nice(niceness)
     Thread(target=end_with_page, args=(life,), daemon=True).start()
     cancellation = Cancellation()

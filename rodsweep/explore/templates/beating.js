@@ -1,5 +1,5 @@
-// The arm: beating, bent by its tip, moving from there, and beating in the cycle that it reaches.
-// Each frame is drawn on a canvas of its own: Bokeh would paint the whole figure again, in more time than a frame.
+// Animation of the arm: its limit cycle, its shape while the tip is dragged, its motion after the release.
+// Each frame is drawn on a separate canvas: Bokeh would repaint the whole figure, which takes longer than a frame.
 const view = Bokeh.index.find_one(figure)
 const canvas = document.createElement("canvas")
 canvas.className = "bk-layer"
@@ -42,7 +42,7 @@ function loop(data, phase) {
   const place = (phase - Math.floor(phase)) * count, before = Math.floor(place) % count
   draw_at(data, before, (before + 1) % count, place - Math.floor(place))
 }
-// Phase of the shape of a cycle that is nearest to the arm as it is drawn.
+// Phase of the cycle whose shape is nearest to the drawn shape of the arm.
 function nearest_phase(data) {
   const nodes = nodes_of(data), count = count_of(data), at = arm.data
   let best = 0, least = Infinity

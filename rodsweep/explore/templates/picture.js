@@ -1,4 +1,4 @@
-// `animated`: a line that is drawn on a canvas of its own, of which Bokeh knows only while it exports.
+// `animated`: line that is drawn on a separate canvas; Bokeh draws this line only during an export.
 const figure = figures[choice.value]
 if (figure.visible) {
   animated.setv({visible: true}, {sync: false})

@@ -34,23 +34,23 @@ FIGURES: dict[str, Callable[[FigureRequest], str]] = {
     "criticality": draw_criticality,
     "branch": draw_branch,
 }
-"""Function of each task that writes its figure and returns a description of the figure."""
+"""For each task, the function that writes the figure and returns a description of the figure."""
 DEFAULT_LOOK = FigureLook()
 """Appearance of figures without options of the user."""
 OMITTED = {"missing": "are not computed", "failed": "failed"}
-"""Statuses of points that no figure shows, with the words that follow the number of such points."""
+"""Statuses of points that no figure shows, with the predicate for such points."""
 
 
 def _styled(look: FigureLook) -> AbstractContextManager[None]:
-    """Context in which matplotlib has the settings of all figures and of the user's style. Raises InputError
-    for an unknown style.
+    """Context in which matplotlib uses the settings for all figures and the style that the user has chosen.
+    Raises InputError for an unknown style.
     """
     ours = FIGURE_STYLE if look.width is None else PRINT_STYLE
     if look.style is None:
         return matplotlib.rc_context(ours)
     try:
         if look.style not in matplotlib.style.library:
-            Path(look.style).read_text(encoding="utf-8")  # matplotlib only logs a file that is no text
+            Path(look.style).read_text(encoding="utf-8")  # for a file that is no text, matplotlib only logs
         own = matplotlib.style.library.get(look.style) or rc_params_from_file(
             look.style, use_default_template=False
         )
@@ -62,7 +62,8 @@ def _styled(look: FigureLook) -> AbstractContextManager[None]:
 class FigureChoices(TypedDict, total=False):
     """Options that choose the content of a figure.
 
-    roots: which roots a figure of spectra shows. what: kind of figure. points: numbers of points, from 1.
+    roots: choice of roots in a figure of spectra, see ROOTS. what: kind of figure, see KINDS. points: numbers
+    of the drawn points, from 1.
     """
 
     roots: str | None
@@ -71,8 +72,8 @@ class FigureChoices(TypedDict, total=False):
 
 
 def _drawn(request: FigureRequest) -> str:
-    """Writes the figure and returns a description of it. If quantities of an arm vary, the figure is a map
-    over them.
+    """Writes the figure and returns a description of the figure. If quantities of an arm vary, the figure
+    shows results over these quantities.
     """
     if can_draw(request):
         return draw_arm_map(request)
@@ -88,14 +89,16 @@ def draw(
     keep: Callable[[Figure], None] | None = None,
     **choices: Unpack[FigureChoices],
 ) -> str:
-    """Draws the figure of one result file, or of several, into `output`; returns a sentence about it.
+    """Draws the figure of one or several result files to the file `output`; returns a sentence about the
+    figure.
 
-    shapes: function that solves cycles without stored shapes. keep: called with the finished figure, instead
-    of writing a file. Raises InputError if the files contain nothing to draw.
+    look: appearance. shapes: function that computes the shapes of cycles if the file has no shapes. keep:
+    callback for the finished figure; if given, no file is written. choices: content. Raises InputError if the
+    files contain no result that can be drawn.
     """
     views = [views] if isinstance(views, View) else views
     if look.width and choices.get("what") == "animation":
-        raise InputError("--width is for printed figures, not for an animation; remove it")
+        raise InputError("--width is for printed figures, not for an animation; remove --width")
     if not look.title:
         views = [replace(view, attributes=view.attributes | {"title": ""}) for view in views]
     taken = output.exists() and (
@@ -107,7 +110,7 @@ def draw(
             shown = _drawn(request)
         except OSError as error:
             raise EnvironmentIncomplete(f"{output} cannot be written: {error.strerror or error}") from error
-        except RuntimeError as error:  # from a program that a style uses, such as LaTeX
+        except RuntimeError as error:  # raised by a program that a style uses, such as LaTeX
             raise EnvironmentIncomplete(
                 f"the figure cannot be drawn: {str(error).splitlines()[0]}"
             ) from error
@@ -119,7 +122,7 @@ def draw(
 
 
 def _omitted_points(views: Sequence[View]) -> str:
-    """Clause on the number of points that the figure omits; empty if there are none."""
+    """Clause on the number of points that the figure omits; empty if the figure shows all points."""
     words = np.concatenate([view.outcomes for view in views])
     counts = (f"{np.count_nonzero(words == word)} {text}" for word, text in OMITTED.items() if word in words)
     omitted = " and ".join(counts)

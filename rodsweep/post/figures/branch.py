@@ -32,12 +32,12 @@ SPECIAL_POINT_MARKS = {
     "no_cycle_found": ("x", "no further cycle found"),
     "list_full": ("|", "last cycle stored"),
 }
-"""(marker, legend entry) of a special point, by kind, or by reason if it is an end. Unlisted ends have no
-mark."""
+"""(marker, legend entry) of a special point, by kind, or by reason for the end of a branch. Other ends are
+not marked."""
 PREDICTION_LINE = (0, (4, 1, 1, 1))
-"""Line style of the amplitude that the normal form predicts near a Hopf point."""
+"""Line style of the amplitude predicted by the normal form near a Hopf point."""
 PREDICTION_WORD = "by the normal form"
-"""Legend entry of the amplitude that the normal form predicts."""
+"""Legend entry of the amplitude predicted by the normal form."""
 BRANCH_COLOURS = (
     style.BLUE,
     style.VERMILION,
@@ -48,12 +48,12 @@ BRANCH_COLOURS = (
     "#C2185B",
     "#9E9D24",
 )
-"""Colours of the branches of one rod, or of the rods if there are several, in order."""
+"""Colours, in order, of the branches of a single rod, or of the rods if the file has several rods."""
 
 
 def draw_branch(request: FigureRequest) -> str:
-    """Draws the largest y of the tip and the period of cycles over the followed parameter, for one rod or
-    several; returns a sentence.
+    """Draws the largest y of the tip and the period of cycles over the followed parameter, for one or several
+    rods; returns a sentence.
     """
     view = request.only_view()
     rods = [RodBranches(view, number) for number in range(view.variables["status"].size)]
@@ -94,8 +94,8 @@ def draw_branch(request: FigureRequest) -> str:
 def draw_curves(
     upper: Axes, lower: Axes, curves: Sequence[StoredBranch], colours: Sequence[str]
 ) -> dict[str, Line2D]:
-    """Draws branches into two panels, largest y of the tip and period; returns legend entries of special
-    points, by kind.
+    """Draws branches into two panels; returns legend entries of special points, by kind. upper: panel of the
+    largest y of the tip. lower: panel of the period. colours: colours of the branches, used cyclically.
     """
     marked: dict[str, Line2D] = {}
     for number, curve in enumerate(curves):
@@ -107,14 +107,14 @@ def draw_curves(
 
 
 def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
-    """Draws the straight rod as a line y = 0 whose style shows the stability."""
+    """Draws the straight rod as the line y = 0; the line style shows the stability."""
     for stable, ranges in zip((1, 0), rod.straight_ranges(_shown(rod)), strict=True):
         for low, high in ranges:
             axes.plot([low, high], [0, 0], STABILITY_LINES[stable][0], color="k", lw=1.4)
 
 
 def stability_entries(curves: Sequence[StoredBranch]) -> list[Line2D]:
-    """Legend entries for the line styles, which show stability."""
+    """Legend entries for the line styles of stable, unstable and undecided parts of branches."""
     shown = {int(s) for curve in curves for s in curve.stable} | {1, 0}
     return [
         Line2D([], [], color="k", ls=STABILITY_LINES[s][0], label=STABILITY_LINES[s][1])
@@ -123,8 +123,8 @@ def stability_entries(curves: Sequence[StoredBranch]) -> list[Line2D]:
 
 
 def _left_out(rods: Sequence[RodBranches], beating: int, drawn: int) -> str:
-    """Clause on branches and rods that the figure leaves out. beating, drawn: numbers of rods with cycles,
-    and of drawn rods.
+    """Clause on branches and rods that the figure leaves out. beating: number of rods with cycles. drawn:
+    number of drawn rods.
     """
     hidden = sum(rod.hidden for rod in rods)
     more = f"; {hidden} more have special points that are not stored" if hidden else ""
@@ -133,13 +133,13 @@ def _left_out(rods: Sequence[RodBranches], beating: int, drawn: int) -> str:
     computed = int((rods[0].view.variables["status"] != MISSING).sum())
     without = computed - beating
     return more + (
-        f"; {some_of(without, computed, 'rod')} {has_or_have(without)} none" if without > 0 else ""
+        f"; {some_of(without, computed, 'rod')} {has_or_have(without)} no branch" if without > 0 else ""
     )
 
 
 def _shown(rod: RodBranches) -> Range:
-    """Range of the parameter in which the straight rod is drawn: not crushed, and not far beyond
-    all cycles.
+    """Range of the parameter in which the straight rod is drawn: the followed range, without crushed rods,
+    and up to 1.1 times the largest parameter of the branches.
     """
     low, high = ends_of(rod.view)
     if rod.curves:
@@ -155,15 +155,17 @@ def _shown(rod: RodBranches) -> Range:
 def _pieces(
     axes: Axes, x: np.ndarray, y: np.ndarray, stable: np.ndarray, colour: str, marker: str = ""
 ) -> None:
-    """Draws a curve, x and y of shape (n,), with line styles by stability. stable: between neighbouring
-    vertices, (n - 1,).
+    """Draws a curve with line styles by stability. x, y: vertices, (n,) each. stable: stability between
+    neighbouring vertices, (n - 1,).
     """
     for vertices, kind in runs_of(stable):
         axes.plot(x[vertices], y[vertices], ls=STABILITY_LINES[kind][0], marker=marker, color=colour, lw=1.4)
 
 
 def _mark(upper: Axes, lower: Axes, curve: StoredBranch, marked: dict[str, Line2D]) -> None:
-    """Marks the special points of a branch in both panels; adds legend entries, by kind, to `marked`."""
+    """Marks the special points of a branch in two panels, as in `draw_curves`; adds legend entries to
+    `marked`.
+    """
     for special in curve.special:
         kind = special.reason if special.kind == "end" else special.kind
         if kind not in SPECIAL_POINT_MARKS:
@@ -175,10 +177,10 @@ def _mark(upper: Axes, lower: Axes, curve: StoredBranch, marked: dict[str, Line2
 
 
 def _compare_prediction(axes: Axes, curves: list[StoredBranch], colours: Sequence[str], along: str) -> Line2D:
-    """Draws the amplitudes near Hopf points, and their prediction by the normal form, both in units of the
-    coefficient a; returns a legend entry.
+    """Draws the amplitudes near Hopf points and the amplitudes predicted by the normal form, divided by the
+    amplitude coefficient |a|; returns the legend entry of the prediction.
 
-    Each branch is drawn up to its first fold. The prediction does not hold beyond.
+    Each branch is drawn up to its first fold, beyond which the prediction is not valid.
     """
     nearest = []
     farthest = []

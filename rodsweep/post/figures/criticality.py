@@ -1,5 +1,5 @@
-"""Criticality of the Hopf points of rods, and predicted amplitudes of the cycles near them: a
-map, or lines.
+"""Criticality of the Hopf points of rods, and predicted amplitudes of cycles near Hopf points, as a map or as
+lines.
 """
 
 from math import floor, log10
@@ -21,15 +21,16 @@ from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
 
 MAX_DRAWN_DISTANCE = 0.1
-"""Largest |F/F_H - 1| at which a predicted amplitude is drawn. Farther away cycles deviate from the
-leading-order law."""
+"""Predicted amplitudes are drawn up to this value of |F/F_H - 1| (F_H: Hopf point). At larger distances
+cycles deviate from the leading-order law."""
 CRITICALITY_LINES = {-1: ("-", "supercritical"), 1: ("--", "subcritical"), 0: (":", "side undecided")}
 """(line style, legend entry) of the predicted cycles, by sign of Re c: -1 supercritical, 1 subcritical, 0
 undecided."""
 ROD_COLOURS = (style.BLUE, style.VERMILION, style.GREEN, "#CC79A7", "#56B4E9", "#000000")
 """Colours of the rods, in order."""
 PREDICTION_POINT_COUNT = 60
-"""Number of points of a predicted curve. They are dense near the Hopf point, where the curve is steep."""
+"""Number of points of a predicted curve. The points are dense near the Hopf point, where the curve is
+steep."""
 CRITICALITY_MARKS = {
     -1: ("supercritical", style.BLUE, "o"),
     1: ("subcritical", style.VERMILION, "s"),
@@ -44,15 +45,15 @@ CRITICALITY_CLASSES = (
     ("subcritical", style.VERMILION),
     ("undecided", "0.4"),
 )
-"""(legend entry, colour) of a rod on a map, by the criticality of its Hopf points. Colour-blind readers and
-grey prints distinguish the colours."""
+"""(legend entry, colour) of the classes of rods on a map, by the criticality of the Hopf points. Colour-blind
+readers can distinguish the colours, also in grey prints."""
 LINEAR_FRACTION = 0.1
-"""Fraction of the Hopf points whose |Re c| lies in the linear range of the symmetric logarithmic axis."""
+"""Fraction of the Hopf points whose Re c lies in the linear range of a symmetric logarithmic axis."""
 
 
 def draw_criticality(request: FigureRequest) -> str:
-    """Draws a map of the first Hopf points over two parameters; a and Re c over one parameter; else predicted
-    amplitudes. Returns a sentence.
+    """Draws a map of the first Hopf points over two parameters, or the coefficients a and Re c over one
+    parameter, or else predicted amplitudes over F; returns a sentence.
     """
     view = request.only_view()
     style.require(view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form")
@@ -67,8 +68,8 @@ def draw_criticality(request: FigureRequest) -> str:
 
 
 def _along(view: View, name: str) -> Figure:
-    """Figure of the amplitude coefficient a, above Re c, over the parameter `name`. Markers show the
-    criticality.
+    """Figure of the amplitude coefficient a (upper panel) and of Re c (lower panel) over the parameter
+    `name`. Markers show the criticality.
     """
     x = view.point_columns[name]
     keep = np.isfinite(x)
@@ -90,8 +91,8 @@ def _along(view: View, name: str) -> Figure:
 
 
 def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
-    """Marks Hopf points by criticality; returns legend entries. x: (rods,). values, side: (rods, crossings);
-    side: sign of Re c.
+    """Draws Hopf points with markers by criticality; returns legend entries. x: (rods,). values: y, (rods,
+    crossings). side: signs of Re c, (rods, crossings).
     """
     across = np.broadcast_to(x[:, None], values.shape)
     handles = []
@@ -104,8 +105,8 @@ def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
 
 
 def _map(view: View, points: PointMap, narrow: bool) -> Figure:
-    """Figure with two maps, criticality of the first Hopf points and |a|; narrow: whether the maps are
-    stacked.
+    """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. narrow:
+    whether the maps are stacked.
     """
     side = view.by_point("criticality")[points.at]
     a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.at])
@@ -130,19 +131,21 @@ def _map(view: View, points: PointMap, narrow: bool) -> Figure:
 
 
 def _classes(side: Array) -> Array:
-    """Index in CRITICALITY_CLASSES for every rod, (ny, nx).
+    """Index in CRITICALITY_CLASSES for each rod, (ny, nx).
 
-    side: sign of Re c at the Hopf points of the rods, (ny, nx, crossings); NaN for none.
+    side: signs of Re c at the Hopf points of the rods, (ny, nx, crossings); NaN for a missing Hopf point.
     """
     first = side[..., 0]
     later = (side[..., 1:] == 1).any(axis=-1)
-    # The numbers are indices in CRITICALITY_CLASSES; a rod without a Hopf point has NaN and stays 0.
+    # The numbers are indices in CRITICALITY_CLASSES; a rod without a Hopf point has NaN and the index 0.
     classes = np.select([first == -1, first == 1, first == 0], [1.0, 3.0, 4.0], 0.0)
     return np.where((first == -1) & later, 2.0, classes)
 
 
 def draw_predictions(view: View) -> tuple[Figure, str]:
-    """(figure of the predicted amplitudes near all Hopf points of the first rods, description)."""
+    """Returns (figure, description). The figure shows predicted amplitudes near all Hopf points of the first
+    rods.
+    """
     kinds, F, a = map(view.by_point, ("criticality", "crossing_F", "amplitude_coefficient"))
     having = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))
     style.require(view, having.size, "Hopf point with a normal form")
@@ -154,7 +157,7 @@ def draw_predictions(view: View) -> tuple[Figure, str]:
     for rod, colour in zip(drawn, ROD_COLOURS, strict=False):
         for kind, at, size in zip(kinds[rod], F[rod], a[rod], strict=True):
             if np.isfinite(kind) and np.isfinite(size):
-                # The cycles are above the Hopf point for a > 0, below it for a < 0.
+                # For a > 0 the cycles have a larger F than the Hopf point, for a < 0 a smaller F.
                 beside = at * (1 + np.sign(size) * distance)
                 axes.plot(
                     beside,

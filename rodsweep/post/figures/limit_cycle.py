@@ -1,4 +1,6 @@
-"""Figures of the task `limit_cycle`: the kind named by the user, or the kind that suits the file."""
+"""Figures of the task `limit_cycle`: the kind chosen by the user, or a default kind that depends on the
+file.
+"""
 
 import numpy as np
 
@@ -23,16 +25,16 @@ from .layout.fitting import MAP_ASPECT, STRIP_ASPECT
 from .request import KINDS_OF_TASK, FigureRequest
 
 ALL_POINT_FIGURES = {"amplitude": "amplitudes", "maps": "maps"}
-"""Kinds of figures that show all points of a file, with their names in a sentence."""
+"""Kinds of figures that show all points of a file, with the noun for messages."""
 NEEDED_VARIABLES = {"cycle": SHAPE_VARIABLES, "animation": SHAPE_VARIABLES, "energy": ENERGY_BUDGET_VARIABLES}
-"""Variables of a cycle without which a kind of figure cannot be drawn."""
+"""Variables of a cycle that are necessary for a figure, by kind of figure."""
 FEW_POINT_FIGURES = {"cycle": draw_portrait, "energy": draw_energy, "transient": draw_transients}
-"""Function of each kind of figure that shows a few points."""
+"""For each kind of figure that shows a few points, the function that draws the figure."""
 
 
 def draw_limit_cycle(request: FigureRequest) -> str:
     """Draws the figure of one file, or the amplitudes of several files; returns a sentence. Raises InputError
-    for unsuitable choices.
+    for options that do not match the files.
     """
     points = request.points
     name = figure_name(request)
@@ -51,8 +53,8 @@ def draw_limit_cycle(request: FigureRequest) -> str:
 
 
 def _with_needs(request: FigureRequest, name: str) -> View:
-    """The file with the variables that the figure `name` needs; `request.shapes` solves for missing ones, if
-    given.
+    """View of the file with the variables that the figure `name` needs. If variables are missing,
+    `request.shapes`, if given, computes them.
     """
     view = request.views[0]
     if request.shapes is None or all(
@@ -65,8 +67,8 @@ def _with_needs(request: FigureRequest, name: str) -> View:
 
 
 def figure_name(request: FigureRequest) -> str:
-    """Kind of figure that the user chose by --what, or that suits the files. Raises InputError for unsuitable
-    choices.
+    """Kind of figure that the user has chosen by --what, or the default kind. Raises InputError for options
+    that do not match the files.
     """
     first, *others = request.views
     for view in others:
@@ -78,15 +80,15 @@ def figure_name(request: FigureRequest) -> str:
     if others and name != "amplitude":
         raise InputError(f"--what {name} draws one file; only amplitudes of several files make one figure")
     if request.points and name in ALL_POINT_FIGURES:
-        raise InputError(f"--point is given, but {ALL_POINT_FIGURES[name]} show all points; remove it")
+        raise InputError(f"--point is given, but {ALL_POINT_FIGURES[name]} show all points; remove --point")
     return name
 
 
 def _suggested(request: FigureRequest) -> str:
-    """Kind of figure that suits the request.
+    """Default kind of figure.
 
-    An animation for an output with its suffix; shapes or transients for a few points; maps for many lines;
-    else amplitudes.
+    An animation for an output file with the suffix of an animation; shapes or transients for a few points;
+    maps for many lines; else amplitudes.
     """
     first, *others = request.views
     if request.output.suffix in FILM_SUFFIXES:
@@ -110,7 +112,7 @@ def _suggested(request: FigureRequest) -> str:
 
 
 def _has_many_lines(view: View) -> bool:
-    """Whether the points form a map with more lines than a figure of amplitudes can show."""
+    """Whether the points form a map that has more lines than a figure of amplitudes can show."""
     if not is_map(view):
         return False
     across = next(name for name in point_map(view).names if name != abscissa(view))

@@ -1,5 +1,5 @@
-"""Figures of a list of points: as a grid if the points form one, else with the number of the point on an
-axis.
+"""Lists of points in figures: conversion to a grid if the points form a grid, and axes with the number of the
+point.
 """
 
 from dataclasses import replace
@@ -15,15 +15,15 @@ from ...results.file.view import View
 from ..summary.arm.arm import quantity_words
 
 OTHER_DIMENSIONS = ("mode", "u", "crossing")
-"""Dimensions other than the points, which may have the same length as the list."""
+"""Names of dimensions that are not dimensions of points; their length may equal the length of the list."""
 MAX_LABELLED_POINTS = 12
-"""Largest number of points for which every point has a tick label."""
+"""With at most this number of points, every point has a tick label."""
 
 
 def as_grid(view: View) -> View:
-    """View of the grid that the points of a list form, in any order; the view itself if they form none.
+    """View as a grid, if the points of the list form a grid, in any order; else the view itself.
 
-    The grid has at most two varied parameters, and each combination of their values once.
+    The grid has at most two varied parameters, and each combination of the values of the parameters once.
     """
     if view.is_grid:
         return view
@@ -51,10 +51,10 @@ def shared_parameters(view: View) -> dict[str, float]:
 
 
 def number_points(axes: Axes, view: View, count: int) -> None:
-    """Labels an axis with the numbers of the points of a list, from 1; leaves a margin at both ends.
+    """Labels the horizontal axis with the numbers of the points of a list, from 1. count: number of points.
 
-    For an arm the label names the varied quantities, in SI units. A short list has their values at each
-    point.
+    For an arm, the label names the varied quantities, in SI units; the tick labels of a short list are the
+    values of these quantities.
     """
     axes.set_xlim(0.5, count + 0.5)
     axes.xaxis.set_major_locator(MaxNLocator(min(count, MAX_LABELLED_POINTS), integer=True, min_n_ticks=1))
@@ -69,14 +69,16 @@ def number_points(axes: Axes, view: View, count: int) -> None:
 
 
 def _varied_quantities(view: View) -> list[tuple[str, list[str]]]:
-    """(name with unit, value at each point as text) of each quantity of an arm that varies."""
+    """Pairs (name with unit, values at the points as text), one pair for each quantity of an arm that
+    varies.
+    """
     own = {name: values for name, values in view.quantities.items() if name not in ARM_UNITS}
     return [_described(name, values) for name, values in own.items() if len(np.unique(values)) > 1]
 
 
 def _described(name: str, values: np.ndarray) -> tuple[str, list[str]]:
-    """(name with unit, values as text) of a quantity; values: (points,). A drag is stored as an index in
-    DRAGS.
+    """Returns (name with unit, values as text) of the quantity `name`. values: (points,); for a drag, indices
+    in DRAGS.
     """
     if name == "drag":
         return quantity_words(name), [DRAGS[int(value)].replace("_", " ") for value in values]

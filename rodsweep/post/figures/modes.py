@@ -1,4 +1,6 @@
-"""Leading mode of the straight rod, its deformations and its adjoint, as in the paper's Figs. 7 to 9."""
+"""Figures of the leading mode of the straight rod, with deformations and adjoint mode, as in the paper's
+Figs. 7 to 9.
+"""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,12 +18,12 @@ MODE_PANELS = (
     ("deformations", (("h2", r"$h_2$"), ("Pi", r"$\Pi$"))),
     ("adjoint mode", (("adjoint_Y", r"$Y_1^\dagger$"), ("adjoint_Theta", r"$\Theta_1^\dagger$"))),
 )
-"""(title, two pairs of field and label) of each panel in the row of a point."""
+"""(title, ((field, label), (field, label))) of each panel in the row of a point."""
 
 
 def draw_modes(request: FigureRequest) -> str:
-    """Draws a row of panels for each point: leading mode, its deformations and its adjoint; returns a
-    sentence.
+    """Draws a row of panels for each point: leading mode, deformations of this mode, and adjoint mode;
+    returns a sentence.
     """
     view = request.only_view()
     growth = view.variables["growth_rate"][..., 0].ravel()
@@ -60,8 +62,8 @@ def _parts(view: View, points: np.ndarray) -> list[Line2D]:
 
 
 def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], ...]) -> None:
-    """Draws two fields of the leading mode over u, each with its own vertical axis. Both axes have 0 at the
-    same height.
+    """Draws two fields of the leading mode over u, with separate vertical axes that have 0 at the same
+    height. point: index of the point. fields: (field, label) of the two fields.
     """
     u = view.variables["u"]
     both = panel, panel.twinx()
@@ -85,7 +87,7 @@ def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], .
 
 
 def _where(view: View, point: int) -> tuple[str, str]:
-    """(parameters of the point with index `point`, its leading eigenvalue) as text."""
+    """Returns (parameters, leading eigenvalue), as TeX, of the point with the index `point`."""
     at = {name: values[point] for name, values in view.point_columns.items()}
     w = [float(view.by_point(name)[point, 0]) for name in ("growth_rate", "frequency")]
     imaginary = rf" + {number(w[1])}\,\mathrm{{i}}" if w[1] else ""

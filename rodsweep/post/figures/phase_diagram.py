@@ -1,4 +1,6 @@
-"""Phase diagrams, as in the paper's Fig. 4: class of the rod over two parameters, with boundary curves."""
+"""Phase diagrams, as in the paper's Fig. 4: stability class of the rod over two parameters, and boundary
+curves. line, row: parameters along a row, and constant on a row.
+"""
 
 from dataclasses import dataclass
 from typing import Any
@@ -35,20 +37,23 @@ STATE_COLOURS = {
     "undecided": CLASS_COLOURS["undecided"],
     "crushed": CLASS_COLOURS["crushed"],
 }
-"""Colours of the words of `stable_states`. If two states are stable, the colour lies between the colours of
-both."""
+"""Colours of the words of `stable_states`. The colour of "both" lies between the colours of the two
+states."""
 STATE_LEGEND = {
     "straight": "straight rod stable",
     "cycle": "cycle stable",
     "both": "both stable",
     "neither_known": "no stable state known",
 }
-"""Legend entries for the words of `stable_states` and `class`; an unlisted word is its own entry."""
+"""Legend entries for the words of `stable_states` and `class`. A word that is not listed is its own legend
+entry."""
 
 
 @dataclass(frozen=True, slots=True)
 class Palette:
-    """Variable that a map shows as colours. words: (integer, word) of its values. colours: colour by word."""
+    """Colours for a map of an integer variable. words: (integer, word) of each value. colours: colour of each
+    word.
+    """
 
     variable: str
     words: tuple[tuple[int, str], ...]
@@ -56,7 +61,7 @@ class Palette:
 
     @property
     def colours_of_numbers(self) -> dict[str, Any]:
-        """Arguments for matplotlib that colour an array of the variable's integers."""
+        """Keywords for matplotlib with which an array of the integers is drawn in the colours."""
         numbers = [number for number, _ in self.words]
         return {
             "cmap": ListedColormap([self.colours[word] for _, word in self.words]),
@@ -64,7 +69,7 @@ class Palette:
         }
 
     def patches(self, table: Array) -> list[Patch]:
-        """Legend entries for the words of the integers in `table`, (rows, columns)."""
+        """Legend entries for the words whose integers occur in `table`, (rows, columns)."""
         shown = (word for number, word in self.words if (table == number).any())
         return [
             Patch(facecolor=self.colours[word], edgecolor="0.5", lw=0.5, label=STATE_LEGEND.get(word, word))
@@ -73,16 +78,18 @@ class Palette:
 
 
 CLASS_PALETTE = Palette("class", CLASSES, CLASS_COLOURS)
-"""Palette of the stability class of the straight rod."""
+"""Palette for the stability class of the straight rod."""
 STATE_PALETTE = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
-"""Palette of the stable states: straight rod, cycle, or both."""
+"""Palette for the stable states: straight rod, cycle, or both."""
 BARRIER_RATIOS = 1 - np.linspace(0, 3e-3, 7)
-"""Values of F/k1 of barriers between colours. Curves of cycles end where F is within 1e-3 of k1; the barriers
-close the gaps between these ends."""
+"""Values of F/k1 of lines that separate regions of different colours. Curves of cycles end at 1 - F/k1 =
+1e-3; these lines close the gaps between the curves and the line F = k1."""
 
 
 def draw_phase_diagram(request: FigureRequest) -> str:
-    """Draws the class of the rod over a plane, the boundary curves and their folds; returns a sentence."""
+    """Draws the class of the rod over a plane, with boundary curves and folds of curves; returns a
+    sentence.
+    """
     view = request.only_view()
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next((name for name in view.parameters if len(view.axes[name]) > 1), view.parameters[0])
@@ -122,7 +129,9 @@ def draw_phase_diagram(request: FigureRequest) -> str:
 
 
 def _fixed(view: View, line: str, row: str) -> str:
-    """Text of the constant parameters. gamma1 is left out unless the figure shows cycles."""
+    """Text of the constant parameters. gamma1 is included only if the figure shows cycles or their
+    criticality. line, row: parameters on the axes.
+    """
     fixed = {name: values[0] for name, values in view.axes.items() if name not in (line, row)}
     if "curve_gamma1" in view.variables:
         fixed["gamma1"] = float(view.variables["curve_gamma1"])
@@ -132,15 +141,15 @@ def _fixed(view: View, line: str, row: str) -> str:
 
 
 def _crushed_at_k1(view: View, line: str, row: str) -> bool:
-    """Whether the axes are F and k1 and the rods are crushed at F = k1. Rods that are not uniform or not
-    linear are crushed elsewhere.
+    """Whether the axes are F and k1 and the rods are crushed at F = k1, as uniform rods of linear material
+    are.
     """
     return (line, row) == CRUSHING and has_covering(view.config)
 
 
 def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
-    """Covers the region x > y, in which the force x crushes the rod with k1 = y, and draws its edge; returns
-    the legend entry.
+    """Covers the region x > y, in which the force x crushes the rod with k1 = y, and draws the line x = y;
+    returns a list with the legend entry. x, y: values along the axes.
     """
     if x[-1] <= y[0]:
         return []
@@ -152,8 +161,8 @@ def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
 
 
 def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
-    """Figure with a bar for each row of a diagram, if its rows are too few for a plane, or one is at
-    infinity.
+    """Figure with a bar for each row of a diagram, for a diagram with fewer than two rows at finite
+    values.
     """
     x = view.variables[line]
     y = view.axes[row]
@@ -176,7 +185,8 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
 
 
 def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: Array) -> Array:
-    """Class of every pixel of the plane, bounded by the curves of the file; crushing is ignored.
+    """Class of every pixel of the plane, (pixels, pixels). The regions of equal class are bounded by the
+    curves of the file. Crushed points are ignored if the rods are crushed at F = k1.
 
     table: classes at the computed points, (rows with a finite value, columns).
     """

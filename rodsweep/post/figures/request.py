@@ -15,29 +15,31 @@ from .arm.validity import add_validity
 from .layout.fitting import MIN_ASPECT, fit
 
 Shapes = Callable[[View, Sequence[int]], View]
-"""Function that solves for the shapes of cycles. Arguments: view of a file, numbers of points from 1. Returns
-a view with the shapes."""
+"""Function that computes the shapes of cycles. Arguments: view of a file, and numbers of points, from 1.
+Returns a view with the shapes."""
 Drawing = Figure
-"""Class of the figures that are drawn: matplotlib's `Figure`."""
+"""Class of the figures: matplotlib's `Figure`."""
 WIDTHS = {"single": 3.375, "double": 7.0}
 """Widths of the columns of a journal, in inches, by name."""
 ROOTS = ("rightmost", "smallest", "all")
-"""Choices for the roots in a figure of spectra along a line: two followed roots, or all stored roots."""
+"""Choices of the roots in a figure of spectra along a line: the two rightmost, the two smallest, or all
+stored roots."""
 KINDS_OF_TASK = {
     "limit_cycle": ("cycle", "amplitude", "maps", "energy", "transient", "animation"),
     "thresholds": ("lines", "map"),
 }
-"""Names of the kinds of figures, by task with several kinds."""
+"""Names of the kinds of figures of each task that has several kinds."""
 KINDS = tuple(kind for kinds in KINDS_OF_TASK.values() for kind in kinds)
 """Names of the kinds of figures of all tasks."""
 HEIGHT_POWER = 0.5
-"""The height of a figure scales as its width to this power. It is below 1, because the size of text stays."""
+"""The height of a figure scales as the width to this power. The power is below 1, because the size of the
+text does not change."""
 METRES_PER_INCH = 0.0254
 """Length of an inch, in metres."""
 NARROW_WIDTH = 5.0
-"""Width of a figure, in inches, below which its panels are stacked."""
+"""The panels of a figure are stacked if the figure is narrower than this width, in inches."""
 MIN_WIDTH = 2.5
-"""Least width of a figure, in inches. In a narrower figure labels are wider than panels."""
+"""Smallest width of a figure, in inches. In a narrower figure labels would be wider than panels."""
 MAX_WIDTH = 20.0
 """Largest width of a figure, in inches."""
 
@@ -47,7 +49,7 @@ class FigureLook:
     """Appearance of a figure.
 
     title: whether the title of the config is shown. width: a name from WIDTHS, or a length with a unit; None
-    for the natural width. style: a style of matplotlib, by name or file. Raises InputError for a bad width.
+    for the natural width. style: name or file of a matplotlib style. Raises InputError for an invalid width.
     """
 
     title: bool = False
@@ -65,7 +67,7 @@ class FigureLook:
         return self.inches is not None and self.inches < NARROW_WIDTH
 
     def fit(self, figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
-        """Scales a figure to the width, and lays it out."""
+        """Scales a figure to the width `inches` and lays out the figure, see `fitting.fit`."""
         if self.inches is not None:
             across, down = figure.get_size_inches()
             figure.set_size_inches(self.inches, down * min(1.0, self.inches / across) ** HEIGHT_POWER)
@@ -73,8 +75,8 @@ class FigureLook:
 
 
 def _inches(width: str) -> float:
-    """Width in inches, from a name in WIDTHS or a length with a unit. Raises InputError if no page has room
-    for it.
+    """Width in inches, from a name in WIDTHS or a length with a unit. Raises InputError for another text, and
+    for a width outside MIN_WIDTH to MAX_WIDTH.
     """
     if width in WIDTHS:
         return WIDTHS[width]
@@ -91,7 +93,9 @@ def _inches(width: str) -> float:
 
 @dataclass(frozen=True, slots=True)
 class FigureRequest:
-    """Result files to draw, output file, and options of `rodsweep plot`."""
+    """Result files to draw, output file, and options of `rodsweep plot` (roots, what, points: see
+    `FigureChoices`).
+    """
 
     views: Sequence[View]
     output: Path
@@ -99,24 +103,24 @@ class FigureRequest:
     what: str | None = None
     points: Sequence[int] = ()
     taken: bool = False
-    """Whether the output is one of the files to draw, or exists and is no regular file."""
+    """Whether `output` is one of the files to draw, or exists and is not a regular file."""
     look: FigureLook = FigureLook()
     shapes: Shapes | None = None
-    """Function that solves for the shapes of cycles that a file does not store."""
+    """Function that computes the shapes of cycles if the file has no shapes."""
     keep: Callable[[Figure], None] | None = None
-    """Called with the finished figure, instead of writing a file."""
+    """Callback for the finished figure; if given, no file is written."""
 
     def only_view(self, *kinds: str) -> View:
-        """The only file to draw. Raises InputError for several files, for chosen points, and for a --what
-        outside `kinds`.
+        """View of the only file to draw. Raises InputError for several files, for chosen points, for a value
+        of --what that is not in `kinds`, and for an invalid output name.
         """
         self.refuse_choices(self.views[0], kinds)
         self.check_output()
         return self.views[0]
 
     def refuse_choices(self, view: View, kinds: Sequence[str] = ()) -> None:
-        """Raises InputError for options that the task of `view` does not have. kinds: values of --what that
-        it has.
+        """Raises InputError for options that the task of `view` does not have, and for several files. kinds:
+        values of --what that the task has.
         """
         self.refuse_points(view, kinds)
         if self.views[1:]:
@@ -126,8 +130,8 @@ class FigureRequest:
             )
 
     def refuse_points(self, view: View, kinds: Sequence[str] = ()) -> None:
-        """Raises InputError for chosen points, and for a --what outside `kinds`, which the task of `view`
-        does not have.
+        """Raises InputError for chosen points, and for a value of --what that is not in `kinds`. view: file
+        whose task does not have these options.
         """
         if self.points:
             raise InputError(
@@ -141,19 +145,19 @@ class FigureRequest:
             )
 
     def check_output(self, *suffixes: str) -> None:
-        """Raises InputError unless the output ends in one of the suffixes, by default of images, and `taken`
-        is False.
+        """Raises InputError if the name of the output file has none of the suffixes (by default suffixes of
+        images), or if `taken` is true.
         """
         suffixes = suffixes or (".png", ".pdf", ".svg")
         if self.output.suffix not in suffixes:
             raise InputError(f"--output {self.output}: the name must end in {', '.join(suffixes)}")
         if self.taken:
-            raise InputError(f"--output {self.output} is not a name for a figure; choose another")
+            raise InputError(f"--output {self.output} cannot be overwritten by a figure; choose another name")
 
     def write(self, figure: Figure, shown: str, min_aspect: float = MIN_ASPECT) -> str:
-        """Writes the figure, with a second scale in SI units for an arm; returns the sentence `shown`.
+        """Writes the figure, with a second scale in SI units and hatches for an arm; returns `shown`, the
+        description of the figure. min_aspect: smallest ratio of height to width of a panel.
 
-        min_aspect: least ratio of height to width of a panel.
         """
         add_si_scales(figure, self.views)
         # Figures over an arm's quantities show the validity themselves.
@@ -166,6 +170,6 @@ class FigureRequest:
         if (dpi := rcParams["savefig.dpi"]) != "figure":
             figure.set_dpi(dpi)  # texts are measured as they are saved
         self.look.fit(figure, min_aspect)
-        figure.set_layout_engine(None)  # `fit` has laid the figure out; savefig would do it again
+        figure.set_layout_engine(None)  # `fit` has laid out the figure; savefig would repeat the layout
         figure.savefig(self.output)
         return shown

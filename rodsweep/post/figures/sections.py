@@ -1,4 +1,4 @@
-"""Sections of a grid or a list: the points at which some parameters have chosen values."""
+"""Sections of a grid or a list of points: the points at which some parameters have given values."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -17,17 +17,16 @@ from ...results.file.view import View
 from .lists import OTHER_DIMENSIONS
 
 TYPED_TOLERANCE = 1e-6
-"""Largest relative difference between a value that the user types and the equal value in the file, which has
-all digits."""
+"""A value typed by the user selects the values of the file that differ by at most this relative amount."""
 MAX_LISTED_VALUES = 8
 """Largest number of values that an error message lists."""
 
 
 def section(view: View, at: Mapping[str, float | str]) -> View:
-    """View of the points at which parameters, or an arm's quantities, have the values in `at`, by name.
+    """View of the points at which parameters, or quantities of an arm, have the values `at`, by name.
 
-    A quantity is a number in SI units, or text with a unit. Raises InputError, which lists the values in the
-    file, if no point has the value.
+    The value of a quantity is a number in SI units, or a text with a unit. Raises InputError if no point has
+    a value; the message lists the values in the file.
     """
     for name, value in at.items():
         view = _cut(view, name, _number(name, value))
@@ -35,8 +34,8 @@ def section(view: View, at: Mapping[str, float | str]) -> View:
 
 
 def _number(name: str, value: float | str) -> float:
-    """The value of the parameter or quantity `name` as a number; a quantity in SI units. Raises InputError
-    for other text.
+    """The value of the parameter or quantity `name` as a number; for a quantity, in SI units. Raises
+    InputError for an invalid text.
     """
     if name == "drag" and value in DRAGS:
         return float(DRAGS.index(str(value)))
@@ -44,14 +43,14 @@ def _number(name: str, value: float | str) -> float:
         return float(value)
     except ValueError:
         if name == "drag":
-            raise InputError(f"--at drag={value} is none of {', '.join(DRAGS)}") from None
+            raise InputError(f"--at drag={value}: the drag must be one of {', '.join(DRAGS)}") from None
         if name in ALL_QUANTITIES:
             return in_si(f"--at {name}", value, ALL_QUANTITIES[name].unit, "12 cm")
         raise InputError(f"--at {name}={value} must be a parameter with a number, such as k1=150") from None
 
 
 def _cut(view: View, name: str, value: float) -> View:
-    """View of the points at which `name` has the given value. Raises InputError if there is none."""
+    """View of the points at which `name` has the given value. Raises InputError if there is no such point."""
     listed = {} if view.is_grid else {n: v for n, v in view.quantities.items() if np.ndim(v)}
     axes = view.over or (*view.parameters, *listed)
     if name not in axes:
@@ -80,7 +79,7 @@ def _cut(view: View, name: str, value: float) -> View:
 
 
 def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
-    """View of a grid restricted along the axis `name`. chosen: mask of its values."""
+    """View of a grid restricted to some values of the axis `name`. chosen: mask of these values."""
     names = view.over or view.parameters
     shape = view.variables["status"].shape
     axis = names.index(name)
@@ -106,8 +105,8 @@ def without_infinite(view: View) -> View:
 
 
 def choices_of(given: Mapping[str, float | str]) -> dict[str, float | str]:
-    """Copy of the values by name that a Python caller gives. Raises InputError for a value that is neither a
-    number nor text.
+    """Copy of the values that a Python caller gives, by name of the parameter. Raises InputError for a value
+    that is neither a number nor a text.
     """
     try:
         return {str(n): value if isinstance(value, str) else float(value) for n, value in given.items()}

@@ -1,4 +1,4 @@
-"""Smooth curve through the stored cycles of a branch, with corners where the branch has corners."""
+"""Smooth curve through the stored cycles of a branch of cycles, except at corners of the branch."""
 
 from itertools import pairwise
 
@@ -11,41 +11,45 @@ from ...arrays import Array
 from ..branch_curves import StoredBranch
 
 MIRRORED_CYCLE_COUNT = 3
-"""Number of cycles next to a Hopf point whose mirror images (y to -y) extend the branch beyond the point."""
+"""Number of cycles next to a Hopf point whose mirror images (y to -y) continue the branch beyond the Hopf
+point."""
 MIRROR_FACTORS = np.array([1.0, -1.0, 1.0])
 """Factors of (parameter, y, log period) that turn a cycle into its mirror image."""
 CHORD_WEIGHTS = np.array([0.5, 1.0, 1.0])
-"""Weights of parameter, y and log period in the length of a chord; each is scaled by its range on
-the branch."""
+"""Weights of parameter, y and log period in the length of a chord; the three coordinates are divided by their
+ranges on the branch."""
 WEIGHTS_WITHOUT_Y = np.array([1.0, 0.0, 1.0])
 """Weights of parameter, y and log period in the length of a chord that ignores y."""
 CHORD_VARIABLES = ((CHORD_WEIGHTS, 1.0), (CHORD_WEIGHTS, 0.5), (np.array([0.1, 1.0, 0.1]), 1.0))
-"""(weights, power) of the chords whose sum is tried as the variable of the interpolation. The length (power
-1) is best on most branches, the sum of square roots where steps grow at a bend. A length close to y is best
-on a branch that ends next to its Hopf point, where parameter and period are quadratic in y."""
+"""(weights, power) of the candidates for the variable of the interpolation: sums of the chord lengths to this
+power. The arc length (power 1) is best on most branches, the sum of square roots where steps grow at a bend.
+A length close to y is best on a branch that ends near its Hopf point, where parameter and period are
+quadratic in y."""
 SLOPE_CYCLE_COUNT = 5
-"""Number of neighbouring cycles through which the polynomial for the slope at the middle cycle passes."""
+"""Number of neighbouring cycles in the polynomial that gives the slope at the middle cycle."""
 CORNER_CYCLE_COUNT = 4
-"""Number of cycles on each side of a corner; cubics through them locate it. Fewer at an end of the branch."""
+"""Number of cycles on each side of a corner in the polynomials that locate the corner; fewer near an end of
+the branch."""
 MIN_ANGLE = 0.25
-"""Least jump of the slope that is drawn as a corner, in units of the steepest chord near the corner. A
-smaller jump moves the curve by a few per cent of the chord at most."""
+"""A jump of the slope is drawn as a corner if the jump exceeds this fraction of the steepest chord near the
+corner. A smaller jump changes the curve by at most a few per cent of the chord."""
 MIN_ANGLE_RATIO = 3.0
-"""Least ratio of the jump of slope in y to the jumps in parameter and period, which are smooth at a corner.
-At a sharp bend that the cycles do not resolve, all three jumps are similar."""
+"""At a corner, the jump of the slope of y exceeds this multiple of the jumps of the slopes of parameter and
+log period, which are smooth there. At a sharp bend that the cycles do not resolve, all three jumps are
+similar."""
 COINCIDENCE_TOLERANCE = 1e-9
-"""Rounding tolerance: of distances, as a fraction of the branch's range; of imaginary parts of roots, in
-units of a step."""
+"""Rounding tolerance for distances divided by the range of the branch, and for imaginary parts of roots
+divided by the step between cycles."""
 SEGMENT_COUNT = 12
 """Number of straight segments that are drawn between two cycles."""
 
 
 def through_cycles(curve: StoredBranch) -> tuple[Array, Array, Array, NDArray[np.integer]]:
-    """(parameter, y, period, stable) of the smooth curve through the cycles of a branch; (n,), the last (n -
-    1,).
+    """Returns (parameter, y, period, stable) of the smooth curve through the cycles of a branch; (n,) each,
+    `stable` (n - 1,).
 
-    The branch has a corner where another maximum of y(t) becomes the largest; the curve is smooth between
-    corners.
+    The branch has a corner where a different maximum of y(t) becomes the largest maximum; the curve is smooth
+    between corners.
     """
     places = np.column_stack([curve.at, curve.y, np.log(curve.period)])
     extent = np.ptp(places, axis=0)
@@ -67,11 +71,11 @@ def through_cycles(curve: StoredBranch) -> tuple[Array, Array, Array, NDArray[np
 
 
 def _smooth(own: Array, extent: Array) -> Array:
-    """Vertices of a smooth curve through the cycles `own`, both (n, 3); SEGMENT_COUNT segments between two
-    cycles.
+    """Vertices, (m, 3), of a smooth curve through the cycles `own`, (n, 3), with SEGMENT_COUNT segments
+    between two cycles. Columns: parameter, y, log period. extent: ranges of the branch, (3,).
 
-    At a Hopf point the branch is symmetric under y to -y. Mirror images of cycles beyond the point therefore
-    give the curve its square-root shape.
+    At a Hopf point the branch is symmetric under y to -y. Mirror images of cycles, beyond the Hopf point,
+    therefore give the curve a square-root shape.
     """
     before = own[MIRRORED_CYCLE_COUNT:0:-1] * MIRROR_FACTORS
     behind = own[-2 : -MIRRORED_CYCLE_COUNT - 2 : -1] * MIRROR_FACTORS
@@ -89,14 +93,14 @@ def _smooth(own: Array, extent: Array) -> Array:
 
 
 def corners_of(own: Array, extent: Array) -> dict[int, Array]:
-    """Corners of a branch through the cycles `own`, (n, 3): (parameter, y, log period), (3,), by index of the
-    cycle before.
+    """Corners of a branch through the cycles `own`, (n, 3), as {index of the previous cycle: (parameter, y,
+    log period), (3,)}. extent: ranges of the branch, (3,).
 
-    A corner is the intersection of two polynomials for y, through the cycles before and through the cycles
-    behind. The second rises more steeply, because y is the larger of two maxima of y(t). Their variable is
-    the length of the curve of parameter and period, which has no corner. Polynomials that reach across a
-    corner intersect elsewhere at a smaller angle, so of neighbouring intervals that with the largest angle
-    has the corner.
+    At a corner, a different maximum of y(t) becomes the largest maximum, so y is continuous and its slope
+    increases. On each interval between cycles, one polynomial for y passes through the cycles before the
+    interval, and one through the cycles behind; their intersection is a candidate. The variable of the
+    polynomials is the arc length of (parameter, log period), which is smooth. Of candidates on neighbouring
+    intervals, the candidate with the largest change of slope is the corner.
     """
     lengths = _lengths(own * WEIGHTS_WITHOUT_Y, extent)
     found: dict[int, tuple[float, Array]] = {}
@@ -127,8 +131,8 @@ def corners_of(own: Array, extent: Array) -> dict[int, Array]:
 
 
 def _rise(x: Array, values: Array) -> Polynomial:
-    """Polynomial through the values at x > 0.5 minus the polynomial through all others, divided by the slope
-    of the steepest chord.
+    """Polynomial through the values at x > 0.5 minus the polynomial through the values at x < 0.5, divided by
+    the slope of the steepest chord. x, values: (m,) each.
     """
     before, behind = (
         Polynomial.fit(x[side], values[side], side.sum() - 1).convert() for side in (x < 0.5, x > 0.5)
@@ -137,17 +141,17 @@ def _rise(x: Array, values: Array) -> Polynomial:
 
 
 def _lengths(places: Array, extent: Array, shares: Array = CHORD_WEIGHTS, power: float = 1.0) -> Array:
-    """Sum of the chords, each to the given power, from the first point to each point, (n,).
+    """Sum of the chord lengths to the power `power`, from the first point to each point, (n,).
 
-    places: points, (n, 3). extent: range of the branch, (3,). shares: weights in a chord, (3,).
+    places: points, (n, 3). extent: ranges of the branch, (3,). shares: weights of the coordinates, (3,).
     """
     chords = np.linalg.norm(np.diff(places / extent * shares, axis=0), axis=1)
     return np.append(0.0, np.cumsum(chords**power))
 
 
 def _roughness(s: Array, places: Array) -> float:
-    """Largest distance of a point from the cubic through two neighbours on each side. s: variable, (n,).
-    places: points, (n, columns).
+    """Largest deviation, in a coordinate, of a point from the cubic through two neighbours on each side of
+    the point. s: variable, (n,). places: points, (n, columns).
     """
     beside = (-2, -1, 1, 2)
     off = [
@@ -161,8 +165,8 @@ def _roughness(s: Array, places: Array) -> float:
 
 
 def slopes_at_cycles(s: Array, places: Array) -> Array:
-    """Derivatives of the points by s, (n, columns), from polynomials through SLOPE_CYCLE_COUNT neighbours. s:
-    (n,). places: points, (n, columns).
+    """Derivatives of the points with respect to s, (n, columns), from polynomials through SLOPE_CYCLE_COUNT
+    neighbouring points. s: (n,). places: points, (n, columns).
     """
     count = min(SLOPE_CYCLE_COUNT, len(s))
     slopes = np.empty_like(places)

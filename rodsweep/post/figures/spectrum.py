@@ -1,4 +1,4 @@
-"""Figures of the task `spectrum`: lines of spectra as in the paper's Fig. 2, a map, or single spectra."""
+"""Figures of the task `spectrum`: spectra along lines as in the paper's Fig. 2, a map, or single spectra."""
 
 from collections.abc import Sequence
 from string import ascii_lowercase
@@ -41,21 +41,23 @@ THRESHOLD_WORDS = {
     "hopf": "change of stability",
     "restabilization": "change of stability",
 }
-"""Legend entry of the lines at thresholds, by kind; the titles of the panels have symbols and forces."""
+"""Legend entry of the lines at thresholds, by kind. Symbols and forces are in the titles of the panels."""
 MAP_COLOURS = "PuOr_r"
 """Colour map of growth rates, with different colours for negative and positive rates."""
 SHADES_PER_SIGN = 40
-"""Number of colours of a map for negative growth rates, and for positive growth rates."""
+"""Number of colours of a map for negative growth rates, equal to the number for positive growth rates."""
 MAX_LINE_PANELS = 6
-"""Largest number of values of a second parameter that get a panel each; more values are drawn as a map."""
+"""If a second parameter has at most this number of values, each value has a panel; otherwise a map is
+drawn."""
 LINEAR_SHADE_FRACTION = 1e-4
-"""Growth rate, as a fraction of the largest, below which the colour scale of a map is linear."""
+"""The colour scale of a map is linear up to this fraction of the largest |growth rate|, but at least up
+to 1."""
 GROWTH_LABEL = r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$"
 """Label of the colour bar."""
 
 
 def draw_spectrum(request: FigureRequest) -> str:
-    """Draws lines of spectra, a map, or the eigenvalues of single points, whichever suits the files; returns
+    """Draws spectra along lines, a map, or the eigenvalues of single points, depending on the files; returns
     a sentence.
     """
     if len(request.views) > 1:
@@ -79,35 +81,37 @@ def draw_spectrum(request: FigureRequest) -> str:
 
 
 def _lines(view: View, few: str, request: FigureRequest) -> str:
-    """Draws a panel of spectra for each value of the parameter `few`, which has few values; a map would
-    interpolate too far.
-    """
+    """Draws a panel of spectra for each value of the parameter `few`, which has too few values for a map."""
     lines = [without_infinite(section(view, {few: float(value)})) for value in view.axes[few]]
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
     return _in_panels(views, request, few)
 
 
 def _in_panels(views: Sequence[View], request: FigureRequest, each: str) -> str:
-    """Draws a panel for each of several lines of spectra; returns a sentence. each: noun for a line."""
+    """Draws a panel for each view, a line of spectra; returns a sentence. each: noun for a view."""
     roots = roots_to_follow(views, request.roots)
     figure = draw_panels(views, roots, request.look.narrow)
     return request.write(figure, f"{FOLLOWED_ROOTS[roots]}, in a panel for each {each}")
 
 
 def _several(request: FigureRequest) -> str:
-    """Draws a panel for each file. Raises InputError unless every file is a line of spectra."""
+    """Draws a panel for each file; returns a sentence. Raises InputError if a file is not a line of
+    spectra.
+    """
     request.refuse_points(request.views[0])
     request.check_output()
     if len(request.views) > MAX_PANELS:
         raise InputError(
-            f"{len(request.views)} files are given, but one figure has room for {MAX_PANELS}; give fewer"
+            f"{len(request.views)} files are given, but a figure has room for {MAX_PANELS}; give fewer files"
         )
     views = [_line_of(view, request) for view in request.views]
     return _in_panels(views, request, f"of {len(views)} files")
 
 
 def _line_of(view: View, request: FigureRequest) -> View:
-    """View of a file that shares a figure with others. Raises InputError unless it is a line of spectra."""
+    """View of a file as a line of spectra, without infinite parameters. Raises InputError if the file is not
+    a line of spectra.
+    """
     if view.task != request.views[0].task:
         raise InputError(f"{view.path} is of the task {view.task}; only lines of spectra can share a figure")
     view = as_grid(view)
@@ -115,8 +119,8 @@ def _line_of(view: View, request: FigureRequest) -> View:
     view = without_infinite(view) if view.is_grid else view
     if not view.is_grid or sum(len(values) > 1 for values in view.axes.values()) != 1:
         raise InputError(
-            f"{view.path} is not a line of spectra, along which one parameter varies; only such files share "
-            "a figure"
+            f"{view.path} is not a line of spectra, along which one parameter varies; only lines of spectra "
+            "can share a figure"
         )
     return view
 
@@ -153,7 +157,9 @@ def _map(view: View, names: list[str]) -> Figure:
 
 
 def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -> None:
-    """Adds an invisible scatter plot of a map's points, from which `rodsweep report` reads their values."""
+    """Adds an invisible scatter plot of the points of a map, from which `rodsweep report` reads the values.
+    growth: values, (nx, ny).
+    """
     limits = axes.axis()
     across, up = np.meshgrid(x, y, indexing="ij")
     axes.scatter(across.ravel(), up.ravel(), c=growth.ravel(), visible=False, label=GROWTH_LABEL)
@@ -161,8 +167,8 @@ def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -
 
 
 def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
-    """Figure with a panel of followed roots for each view; narrow: whether the panels are stacked. All share
-    one legend.
+    """Figure with a panel of roots for each view, and one legend. roots: choice of the roots. narrow: whether
+    the panels are stacked.
     """
     columns = 1 if narrow else 2
     rows = -(-len(views) // columns)

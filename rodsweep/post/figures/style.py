@@ -1,4 +1,4 @@
-"""Style shared by all figures: symbols, labels, colours, titles, scales of axes, and error messages."""
+"""Common style of all figures: symbols, labels, colours, titles, scales of axes, and error messages."""
 
 from collections.abc import Mapping, Sequence
 from math import isinf
@@ -30,16 +30,18 @@ VERMILION = "#D55E00"
 GREEN = "#009E73"
 """Green of Okabe and Ito's palette."""
 LOGARITHMIC_RATIO = 10
-"""Ratio of the largest to the smallest value of a map above which its colours are logarithmic."""
+"""The colours of a map are logarithmic if the ratio of the largest to the smallest value exceeds this
+number."""
 FEW_DECADES_RATIO = 50
-"""Ratio of the ends of a logarithmic axis below which 1, 2 and 5 of each decade have tick labels."""
+"""If the ratio of the ends of a logarithmic axis is below this number, 1, 2 and 5 of each decade have tick
+labels."""
 SHORT_AXIS_RATIO = 6
-"""Ratio of the ends of a logarithmic axis below which further numbers have tick labels; 1, 2 and 5 could all
-be outside."""
+"""If the ratio of the ends of a logarithmic axis is below this number, further numbers of each decade have
+tick labels, because 1, 2 and 5 could all lie outside the axis."""
 MIN_POWER = 2
-"""Least exponent of a power of ten that is written as 10^n."""
+"""Smallest |n| for which a power of ten is written as 10^n."""
 PLAIN_BELOW = 4
-"""Exponent of ten below which a number is written without a power of ten."""
+"""Numbers below 10 to this power are written without a power of ten."""
 FIGURE_STYLE = {
     "font.size": 10,
     "axes.titlesize": 9,
@@ -59,23 +61,25 @@ FONT_SIZES = ("font.size", "axes.titlesize", "axes.labelsize", "figure.titlesize
            "xtick.labelsize", "ytick.labelsize")  # fmt: skip
 """Names of matplotlib's settings of font sizes."""
 PRINT_STYLE = FIGURE_STYLE | dict.fromkeys(FONT_SIZES, 8)
-"""Settings of matplotlib for a figure with a width for print; all text has 8 points."""
+"""Settings of matplotlib for a figure with a given width; all text has a size of 8 points."""
 
 
 def plain(text: object) -> str:
-    """A user's text for matplotlib, with dollar signs that do not start mathematics."""
+    """A text of the user for matplotlib, with escaped dollar signs, which would otherwise start a formula."""
     return str(text).replace("$", r"\$")
 
 
 def heading(view: View, *lines: str) -> str:
-    """Title of the file, if the user wants it, above the given lines."""
+    """Text above a figure: title of the result file (if requested), constitutive law and profile (if not
+    standard), and `lines`, one below the other.
+    """
     title = " ".join(plain(view.attributes.get("title", "")).split())
     return "\n".join(filter(None, (title, material_text(view), *lines)))
 
 
 def material_text(view: View) -> str:
-    """Constitutive law and profile of the arms of a file as text; empty for uniform arms of
-    linear material.
+    """Constitutive law and profile of the arms of a file as text; empty for uniform arms of linear
+    material.
     """
     material = view.config.get("material", {})
     law = material.get("law", "linear")
@@ -84,8 +88,8 @@ def material_text(view: View) -> str:
 
 
 def name_in(view: View, views: Sequence[View]) -> str:
-    """Text that identifies a file in a figure of several files: its law, or its title, if these differ; else
-    its path.
+    """Text that identifies a file in a figure of several files: constitutive law if all laws differ, else
+    title if all titles differ, else file name.
     """
     laws = [material_text(each) or "linear" for each in views]
     if len(set(laws)) == len(laws):
@@ -96,7 +100,9 @@ def name_in(view: View, views: Sequence[View]) -> str:
 
 
 def number(value: float, digits: int = 6) -> str:
-    """A number as TeX without dollar signs: 1e4 gives 10^4, 2.5e-4 gives 2.5 x 10^-4, 200 stays 200."""
+    """A number as TeX without dollar signs: 1e4 gives 10^4, 2.5e-4 gives 2.5 x 10^-4, 200 gives 200. digits:
+    largest number of significant digits.
+    """
     if isinf(value):
         return r"\infty" if value > 0 else r"-\infty"
     if value == 0:
@@ -122,8 +128,8 @@ def fixed_text(view: View, *drawn: str) -> str:
 
 
 def long_axes(view: View) -> list[str]:
-    """Names of the parameters of a grid that have several values. Raises InputError unless there are one or
-    two.
+    """Names of the one or two parameters of a grid that have several values. Raises InputError if no
+    parameter, or more than two, have several values.
     """
     long = [name for name, values in view.axes.items() if len(values) > 1]
     if not 1 <= len(long) <= 2:
@@ -135,19 +141,19 @@ def long_axes(view: View) -> list[str]:
 
 
 def require(view: View, available: object, what: str) -> None:
-    """Raises InputError unless `available` is true (or not empty). what: noun for the missing content."""
+    """Raises InputError if `available` is false or empty. what: noun for the missing content."""
     if not available:
         raise InputError(f"{view.path} holds no {what} that could be drawn")
 
 
 def legend_below(figure: Figure, handles: list[Any], columns: int) -> None:
-    """Draws one legend for the whole figure, below its panels."""
+    """Draws one legend, with up to `columns` columns, below the panels of the figure."""
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
 
 
 def is_logarithmic(values: np.ndarray) -> bool:
-    """Whether an axis with these values, (n,), is logarithmic: equal ratios but not equal steps, or more than
-    a decade.
+    """Whether an axis with the increasing values `values`, (n,), is logarithmic: the values have equal
+    ratios, or span more than a decade without equal steps.
     """
     if len(values) < 2 or values[0] <= 0 or not np.isfinite(values).all():
         return False
@@ -160,7 +166,9 @@ def is_logarithmic(values: np.ndarray) -> bool:
 
 
 def scale(axes: Axes, which: Literal["x", "y"], values: np.ndarray) -> None:
-    """Makes the axis `which` logarithmic if its values, (n,), are; its tick labels do not overlap."""
+    """Makes the axis `which` logarithmic, with suitable tick labels, if `is_logarithmic(values)`. values:
+    (n,).
+    """
     if not is_logarithmic(values):
         return
     axes.set(**{f"{which}scale": "log"})
@@ -168,8 +176,8 @@ def scale(axes: Axes, which: Literal["x", "y"], values: np.ndarray) -> None:
 
 
 def label_few_decades(axis: Axis, low: float, high: float) -> None:
-    """Labels 1, 2 and 5 of each decade on a short logarithmic axis from `low` to `high`, all as numbers or
-    all as powers of ten.
+    """Labels numbers such as 1, 2 and 5 of each decade on a logarithmic axis from `low` to `high`, if the
+    axis is short. All labels are numbers, or all are powers of ten.
     """
     if high < FEW_DECADES_RATIO * low:
         subs = (1, 2, 5) if high > SHORT_AXIS_RATIO * low else (1, 1.5, 2, 3, 4, 6, 8)
@@ -182,8 +190,8 @@ def label_few_decades(axis: Axis, low: float, high: float) -> None:
 
 
 def label_outer(axes: Axes, xlabel: str, ylabel: str) -> None:
-    """Labels the axes of a panel in a grid of panels that share axes. Only panels at the left and bottom get
-    labels.
+    """Labels the axes of a panel in a grid of panels that share axes. Only panels at the left and at the
+    bottom have labels.
     """
     place = axes.get_subplotspec()
     if place is None or place.is_last_row():
@@ -200,8 +208,8 @@ def colour_cells(
     colours: str = "viridis",
     ratios: bool = True,
 ) -> None:
-    """Draws coloured cells with a labelled colour bar. edges: of the cells along x and y. values: (ny, nx),
-    NaN for no colour.
+    """Draws coloured cells with a labelled colour bar. edges: edges of the cells along x and along y. values:
+    (ny, nx); a cell with NaN has no colour. colours: name of a colour map.
 
     ratios: whether the colours are logarithmic if the values span more than a decade.
     """

@@ -1,5 +1,5 @@
-"""Figures of the task `thresholds`: lines over parameters, a map over two parameters, or bars of
-single rods.
+"""Figures of the task `thresholds`: lines over parameters, maps over two parameters, or bars for single
+rods.
 """
 
 import numpy as np
@@ -25,13 +25,13 @@ from .stability.threshold_lines import (
 )
 
 NO_THRESHOLD = "#DDDDDD"
-"""Colour of rods without a threshold of the kind that a map shows."""
+"""Colour of rods without a threshold in a map."""
 SEARCH_DIGITS = 4
 """Number of significant digits of the largest searched force in the description of a figure."""
 
 
 def draw_thresholds(request: FigureRequest) -> str:
-    """Draws the first thresholds over one or two parameters, or else a bar of classes for each rod; returns a
+    """Draws the first thresholds over one or two parameters, or a bar of classes for each rod; returns a
     sentence.
     """
     if request.views[1:]:
@@ -40,12 +40,12 @@ def draw_thresholds(request: FigureRequest) -> str:
     if not view.is_grid or view.variables["status"].size == 1:
         if request.what and view.quantities and view.variables["status"].size > 1:
             raise InputError(
-                f"{view.path}: --what {request.what} is not for a grid over an arm's quantities; remove it, "
-                "or draw lines over the other quantities with --at, such as --at 'length=12 cm'"
+                f"{view.path}: --what {request.what} is not for a grid over an arm's quantities; remove "
+                "--what or draw lines over the other quantities with --at, such as --at 'length=12 cm'"
             )
         if request.what:
             raise InputError(
-                f"{view.path}: --what {request.what} needs rods that vary in one parameter or two; remove it"
+                f"{view.path}: --what {request.what} needs rods that vary in one or two parameters; remove it"
             )
         min_aspect = BAR_ASPECT if view.variables["status"].size == 1 else MIN_ASPECT
         return request.write(draw_class_bars(view), "behaviour of each rod over F", min_aspect)
@@ -62,15 +62,17 @@ def draw_thresholds(request: FigureRequest) -> str:
 
 
 def _of_files(request: FigureRequest) -> str:
-    """Draws the thresholds of several files over the one parameter that varies in all files; returns a
-    sentence.
+    """Draws the thresholds of several files over the parameter that varies in all files; returns a sentence.
+    Raises InputError if the files do not vary in one common parameter only.
     """
     request.refuse_points(request.views[0], ("lines",))
     request.check_output()
     views = request.views
     along = style.long_axes(views[0])
     if len(views) > len(FILE_COLOURS):
-        raise InputError(f"{len(views)} files of thresholds share a figure; it may have {len(FILE_COLOURS)}")
+        raise InputError(
+            f"{len(views)} files are given; a figure of thresholds has room for {len(FILE_COLOURS)}"
+        )
     for view in views:
         if view.task != views[0].task or not view.is_grid or style.long_axes(view) != along or along[1:]:
             raise InputError(
@@ -81,15 +83,15 @@ def _of_files(request: FigureRequest) -> str:
 
 
 def searched(*views: View) -> str:
-    """Clause on the range of forces in which thresholds were searched; a missing threshold may lie beyond."""
+    """Clause on the searched range of forces: a threshold that is not shown may lie outside this range."""
     ends = np.concatenate([view.variables["F_end"].ravel() for view in views])
     low, high = (style.number(float(end(ends)), SEARCH_DIGITS) for end in (np.nanmin, np.nanmax))
     return rf"searched up to $\tilde F = {low}$" + (f" to ${high}$" if low != high else "")
 
 
 def _map(view: View, names: list[str], narrow: bool) -> tuple[Figure, str]:
-    """(figure with a map over two parameters for each kind of threshold, clause on infinite values of the
-    parameters).
+    """Returns (figure, left_out). The figure has a map over two parameters for each kind of threshold in
+    `names`. left_out: clause on infinite values of the parameters. narrow: whether the maps are stacked.
     """
     points = point_map(view)
     figure, panels = map_panels(len(names), narrow)

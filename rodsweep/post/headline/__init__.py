@@ -1,3 +1,1 @@
-"""First lines printed about the result of one rod: a sentence with the answer, the numbers, and the list
-behind it.
-"""
+"""First lines printed about the result of one rod: a sentence with the answer, then numbers and a list."""

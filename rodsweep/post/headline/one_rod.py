@@ -1,4 +1,4 @@
-"""Numbers and lists in the result of one rod as text, with as many digits as their errors allow."""
+"""Numbers and lists in the result of one rod as text, rounded according to their errors."""
 
 from collections.abc import Mapping, Sequence
 
@@ -17,14 +17,14 @@ from ..tables.contents import POINTS
 BOOLEAN_WORDS = ("no", "yes")
 """Words for the boolean values 0 and 1."""
 EXACT_VARIABLES = ("F_end",)
-"""Variables without an error, because they repeat an option of the config."""
+"""Variables without an error, because their values come from an option of the config."""
 
 
 class ColumnTexts:
-    """Columns of a table as text, with as many digits as the errors allow.
+    """Columns of a table as text, rounded according to the errors.
 
-    columns: of equal length, (rows,). si: name of the SI variable, by dimensionless variable. beside:
-    absolute errors of variables whose error is in another table, (rows,).
+    columns: columns of equal length, (rows,). si: name of the SI variable, by dimensionless variable. beside:
+    absolute errors, (rows,), of variables whose error is in another table.
     """
 
     def __init__(
@@ -54,7 +54,9 @@ class ColumnTexts:
         return known if has_error else np.where(known > 0, known, np.nan)
 
     def pairs(self, name: str) -> list[tuple[str, str]]:
-        """(value, absolute error) of the variable `name` as text, for every row; the error may be empty."""
+        """Pairs (value, absolute error) of the variable `name` as text, one per row. The error is an empty
+        text if it is unknown.
+        """
         column = self.columns[name]
         if column.is_boolean:
             return [(BOOLEAN_WORDS[int(value)], "") for value in column.values]
@@ -68,8 +70,8 @@ class ColumnTexts:
         return [("", "") if none else number_and_error(float(x), float(dx)) for x, dx, none in rows]
 
     def _rounding(self, error: str) -> Array:
-        """Largest rounding error of the printed values whose error is the variable `error`, (rows,); relative
-        if this error is relative.
+        """Rounding errors, (rows,), of the printed values to which the error variable `error` belongs;
+        relative if `error` is relative. If `error` belongs to several variables, the largest rounding error.
         """
         largest = np.zeros_like(self._values[error])
         for table, relative in ((ABSOLUTE_ERRORS, False), (RELATIVE_ERRORS, True)):
@@ -82,11 +84,11 @@ class ColumnTexts:
         return largest
 
     def texts(self, name: str) -> list[str]:
-        """Values of the variable `name` as text, for every row."""
+        """Values of the variable `name` as text, one per row."""
         return [text for text, _ in self.pairs(name)]
 
     def short(self, name: str, row: int = 0) -> str:
-        """Value of the variable `name` in a row, for use in a sentence: at most six digits, with the unit."""
+        """Value of the variable `name` in the given row as text: at most six digits, with the unit."""
         column = self.columns[name]
         value = float(self._values[name][row])
         error = float(np.nan_to_num(self.error(name)[row]))
@@ -94,13 +96,15 @@ class ColumnTexts:
 
 
 FIRST_THRESHOLD_KINDS = ("onset", "hopf", "restabilization")
-"""Kinds of thresholds for which the result stores the first force as a number of its own."""
+"""Kinds of thresholds for which the first force is stored as a separate variable."""
 CROSSINGS = "crossings"
 """Name of the table of crossings."""
 
 
 class OneRod:
-    """Numbers and lists in the result of one rod. For an arm, every name stands for its SI variable."""
+    """Numbers and lists in the result of one rod. For an arm, variables in SI units are printed where they
+    exist.
+    """
 
     def __init__(self, view: View):
         self.view = view
@@ -129,20 +133,20 @@ class OneRod:
         return found
 
     def preferred(self, digits: ColumnTexts, name: str) -> str:
-        """Name of the variable that is printed for `name`: its SI variable if `digits` has such a column,
-        else `name` itself.
+        """Name of the variable that is printed for the variable `name`: the corresponding SI variable if
+        `digits` has such a column, else `name`.
         """
         return self.si.get(name, name) if self.si.get(name) in digits.columns else name
 
     def column(self, name: str) -> Column | None:
-        """The variable `name` of the rod as a column of one row; None if the result has no such variable or
-        no value.
+        """The variable `name` of the rod as a column of one row; None if the variable or its value is
+        missing.
         """
         column = self.points.columns.get(self.preferred(self.points, name))
         return None if column is None or column.absent[0] else column
 
     def text(self, name: str) -> str:
-        """The variable `name` of the rod for use in a sentence, with its unit; empty for a missing value."""
+        """The variable `name` of the rod as text with its unit; empty for a missing value."""
         column = self.column(name)
         return "" if column is None else self.points.short(column.name)
 

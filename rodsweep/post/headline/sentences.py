@@ -1,5 +1,5 @@
-"""For each task, the answer about one rod in one sentence, and which numbers and which list to
-print below.
+"""For each task, the sentence with the answer about one rod, and the numbers and the list printed below the
+sentence.
 """
 
 from collections import Counter
@@ -16,9 +16,9 @@ from .one_rod import OneRod
 class Headline:
     """First lines printed about the result of a task for one rod.
 
-    sentence: function that gives the answer; its text is empty if there is none. numbers: variables of the
-    rod to print. table: name of the list to print; empty for none. columns: columns of this list. The most
-    important numbers and columns come first.
+    sentence: function that returns the sentence with the answer, or an empty text if there is no answer.
+    numbers: variables of the rod to print. table: name of the list to print; empty if no list is printed.
+    columns: columns of this list. The most important numbers and columns come first.
     """
 
     sentence: Callable[[OneRod], str]
@@ -67,8 +67,8 @@ def hopf_sentence(rod: OneRod) -> str:
 
 
 def branch_sentence(rod: OneRod) -> str:
-    """Sentence on the numbers of branches and cycles, the range of the parameter, and the largest y of the
-    tip.
+    """Sentence on the numbers of branches and cycles, and the largest y of the tip; if there is no branch, on
+    the range of the parameter.
     """
     branches = rod.count("branch_count")
     if branches is None:
@@ -87,9 +87,7 @@ def branch_sentence(rod: OneRod) -> str:
 
 
 def cycle_sentence(rod: OneRod) -> str:
-    """Sentence on the period and amplitude of the cycle, or on the straight rod; empty for any
-    other status.
-    """
+    """Sentence on the period and the amplitude of the cycle; empty if the result has no period."""
     if period := rod.text("period"):
         status = str(rod.view.outcomes[0])
         beats = "the rod beats" if status == "cycle" else status.replace("_", " ")
@@ -98,13 +96,13 @@ def cycle_sentence(rod: OneRod) -> str:
 
 
 def _end(rod: OneRod) -> str:
-    """Largest load of the search as text, like "F = 200"; empty if unknown."""
+    """Largest load of the search as text, such as "F = 200"; empty if unknown."""
     column = rod.column("F_end")
     return "" if column is None else f"{column.name.removesuffix('_end')} = {rod.text('F_end')}"
 
 
 def _not_known_beyond(rod: OneRod) -> str:
-    """Clause on the loads beyond the point where a search stopped early; empty for a complete search."""
+    """Clause that says at which load a search ended early; empty for a complete search."""
     early = "; not known beyond {}, where the search ended early"
     return early.format(_end(rod)) if rod.view.with_status("ended_early").all() else ""
 

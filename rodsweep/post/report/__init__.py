@@ -1,8 +1,8 @@
-"""One self-contained HTML page about results, readable without a network: `rodsweep report`.
+"""One self-contained HTML page about results: `rodsweep report`.
 
 The page contains the lines of `rodsweep show`, the figures of `rodsweep plot` with values under the pointer,
-the tables of `rodsweep export`, the config and the provenance. The page itself forbids the browser to load
-anything from elsewhere.
+the tables of `rodsweep export`, the config and the provenance. The page forbids the browser to load external
+content.
 """
 
 import re
@@ -27,21 +27,21 @@ from .reported import ReportContents, report_contents
 from .vector_picture import VectorPicture
 
 QUOTED = re.compile("`([^`]*)`")
-"""Text between backquotes in a sentence: a command, or a key of a config."""
+"""Pattern for a text between backquotes in a sentence: a command, or a key of a config."""
 
 
 def require_page(output: Path, inputs: Sequence[Path]) -> None:
-    """Raises InputError unless an HTML page can be written to `output`. inputs: result files, which must not
-    be overwritten.
+    """Raises InputError if `output` is not a valid name for an HTML page, see `require_name`. inputs: result
+    files, which must not be overwritten.
     """
     require_name(output, (".html",), "page", inputs)
 
 
 def write_report(views: Sequence[View], output: Path, shapes: Shapes | None = None) -> str:
-    """Writes an HTML page about results and returns a sentence.
+    """Writes an HTML page about results to the file `output`, and returns a sentence about the page.
 
-    shapes: function that solves cycles without stored shapes, for the figure of limit cycles. Raises
-    InputError for an output name that does not suit an HTML page.
+    shapes: function that computes the shapes of cycles for figures, if the file has no shapes. Raises
+    InputError for an invalid name of the page.
     """
     require_page(output, [view.path for view in views])
     numbers = count(1)
@@ -55,7 +55,7 @@ def write_report(views: Sequence[View], output: Path, shapes: Shapes | None = No
 
 
 def page_text(results: Sequence[ReportContents], together: Pictures) -> str:
-    """HTML text of the page. together: figures that each show several results."""
+    """HTML text of the page. together: figures that show several results in the same panels."""
     pictures = [each.picture for result in results for each in result.pictures.shown]
     pictures += [each.picture for each in together.shown]
     title = "; ".join(result.title for result in results)
@@ -63,8 +63,8 @@ def page_text(results: Sequence[ReportContents], together: Pictures) -> str:
 
 
 def rendered(template: str, drawn: Sequence[VectorPicture], **contents: Any) -> str:
-    """HTML text from a template of this package. drawn: all pictures of the page. contents: variables of the
-    template.
+    """HTML text made from a template of this package. template: file name. drawn: all pictures of the page.
+    contents: variables of the template.
     """
     environment = Environment(
         loader=PackageLoader(__name__),
@@ -87,5 +87,5 @@ def rendered(template: str, drawn: Sequence[VectorPicture], **contents: Any) -> 
 
 
 def _with_code(text: str) -> Markup:
-    """A sentence as HTML, with the words between backquotes as code."""
+    """A sentence as HTML, with texts between backquotes as code."""
     return Markup(QUOTED.sub(r"<code>\1</code>", str(escape(text))))

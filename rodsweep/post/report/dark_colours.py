@@ -1,18 +1,18 @@
 """Colours of figures on a dark page: greys are inverted, and colours that are too dark are lightened."""
 
 INK_BRIGHTNESS = 232
-"""Brightness, from 0 to 255, that black has on the dark page."""
+"""Brightness, from 0 to 255, of the grey that replaces black on the dark page."""
 PAPER_BRIGHTNESS = 27
-"""Brightness, from 0 to 255, that white has on the dark page: the brightness of the page's background."""
+"""Brightness, from 0 to 255, of the grey that replaces white on the dark page, equal to the background."""
 MIN_CONTRAST = 4.5
-"""Least contrast ratio of a line with the dark page. WCAG 2 asks 4.5 of text, and 3 of graphics that are not
-thin."""
+"""Smallest contrast ratio of a colour with the dark page. WCAG 2 requires 4.5 for text and 3 for graphics;
+thin lines get the ratio for text."""
 LIGHTENING_STEP_COUNT = 20
-"""Number of steps from a colour to white in which a colour is lightened."""
+"""Number of steps between a colour and white that are tried when the colour is lightened."""
 
 
 def dark_page_colour(colour: str) -> str:
-    """Colour on the dark page that replaces a colour of the light page; both as six hexadecimal digits."""
+    """Colour that replaces `colour` on the dark page. Colours are texts of six hexadecimal digits."""
     parts = [int(colour[place : place + 2], 16) for place in (0, 2, 4)]
     if len(set(parts)) == 1:
         parts = [round(INK_BRIGHTNESS + (PAPER_BRIGHTNESS - INK_BRIGHTNESS) * part / 255) for part in parts]
@@ -26,8 +26,8 @@ def dark_page_colour(colour: str) -> str:
 
 
 def _contrast(parts: list[float]) -> float:
-    """Contrast ratio, as defined by WCAG 2, of a colour with the dark page. parts: red, green and blue, from
-    0 to 255.
+    """Contrast ratio, as defined by WCAG 2, of a colour with the background of the dark page. parts: red,
+    green and blue, from 0 to 255.
     """
     return (_luminance(parts) + 0.05) / (_luminance([PAPER_BRIGHTNESS] * 3) + 0.05)
 

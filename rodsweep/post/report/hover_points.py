@@ -1,7 +1,8 @@
 """Values in a drawn figure with their positions, for the text that a page shows under the pointer.
 
 The values are read from the lines, scatter plots, bars and coloured cells of a matplotlib figure. The modules
-that draw figures therefore know nothing of pages.
+that draw figures are therefore independent of pages. names: labels of the two axes of a panel. words: legend
+entries by colour.
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,21 +24,23 @@ from ..figures.cycle.point_map import cell_centres
 from .label_text import label_text
 
 MAX_POINTS = 2500
-"""Largest number of values of a figure that get a text; of more values every n-th gets one. A text takes some
-100 bytes."""
+"""Approximate largest number of texts in a figure; with more values, only every n-th value of long curves has
+a text. A text takes some 100 bytes."""
 MAX_UNTHINNED_POINTS = 24
-"""Number of points up to which every point of a curve keeps its text."""
+"""Every point of a curve with at most this number of points has a text."""
 POINTER_DIGITS = 8
 """Number of significant digits of a value under the pointer."""
 POINTS_PER_INCH = 72
-"""Length unit of matplotlib's SVG files: points per inch."""
+"""Points per inch; a point is the length unit of matplotlib's SVG files."""
 FRAME_MARGIN = 1.0
-"""Distance outside the frame of a panel, in points, within which a value still belongs to the panel."""
+"""Values outside the frame of a panel, up to this distance, in pixels, also have texts."""
 
 
 @dataclass(frozen=True, slots=True)
 class HoverPoint:
-    """Text for a value in a figure. x, y: position from the upper left corner of the figure, in points."""
+    """Text for a value in a figure. x, y: position relative to the upper left corner of the figure, in
+    points.
+    """
 
     x: float
     y: float
@@ -46,8 +49,8 @@ class HoverPoint:
 
 @dataclass(frozen=True, slots=True)
 class HoverSeries:
-    """Texts for n values of a curve. places: positions from the lower left corner of the figure, in pixels,
-    (n, 2).
+    """Texts for n values of a curve. places: positions relative to the lower left corner of the figure, in
+    pixels, (n, 2).
     """
 
     places: Array
@@ -55,7 +58,7 @@ class HoverSeries:
 
 
 def hover_points(figure: Figure) -> list[HoverPoint]:
-    """Texts for all values in a figure, in the order of drawing. The layout of the figure must be final."""
+    """Texts for the values in a figure, in the order of drawing. The layout of the figure must be final."""
     words = _legend_words(figure)
     found = [series for axes in figure.axes for series in _of_panel(axes, words)]
     long = sum(len(series.texts) for series in found if len(series.texts) > MAX_UNTHINNED_POINTS)
@@ -71,7 +74,7 @@ def hover_points(figure: Figure) -> list[HoverPoint]:
 
 
 def _of_panel(axes: Axes, words: dict[str, str]) -> Iterator[HoverSeries]:
-    """Yields the texts for all values inside the frame of a panel. words: legend entries, by colour."""
+    """Yields the texts for all values inside the frame of a panel. words: legend entries by colour."""
     if axes.get_label() == "<colorbar>" or not axes.get_visible():
         return
     names = (axis_name(axes, "x"), axis_name(axes, "y"))
@@ -88,11 +91,11 @@ def _of_panel(axes: Axes, words: dict[str, str]) -> Iterator[HoverSeries]:
 
 
 def _line(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSeries:
-    """Texts for the vertices of a line. A line across the whole panel, such as a threshold, has one text at
-    its middle, its legend entry.
+    """Texts for the vertices of a line. A line across the whole panel, such as a threshold, has a single
+    text, its legend entry, at the middle. names: labels of the two axes.
     """
     data = np.ma.filled(np.ma.asarray(line.get_xydata(), float), np.nan).reshape(-1, 2)
-    with np.errstate(all="ignore"):  # a logarithmic axis has no place for zero
+    with np.errstate(all="ignore"):  # zero has no position on a logarithmic axis
         places = line.get_transform().transform(data)
     label = _series_name(line.get_label())
     if line.get_transform() == axes.transData:
@@ -102,9 +105,9 @@ def _line(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSeries:
 
 
 def _scatter(dots: PathCollection, names: tuple[str, str]) -> HoverSeries:
-    """Texts for scattered points, with the value that sets the colour of a point, if any.
+    """Texts for the points of a scatter plot, with the value that is shown by the colour of a point, if any.
 
-    An invisible scatter stands for the points from which filled contours are interpolated.
+    An invisible scatter plot contains the points between which filled contours are interpolated.
     """
     data = np.ma.filled(np.ma.asarray(dots.get_offsets(), float), np.nan)
     places = dots.get_offset_transform().transform(data)
@@ -124,7 +127,9 @@ def _scatter(dots: PathCollection, names: tuple[str, str]) -> HoverSeries:
 
 
 def _cells(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[HoverSeries]:
-    """Yields the texts for coloured cells: the value on the colour bar, or the legend entry of the colour."""
+    """Yields the texts for the cells of coloured meshes: value on the colour bar, or legend entry of the
+    colour, and coordinates.
+    """
     for mesh in axes.collections:
         if not isinstance(mesh, QuadMesh):
             continue
@@ -146,7 +151,7 @@ def _cells(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterato
 
 
 def _bars(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[HoverSeries]:
-    """Yields the texts for bars, at their middles: the values at both ends of a bar."""
+    """Yields the texts for bars, at the middle of each bar: legend entry, and values at both ends."""
     for bars in axes.containers:
         if not isinstance(bars, BarContainer):
             continue
@@ -160,7 +165,9 @@ def _bars(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator
 
 
 def axis_name(axes: Axes, which: Literal["x", "y"]) -> str:
-    """Label of an axis as plain text, from the panel itself or from a panel that shares the axis."""
+    """Label of an axis as plain text, from the panel itself or from a panel with the same axis; `which` if
+    there is no label.
+    """
     shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
     for each in (axes, *shared.get_siblings(axes), *_beside(axes, which)):
         label = each.get_xlabel() if which == "x" else each.get_ylabel()
@@ -203,8 +210,8 @@ def _series_name(label: object) -> str:
 
 
 def _texts(names: tuple[str, str], data: Array, series: str) -> list[str]:
-    """Text for each point of a curve: its legend entry and both coordinates. data: points in data
-    coordinates, (n, 2).
+    """Text for each point of a curve: legend entry `series` and both coordinates. names: labels of the axes.
+    data: points in data coordinates, (n, 2).
     """
     return ["\n".join(filter(None, (series, _text(names, at)))) for at in data]
 

@@ -5,17 +5,17 @@ import unicodedata
 from functools import cache
 
 FORMULA = re.compile(r"\$(.+?)(?<!\\)\$")
-"""Formula between two dollar signs."""
+"""Pattern for a formula between two dollar signs."""
 DERIVATIVE = re.compile(r"\\dot\s*(?:\{([^{}]*)\}|(\w))")
-"""TeX command for a time derivative, a dot above its argument."""
+"""Pattern for the TeX command of a time derivative: a dot above the argument."""
 COMMAND_WITH_ARGUMENT = re.compile(r"\\(?:mathrm|text|tilde|mathit)\s*(?:\{([^{}]*)\}|(\w))")
-"""TeX command that is replaced by its argument: upright text, or a mark above a letter."""
+"""Pattern for a TeX command that is replaced by its argument: a font, or a tilde above a letter."""
 SUBSCRIPT = re.compile(r"_(?:\{([^{}]*)\}|(.))")
-"""TeX subscript."""
+"""Pattern for a TeX subscript."""
 POWER = re.compile(r"\^(?:\{([^{}]*)\}|(\\?\w+|.))")
-"""TeX superscript."""
+"""Pattern for a TeX superscript."""
 COMMAND = re.compile(r"\\([A-Za-z]+|.)")
-"""Any other TeX command."""
+"""Pattern for any other TeX command."""
 TEX_SIGNS = {
     "times": "×",
     "infty": "∞",
@@ -30,13 +30,13 @@ TEX_SIGNS = {
 
 
 def label_text(label: str) -> str:
-    """A label as plain text in one line. A dollar sign in a text of the user stays a dollar sign."""
+    """A label as plain text on one line. An escaped dollar sign becomes a dollar sign."""
     text = FORMULA.sub(lambda found: _formula(found[1]), label).replace(r"\$", "$")
     return " ".join(text.split())
 
 
 def _formula(tex: str) -> str:
-    """A formula as text: subscripts directly after their letter, powers after a ^."""
+    """A formula as text: a subscript directly after its letter, a power after "^"."""
     tex = DERIVATIVE.sub(lambda found: rf"d{found[1] or found[2]}/dt\,", tex)
     previous = None
     while previous != tex:  # arguments may contain commands
@@ -48,13 +48,13 @@ def _formula(tex: str) -> str:
 
 
 def _power(exponent: str) -> str:
-    """A superscript as text: ^ and the exponent; the dagger of an adjoint mode has no ^."""
+    """A superscript as text: "^" and the exponent, or only the dagger of an adjoint mode."""
     return exponent if exponent == r"\dagger" else f"^{exponent}"
 
 
 @cache
 def _sign(command: str) -> str:
-    """Unicode text of a TeX command: a Greek letter, a sign, or the name of the command, as for max."""
+    """Unicode text of a TeX command: a Greek letter, a sign, or the name of the command, such as "max"."""
     if command in TEX_SIGNS:
         return TEX_SIGNS[command]
     size = "CAPITAL" if command[0].isupper() else "SMALL"

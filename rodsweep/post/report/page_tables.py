@@ -1,4 +1,4 @@
-"""Tables of a result on its HTML page: rounded numbers, with all digits under the pointer, and no empty
+"""Tables of a result on an HTML page: rounded numbers, with all digits under the pointer, without empty
 columns.
 """
 
@@ -20,7 +20,7 @@ CELL_DIGITS = 6
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """Cell of a table. text: rounded value. full: the value with all digits, if longer."""
+    """Cell of a table. text: rounded value. full: value with all digits; empty if `text` has all digits."""
 
     text: str
     full: str = ""
@@ -30,9 +30,9 @@ class Cell:
 class PageTable:
     """Table on the page.
 
-    heads: (name, unit, meaning) of every column. rows: cells of the shown rows. total: number of rows before
-    cutting to MAX_ROWS. constant: (name, cell, unit, meaning) of columns with equal values in all rows, which
-    are listed beside the table.
+    heads: (name, unit, meaning) of each shown column. rows: cells of the shown rows. total: number of rows of
+    the result, of which at most MAX_ROWS are shown. constant: (name, cell, unit, meaning) of each column with
+    equal values in all rows; these columns are listed outside the table.
     """
 
     name: str
@@ -43,8 +43,8 @@ class PageTable:
 
 
 def page_tables(view: View) -> Iterator[PageTable]:
-    """Yields all tables of a result that have rows: first the default table of the task, then the points,
-    then all other lists.
+    """Yields all nonempty tables of a result: first the default table of the task, then the table of points,
+    then the other tables.
     """
     tables = Tables(view)
     names = dict.fromkeys((DEFAULT_TABLE[view.task], POINTS, *tables.contents.tables))
@@ -56,7 +56,9 @@ def page_tables(view: View) -> Iterator[PageTable]:
 
 
 def _shown(table: Table) -> PageTable:
-    """The table for the page: without empty columns, and with columns of equal values listed beside it."""
+    """The table in a form for the page: without empty columns; columns with equal values in all rows are
+    listed separately.
+    """
     filled = [column for column in table.columns if not column.absent.all()]
     alike = [column for column in filled if table.rows > 1 and _is_constant(column)]
     shown = [column for column in filled if column not in alike]
@@ -74,19 +76,21 @@ def _shown(table: Table) -> PageTable:
 
 
 def _is_constant(column: Column) -> bool:
-    """Whether all rows of a column have the same value; always False for a status."""
+    """Whether all rows of a column have the same value; False for the column "status"."""
     if column.name == "status" or column.absent.any():
         return False
     return len(np.unique(column.values)) == 1
 
 
 def _cells(column: Column) -> list[Cell]:
-    """Cells of a column."""
+    """Cells for all values of a column."""
     return [_cell(column, text, value) for text, value in zip(column.text(), column.values, strict=True)]
 
 
 def _cell(column: Column, text: str, value: float) -> Cell:
-    """Cell for a value. text: the value with all digits; empty if it is missing."""
+    """Cell for the value `value` of a column. text: the value with all digits; empty if the value is
+    missing.
+    """
     is_number = column.values.dtype.kind == "f" and not column.words and not column.is_estimate
     if not text or not is_number:
         return Cell(text)

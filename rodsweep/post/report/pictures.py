@@ -1,4 +1,6 @@
-"""Figures on the HTML page of a result: all figures of `rodsweep plot` that the result file allows."""
+"""Figures on the HTML page of a result: all figures of `rodsweep plot` that can be drawn from the result
+file.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -14,9 +16,9 @@ from ..figures.request import KINDS_OF_TASK, Shapes
 from .vector_picture import VectorPicture, vector_picture
 
 ANIMATION_KIND = "animation"
-"""Kind of figure that is an animation, which a page cannot show as one picture."""
+"""Kind of figure that the page leaves out, because it is an animation."""
 SVG_REQUEST_NAME = Path("figure.svg")
-"""Output name that requests a figure in SVG for the page; no file of this name is written."""
+"""Output name with which figures for the page are requested; no file with this name is written."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,19 +31,19 @@ class CaptionedPicture:
 
 @dataclass(frozen=True, slots=True)
 class Pictures:
-    """Pictures of a result. refusal: reason why there are none; empty if there are some."""
+    """Pictures of a result. refusal: reason for which there is no picture; empty if there are pictures."""
 
     shown: tuple[CaptionedPicture, ...]
     refusal: str = ""
 
 
 def pictures_of(views: Sequence[View], shapes: Shapes | None, numbers: "count[int]") -> Pictures:
-    """Every kind of figure of the results, with the default figure of `rodsweep plot` first.
+    """Figures of every kind that show all `views`, the default figure of `rodsweep plot` first.
 
-    shapes: function that solves cycles without stored shapes, for the first figure. numbers: counter that
-    numbers the pictures of the page.
+    shapes: function that computes the shapes of cycles for the default figure, if the file has no shapes.
+    numbers: counter that numbers the pictures of the page.
     """
-    # Without its folders, so that no sentence on the page names them.
+    # Remove the folders from the paths, so that no sentence on the page names a folder.
     views = [replace(view, path=Path(view.path.name)) for view in views]
     kinds = [kind for kind in KINDS_OF_TASK.get(views[0].task, ()) if kind != ANIMATION_KIND]
     found: dict[str, CaptionedPicture] = {}

@@ -1,4 +1,4 @@
-"""Contents of an HTML page about one result as plain text, tables and pictures, before they become HTML."""
+"""Contents of an HTML page about one result as plain text, tables and pictures, before conversion to HTML."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,7 +30,8 @@ VERSION_WORDS = {
     "finished": "finished",
     "fingerprint": "fingerprint of the config",
 }
-"""Words for the attributes of the result file that the page lists. None of them names a machine or a user."""
+"""Printed names of the attributes of the result file that the page lists. No attribute contains the name of a
+machine or a user."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,7 +41,7 @@ class ReportContents:
     name: str
     """Name of the result file."""
     title: str
-    """Title in the config, or else the name of the result file."""
+    """Title in the config; the name of the result file if there is no title."""
     task: str
     summary: Summary
     statuses: TextTable
@@ -52,11 +53,11 @@ class ReportContents:
     complete: str
     """Config with the defaults of all keys filled in."""
     versions: Sequence[tuple[str, str]]
-    """(software, version) of the programs that computed the result."""
+    """(printed name, value) of the attributes in VERSION_WORDS."""
 
 
 def report_contents(view: View, pictures: Pictures) -> ReportContents:
-    """Contents of the page about the result `view`, with its `pictures`."""
+    """Contents of the page about the result `view`. pictures: figures of this result."""
     a = view.attributes
     summary = summary_of(view)
     name = printable(view.path.name)
@@ -75,8 +76,8 @@ def report_contents(view: View, pictures: Pictures) -> ReportContents:
 
 
 def _with_places(view: View, statuses: TextTable) -> TextTable:
-    """Table of statuses; if there are several, with the ranges of the parameters in which each status is
-    found.
+    """Table of statuses. If there are several statuses, a column with the parameter ranges of each status is
+    added.
     """
     if len(statuses.rows) == 1:
         return statuses

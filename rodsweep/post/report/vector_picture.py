@@ -1,4 +1,6 @@
-"""A matplotlib figure as SVG inside an HTML page, with texts under the pointer and colours for dark pages."""
+"""SVG element of a matplotlib figure for an HTML page, with texts under the pointer and colours for dark
+pages.
+"""
 
 import re
 from dataclasses import dataclass
@@ -13,9 +15,9 @@ from .hover_points import hover_points
 SVG = "http://www.w3.org/2000/svg"
 XLINK = "http://www.w3.org/1999/xlink"
 HEX_COLOUR = re.compile(r"#([0-9a-f]{6})(?![0-9a-f])")
-"""Colour in SVG: # and six hexadecimal digits."""
+"""Pattern for a colour in SVG: "#" and six hexadecimal digits."""
 HOVER_RADIUS = "4"
-"""Radius, in points, of the invisible circle around a value whose title the browser shows under
+"""Radius, in points, of the invisible circle around a value. The browser shows the title of the circle under
 the pointer."""
 
 ElementTree.register_namespace("", SVG)
@@ -26,8 +28,9 @@ ElementTree.register_namespace("xlink", XLINK)
 class VectorPicture:
     """Figure as an SVG element of an HTML page.
 
-    colours: colours, as six hexadecimal digits, that the page replaces when it is dark. Empty for a picture
-    that contains an image, whose colours cannot be replaced; its background stays white.
+    colours: colours of the picture, as six hexadecimal digits, which a dark page replaces. Empty for a
+    picture that contains a bitmap, because the colours of a bitmap cannot be replaced; the background then
+    stays white.
     """
 
     svg: str
@@ -37,7 +40,7 @@ class VectorPicture:
 
 
 def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
-    """The figure as an SVG element. number: number of the picture on its page. caption: description for
+    """The figure as an SVG element. number: number of the picture on the page. caption: description for
     readers who cannot see the picture.
     """
     written = BytesIO()
@@ -61,7 +64,9 @@ def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
 
 
 def _remove(root: ElementTree.Element, place: str) -> None:
-    """Removes the first element at the path `place` below `root`, given by names of elements."""
+    """Removes the first element at a path below `root`. place: path of element names, such as
+    "defs/style".
+    """
     *above, name = place.split("/")
     parent = root.find("/".join(f"{{{SVG}}}{each}" for each in above)) if above else root
     if parent is not None and (found := parent.find(f"{{{SVG}}}{name}")) is not None:
@@ -80,7 +85,9 @@ def _name_colours(root: ElementTree.Element) -> frozenset[str]:
 
 
 def _add_texts(root: ElementTree.Element, figure: Figure) -> None:
-    """Adds an invisible circle with a title at every value of the figure, for the text under the pointer."""
+    """Adds to the SVG element `root` an invisible circle for each value of the figure; the title of the
+    circle is the text under the pointer.
+    """
     group = ElementTree.SubElement(root, f"{{{SVG}}}g", {"class": "values"})
     for point in hover_points(figure):
         place = {"cx": f"{point.x:.1f}", "cy": f"{point.y:.1f}", "r": HOVER_RADIUS}

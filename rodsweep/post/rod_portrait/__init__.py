@@ -1,4 +1,4 @@
-"""Portrait of a rod: thresholds, branches, modes and cycles of one rod in one picture and one paragraph.
+"""Portrait of a rod: thresholds, branches, modes and cycles of one rod in one figure and one paragraph.
 
-`rodsweep.tasks.rod_portrait` solves for the results.
+The results are computed by `rodsweep.tasks.rod_portrait`.
 """

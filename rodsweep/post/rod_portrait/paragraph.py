@@ -1,5 +1,5 @@
-"""Portrait of a rod in words: thresholds, criticality, branches, coexisting states, cycles,
-missing results.
+"""Paragraph of the portrait of a rod: thresholds, criticality, branches, coexisting states, cycles, missing
+results.
 """
 
 from collections.abc import Iterator, Sequence
@@ -20,25 +20,25 @@ from ..summary.thresholds import ENDED_EARLY
 from .results import RodResults
 
 SAME_FORCE_TOLERANCE = 1e-6
-"""Largest relative difference between the forces that two tasks find for the same Hopf point."""
+"""Hopf points of two tasks are the same Hopf point if their forces differ by at most this relative amount."""
 THRESHOLD_CLAUSES = {
     "onset": "it starts to oscillate at {F}",
     "hopf": "a pair of modes becomes unstable at {F}",
     "hopf_reverse": "a pair becomes stable at {F}, where other modes stay unstable",
     "restabilization": "it is stable again from {F}",
-    "real_again": "it stops oscillating as it decays at {F}",
-    "real_leads": "a real eigenvalue takes the lead at {F}",
-    "pair_leads": "a complex pair takes the lead at {F}",
+    "real_again": "decaying disturbances stop oscillating at {F}",
+    "real_leads": "a real eigenvalue becomes the leading eigenvalue at {F}",
+    "pair_leads": "a complex pair becomes the leading pair at {F}",
 }
 """Clause on the straight rod at a threshold, by kind of threshold."""
 SEARCH_TASKS = ("thresholds", "criticality", "branch")
-"""Tasks whose status the paragraph states unless it is `SUCCESS_STATUS`."""
+"""Tasks whose status the paragraph states unless the status is `SUCCESS_STATUS`."""
 SUCCESS_STATUS = "ok"
 """Status of a search for thresholds, criticality or branches that is complete."""
 
 
 def paragraph(results: RodResults) -> str:
-    """All results about the rod, as one paragraph of text."""
+    """All results about the rod as one paragraph of text."""
     sentences = [
         *_rod(results),
         *_thresholds(results),
@@ -50,7 +50,7 @@ def paragraph(results: RodResults) -> str:
 
 
 def _rod(results: RodResults) -> Iterator[str]:
-    """Yields sentences on the parameters of the rod, and the searched range of the force."""
+    """Yields sentences on the parameters of the rod, and on the searched range of the load."""
     end = float(results.views["thresholds"].of_point(0)["F_end"])
     units = results.units
     reached = units.force_at(end)
@@ -62,14 +62,14 @@ def _rod(results: RodResults) -> Iterator[str]:
     elif reached != wanted:
         early = results.views["thresholds"].with_status("ended_early").all()
         ends = "the search ended early: the list was full, or modes could not be counted"
-        searched += f", not to {wanted}: {ends if early else f'beyond it the {kind} is crushed'}"
+        searched += f", not to {wanted}: {ends if early else f'above this load the {kind} is crushed'}"
     yield f"The {kind} with {results.rod.words} {searched}."
     if results.rod.arm:
         yield from _arm(results)
 
 
 def _arm(results: RodResults) -> Iterator[str]:
-    """Yields sentences on an arm: its units, whether the model applies, and the plane in which it moves."""
+    """Yields sentences on the units of an arm, the validity of the model, and the plane of motion."""
     view = results.views["thresholds"]
     quantities = {name: float(values.ravel()[0]) for name, values in view.quantities.items()}
     yield (
@@ -83,7 +83,7 @@ def _arm(results: RodResults) -> Iterator[str]:
 
 
 def _thresholds(results: RodResults) -> Iterator[str]:
-    """Yields sentences on the thresholds of the straight rod, with the criticality of its Hopf points."""
+    """Yields sentences on the thresholds of the straight rod, with the criticality of the Hopf points."""
     view = results.views["thresholds"]
     v = view.of_point(0)
     places = np.flatnonzero(v["crossing_kind"] > 0)
@@ -98,7 +98,7 @@ def _thresholds(results: RodResults) -> Iterator[str]:
             clause += f"{_side(results, float(v['crossing_F'][i]))})"
         clauses.append(clause)
     if clauses:
-        yield f"Straight, {'; '.join(clauses)}."
+        yield f"In the straight state, {'; '.join(clauses)}."
     elif v["crossing_count"] == 0:
         yield f"The straight {results.rod.kind} has no threshold up to {end}."
     if v["crossing_count"] >= 0:
@@ -118,7 +118,7 @@ def _side(results: RodResults, F: float) -> str:
     if not sides.size:
         return ""
     a = float(v["amplitude_coefficient"][same][0])
-    return f"; {CRITICALITY_WORDS[int(sides[0])]}, its cycles are {'above' if a > 0 else 'below'} it"
+    return f"; {CRITICALITY_WORDS[int(sides[0])]}, with cycles {'above' if a > 0 else 'below'} this load"
 
 
 def _branches(results: RodResults) -> Iterator[str]:
@@ -130,8 +130,8 @@ def _branches(results: RodResults) -> Iterator[str]:
         return
     if rod.hidden:
         yield (
-            f"{rod.hidden} of its branches of cycles {is_or_are(rod.hidden)} not drawn: not all special "
-            "points are stored."
+            f"{rod.hidden} of its branches of cycles {is_or_are(rod.hidden)} not drawn: some special points "
+            "are not stored."
         )
     curves = rod.curves
     if not curves:
@@ -161,11 +161,10 @@ def _branches(results: RodResults) -> Iterator[str]:
 
 
 def _beside(ranges: str, is_decided: bool, kind: str) -> str:
-    """Sentence on the loads at which a stable cycle and the stable straight rod coexist, or that there are
-    none.
+    """Sentence on the coexistence of a stable cycle and the stable straight rod.
 
-    ranges: the loads as text; empty if none are found. is_decided: whether the stability of all states is
-    known. kind: "rod" or "arm".
+    ranges: loads of coexistence as text; empty if no such load was found. is_decided: whether the stability
+    of all states is known. kind: "rod" or "arm".
     """
     if ranges:
         return f"A stable cycle exists beside the stable straight {kind} at {ranges}."
@@ -175,7 +174,7 @@ def _beside(ranges: str, is_decided: bool, kind: str) -> str:
 
 
 def _special(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[str]:
-    """Distinct loads, as text, at the special points of the given kind. factor: the load at F = 1."""
+    """Distinct loads, as text, at the special points of the given kind. factor: load at F = 1."""
     found = {
         rounded(factor * special.at, factor * special.error): None
         for curve in curves
@@ -186,7 +185,7 @@ def _special(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[s
 
 
 def _cycles(results: RodResults) -> Iterator[str]:
-    """Yields a sentence on the drawn cycles, and a sentence on the forces at which no cycle was found."""
+    """Yields a sentence on the drawn cycles, and on the loads at which no cycle was found."""
     units = results.units
     clauses = []
     for F, view in results.cycles:
@@ -204,10 +203,10 @@ def _cycles(results: RodResults) -> Iterator[str]:
         )
         unstable = ", unstable," if word == "unstable" else ""
         clauses.append(
-            f"at {units.force_at(F)}{unstable} its period is {period} and the largest y of its tip {y}"
+            f"at {units.force_at(F)}{unstable} the period is {period} and the largest y of the tip {y}"
         )
     if clauses:
-        yield f"Beating, {'; '.join(clauses)}."
+        yield f"Cycles: {'; '.join(clauses)}."
 
 
 def _missing(results: RodResults) -> Iterator[str]:

@@ -28,11 +28,11 @@ ROW_HEIGHTS = (0.4, 2.4, 1.5, 2.2)
 """Relative heights of the rows of panels: thresholds, largest y of the tip, periods, and modes
 with cycles."""
 MODE_WIDTH = 0.65
-"""Width of the panel of a mode, in units of the width of the panel of a cycle."""
+"""Width of the panel of a mode, divided by the width of the panel of a cycle."""
 PARAGRAPH_WIDTH = 162
 """Largest length of a line of the paragraph, in characters."""
 PANEL_TEXT_WIDTH = 26
-"""Largest length of a line, in characters, of the sentence in a panel whose mode or cycle is missing."""
+"""Largest length of a line, in characters, of a sentence in a panel for a mode or a cycle."""
 CYCLE_COUNT = 3
 """Number of cycles in the figure."""
 COEXISTENCE_LOOK = ("#009E73", "stable cycle beside a stable straight rod")
@@ -40,16 +40,16 @@ COEXISTENCE_LOOK = ("#009E73", "stable cycle beside a stable straight rod")
 TWO_CYCLES_LOOK = ("#CC79A7", "two stable cycles")
 """Colour and legend entry of ranges of F in which two stable cycles coexist."""
 CYCLE_WORD = "cycle drawn below"
-"""Legend entry of the marks at cycles whose shapes are drawn."""
+"""Legend entry of the marks of cycles whose shapes are drawn."""
 MIN_DRAWN_PART = 1e-3
-"""Size of the imaginary part of a mode, as a fraction of the mode, below which it is not drawn. At a double
-eigenvalue half of the digits are rounding errors."""
+"""The imaginary part of a mode is drawn if its maximum exceeds this fraction of the maximum of the real part.
+At a double eigenvalue half of the digits are rounding errors."""
 
 
 def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
-    """Figure of the portrait; with_words: whether the paragraph stands above the panels.
+    """Figure of the portrait. with_words: whether the paragraph is written above the panels.
 
-    The panel of a missing result shows the reason in a sentence.
+    The panel of a missing result contains a sentence with the reason.
     """
     with matplotlib.rc_context(style.FIGURE_STYLE):
         figure = Figure(figsize=PORTRAIT_SIZE, layout="constrained")
@@ -74,7 +74,9 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
 
 
 def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
-    """Converts the panels of the thresholds, the largest y and the period to the units of the portrait."""
+    """Converts the panels of the thresholds, the largest y and the period to the units of the portrait.
+    panels: these three panels.
+    """
     units = results.units
     end = panels[0].get_xlim()[1]
     for axes, y in zip(panels, (1.0, units.length.factor, units.time.factor), strict=True):
@@ -84,7 +86,7 @@ def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
 
 
 def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
-    """Draws the stability of the straight rod along F, with its thresholds; returns legend entries."""
+    """Draws the stability of the straight rod along F, with the thresholds; returns legend entries."""
     view = results.views["thresholds"]
     v = view.of_point(0)
     axes.set(ylim=(-0.6, 0.6), yticks=[])
@@ -101,7 +103,9 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
 
 
 def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist]:
-    """Draws the branches of cycles, and the ranges with two stable states; returns legend entries."""
+    """Draws the branches of cycles, and the ranges with two stable states; returns legend entries. upper:
+    panel of the largest y. lower: panel of the period.
+    """
     rod = results.branches
     if rod is None or not rod.curves:
         lower.set_axis_off()
@@ -131,7 +135,9 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
 
 
 def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
-    """Marks the cycles whose shapes are drawn in the panels of the branches; returns a legend entry."""
+    """In the panels of the branches, marks the cycles whose shapes are drawn; returns a list with the legend
+    entry.
+    """
     beating = [(F, view.of_point(0)) for F, view in results.cycles if view.with_status(*CYCLE_WORDS).all()]
     handles: list[Line2D] = []
     for axes, name in ((upper, "tip_y_max"), (lower, "period")):
@@ -163,7 +169,7 @@ def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
 
 
 def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
-    """Draws the shapes of up to three cycles on the same scale; later shapes of a period are darker."""
+    """Draws the shapes of up to three cycles on a common scale; later shapes of a period are darker."""
     if not results.cycles:
         for axes in panels[1:]:
             axes.set_axis_off()

@@ -1,4 +1,4 @@
-"""Results of one rod from which its portrait is made, and the reasons for missing results."""
+"""Results of one rod for its portrait, and the reasons for missing results."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -14,8 +14,8 @@ class DescribedRod:
     """Description of a rod or an arm by the user."""
 
     parameters: Mapping[str, float] = field(default_factory=dict)
-    """Parameters of the rod by name; for an arm, only parameters that the user gives instead of the arm's
-    own."""
+    """Parameters of the rod by name; for an arm, the parameters that replace parameters computed from the
+    arm."""
     material: Mapping[str, Any] = field(default_factory=dict)
     """Section `material` of a config; empty for a uniform rod of linear material."""
     arm: Mapping[str, Any] = field(default_factory=dict)
@@ -25,7 +25,7 @@ class DescribedRod:
 
     @property
     def kind(self) -> str:
-        """The word "rod" or "arm", for use in a sentence."""
+        """The word "rod" or "arm"."""
         return "arm" if self.arm else "rod"
 
     @property
@@ -40,15 +40,16 @@ class DescribedRod:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RodResults:
-    """Results of several tasks for one rod, each a view with a single point."""
+    """Results of several tasks for one rod; each view has a single point."""
 
     rod: DescribedRod
     F_max: float
-    """Largest force of the searches, in k3/L^2, as requested."""
+    """Requested largest force of the searches, in k3/L^2."""
     views: Mapping[str, View]
-    """Result by task: "thresholds", "criticality" and "branch"; missing tasks are left out."""
+    """Results by task, for the tasks "thresholds", "criticality" and "branch"; a missing result has no
+    entry."""
     modes: Mapping[str, tuple[float, View]]
-    """(force, modes at this force) at the first threshold of each kind, by kind."""
+    """(force, modes at this force) at the first threshold of a kind, by kind of threshold."""
     cycles: Sequence[tuple[float, View]]
     """(force, limit cycle at this force), in increasing order of the force."""
     missing: Mapping[str, str]
@@ -56,18 +57,18 @@ class RodResults:
 
     @property
     def units(self) -> PortraitUnits:
-        """Units of the portrait. Their prefixes suit the largest force of the search."""
+        """Units of the portrait, with prefixes suitable for the largest force of the search."""
         view = self.views["thresholds"]
         return units_of(view, self.rod.load, float(view.variables["F_end"].ravel()[0]))
 
     @property
     def branches(self) -> RodBranches | None:
-        """Branches of cycles of the rod; None if they are missing."""
+        """Branches of cycles of the rod; None if the result "branch" is missing."""
         return RodBranches(self.views["branch"]) if "branch" in self.views else None
 
 
 def _quantity(value: Any) -> str:
-    """A quantity of an arm as the user wrote it; for an arm of segments, the values from base to tip."""
+    """A quantity of an arm as text: as the user wrote it, or the values of all segments from base to tip."""
     if isinstance(value, str) or not isinstance(value, Sequence):
         return str(value)
     return " | ".join(map(str, value))

@@ -19,7 +19,7 @@ from ..summary.ranges import listed, rounded
 THRESHOLD_MARKS = {"onset": ("*", "onset"), "hopf": ("**", "flutter")}
 """(superscript of the symbol, word) of a threshold, by kind."""
 LABELLED_NUMBERS = (1.0, 2.0, 5.0)
-"""Numbers of each decade of a logarithmic axis that have tick labels, in SI units."""
+"""Numbers of each decade that have tick labels on a logarithmic axis in SI units."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,7 +30,7 @@ class Unit:
     factor: float = 1.0
 
     def text(self, value: float, error: float) -> str:
-        """`value` as text with its unit, to the digits that `error` allows. value, error: dimensionless."""
+        """`value` as text with the unit, rounded according to `error`. value, error: dimensionless."""
         return f"{rounded(self.factor * value, self.factor * error)} {self.name}"
 
 
@@ -45,29 +45,29 @@ class PortraitUnits:
     load: str = ""
 
     def along(self, axis: str) -> str:
-        """Label of an axis for the x or the y of shapes."""
+        """Label of an axis for a coordinate of shapes. axis: "x" or "y"."""
         return f"${axis}$ ({self.length.name})" if self.load else f"${axis}/L$"
 
     def at(self, text: str) -> str:
-        """Clause with the name and unit of the load. text: one or more loads, as numbers in the unit of the
-        portrait.
+        """Phrase with the name and the unit of the load, such as "F = 50". text: one or more loads, as
+        numbers in the unit of the portrait.
         """
         return f"a {self.load} of {text} {self.force.name}" if self.load else f"F = {text}"
 
     def force_at(self, F: float, error: float = 0.0) -> str:
-        """The load at the dimensionless force F as text, with the digits that its absolute error allows."""
+        """The load at the dimensionless force F as text, rounded according to the absolute error of F."""
         return self.at(rounded(self.force.factor * F, self.force.factor * error))
 
     def forces_at(self, ranges: Sequence[Range], errors: Mapping[float, float]) -> str:
-        """Ranges of the dimensionless force as text, as loads. errors: absolute errors of the
-        ends, by end.
+        """Ranges of the load as text. ranges: ranges of the dimensionless force. errors: absolute errors of
+        the ends, by end.
         """
         factor = self.force.factor
         own = [(factor * low, factor * high) for low, high in ranges]
         return self.at(listed(own, {factor * end: factor * error for end, error in errors.items()}))
 
     def frequency_text(self, omega: float) -> str:
-        """Angular frequency `omega`, in 1/tau2, as text; for an arm the frequency in Hz."""
+        """Angular frequency `omega`, in 1/tau2, as text; for an arm, as a frequency in Hz."""
         return f"{self.frequency.factor * omega:.6g} {self.frequency.name}"
 
     @property
@@ -98,8 +98,8 @@ ROD_UNITS = PortraitUnits(
 
 
 def units_of(view: View, load: str, largest: float) -> PortraitUnits:
-    """Units of the portrait of a rod or an arm. load: kind of the arm's load. largest: largest F, which
-    decides the prefix.
+    """Units of the portrait of a rod or an arm. load: kind of the arm's load. largest: largest F, for which
+    the prefix of the load is chosen.
     """
     if not view.quantities:
         return ROD_UNITS
@@ -117,8 +117,8 @@ def units_of(view: View, load: str, largest: float) -> PortraitUnits:
 
 
 def rescale_panel(axes: Axes, x: float, y: float) -> None:
-    """Multiplies the coordinates of all curves, marks and vertical areas in a panel by the
-    factors x and y.
+    """Multiplies the coordinates of all curves, marks and vertical areas in a panel by factors. x, y: factor
+    of each coordinate.
     """
     for line in axes.lines:
         line.set_data(x * np.asarray(line.get_xdata()), y * np.asarray(line.get_ydata()))

@@ -23,15 +23,15 @@ HIDDEN_TABLES = ("mode_shapes", "shapes", "harmonics", "multipliers", "samples")
 
 
 def require_portrait(output: Path) -> None:
-    """Raises InputError unless a portrait can be written to the file `output`."""
+    """Raises InputError if `output` is not a valid name for an image or an HTML page, see `require_name`."""
     require_name(
         output, (*IMAGE_SUFFIXES, PAGE_SUFFIX), "page" if output.suffix == PAGE_SUFFIX else "picture"
     )
 
 
 def write_portrait(results: RodResults, output: Path) -> str:
-    """Writes the portrait to the file `output` and returns a sentence. Raises InputError for an unsuitable
-    file name.
+    """Writes the portrait to the file `output`, and returns a sentence about the file. Raises InputError for
+    an invalid file name.
     """
     require_portrait(output)
     if output.suffix == PAGE_SUFFIX:
@@ -43,7 +43,7 @@ def write_portrait(results: RodResults, output: Path) -> str:
 
 
 def portrait_page(results: RodResults) -> str:
-    """Portrait as the text of an HTML page, readable without a network."""
+    """Portrait as the text of an HTML page that needs no network."""
     picture = vector_picture(portrait_figure(results, with_words=False), 1, CAPTION)
     views = [*results.views.items()]
     at = results.units.force_at

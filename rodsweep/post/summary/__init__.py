@@ -1,5 +1,5 @@
-"""Summary of a result file, for `rodsweep show` and `rodsweep report`: answer, reliability, details,
-provenance.
+"""Summary of a result file, for `rodsweep show` and `rodsweep report`: answer, reliability, further results,
+parameters and provenance.
 """
 
 import os
@@ -41,16 +41,18 @@ SUMMARIES: dict[str, Callable[[View, np.ndarray], SummaryLines]] = {
     "criticality": criticality_summary,
     "branch": branch_summary,
 }
-"""Function of each task that returns the lines of the summary. Arguments: view of the file, mask of its
+"""For each task, the function that returns the lines of the summary. Arguments: view of the file, mask of the
 computed points."""
 MAX_TABLE_WIDTH = 1000
 """Largest width, in characters, of a table of numbers that is printed into a pipe or a file."""
 POINT_NOUNS = {"thresholds": "rod", "criticality": "rod", "branch": "rod", "phase_diagram": "row"}
-"""Noun for a point of the result of a task, if it is not "point"."""
+"""Noun for a point of a task's result, for tasks whose noun is not "point"."""
 
 
 def summary_of(view: View, every_status: bool = False) -> Summary:
-    """Summary of a result file; every_status: whether to list statuses that no point has as well."""
+    """Summary of a result file. every_status: whether the list of statuses includes statuses that no point
+    has.
+    """
     view = view.listed
     status = view.variables["status"]
     done = status != MISSING
@@ -71,11 +73,11 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
 
 
 def show_summary(view: View, every_status: bool = False) -> None:
-    """Prints the summary of a result file; every_status: whether to list statuses that no point has as well.
+    """Prints the summary of a result file. every_status: as in `summary_of`.
 
     The answer comes first, for an arm also in SI units. Reliability, further results, parameters and
-    provenance follow, each below a heading. A terminal folds lines at the width of its window; a pipe gets
-    whole lines.
+    provenance follow, each below a heading. Lines are wrapped at the width of a terminal window, and not
+    wrapped in a pipe.
     """
     console = Console(highlight=False, markup=False)
     summary = summary_of(view, every_status)
@@ -101,22 +103,20 @@ def show_summary(view: View, every_status: bool = False) -> None:
 
 
 def print_lines(console: Console, lines: Sequence[str]) -> None:
-    """Prints lines, folded at the width of the terminal's window; output to a pipe or a file is
-    not folded.
+    """Prints lines, wrapped at the width of the terminal window. Lines written to a pipe or a file are not
+    wrapped.
     """
     for line in lines:
         console.print(refolded(line, console.width) if has_window(console) else line, soft_wrap=True)
 
 
 def has_window(console: Console) -> bool:
-    """Whether lines are folded: in a terminal, or if the environment variable COLUMNS gives a width."""
+    """Whether lines are wrapped: true for a terminal, or if the environment variable COLUMNS is set."""
     return console.is_terminal or "COLUMNS" in os.environ
 
 
 def _print_numbers(console: Console, table: TextTable) -> None:
-    """Prints an empty line and a table of numbers, divided into blocks of columns that fit into
-    the window.
-    """
+    """Prints a table of numbers in blocks of columns that fit into the window, each after an empty line."""
     heads = [(*heading.split("\n"), "")[:2] for heading in table.headings]
     cells = zip(heads, zip(*table.rows, strict=True), strict=True)
     columns = [column_cells(head, column) for head, column in cells]
@@ -127,7 +127,7 @@ def _print_numbers(console: Console, table: TextTable) -> None:
 
 def _answer(view: View, done: np.ndarray, summary: SummaryLines) -> list[str]:
     """Lines of the answer; for an arm first in SI units, then dimensionless. done: mask of the computed
-    points, of the points' shape.
+    points, of the shape of the points. summary: lines of the task.
     """
     if not view.quantities or not done.any():
         return [*summary.answer]
@@ -136,24 +136,24 @@ def _answer(view: View, done: np.ndarray, summary: SummaryLines) -> list[str]:
 
 
 def _unfinished(view: View, missing: int, noun: str) -> list[str]:
-    """Lines about points and curves that are not computed yet. missing: number of points. noun: name of a
-    point.
+    """Lines about points and curves that are not computed yet. missing: number of missing points. noun: noun
+    for a point.
     """
     lines = []
     if missing and (shard := view.attributes.get("shard")):
         lines.append(
-            f"{counted(missing, noun)} {is_or_are(missing)} not here: the file is shard {shard}, and "
-            "`rodsweep merge` combines the shards; if the run of this shard was interrupted, its command "
-            "continues it"
+            f"{counted(missing, noun)} {is_or_are(missing)} not in this file: it is shard {shard}, and "
+            "`rodsweep merge` combines the shards; if the run of this shard was interrupted, the "
+            "same command continues the run"
         )
     elif missing:
         lines.append(
-            f"{counted(missing, noun)} {is_or_are(missing)} missing; if no run is going on, the same command "
-            "continues"
+            f"{counted(missing, noun)} {is_or_are(missing)} missing; if no run is in progress, the same "
+            "command continues"
         )
     elif lacks_curves(view.attributes):
         lines.append(
-            f"all {plural(noun)} are computed; the curves are missing, and the same command adds them"
+            f"all {plural(noun)} are computed; the curves are missing; repeat the command to add the curves"
         )
     if waiting := view.journalled:
         verb = "is" if waiting == 1 else "are"
@@ -164,8 +164,8 @@ def _unfinished(view: View, missing: int, noun: str) -> list[str]:
 
 
 def _failures(view: View) -> Iterable[str]:
-    """Yields a sentence for each distinct reason why points failed, with one of these points as
-    an example.
+    """Yields one sentence for each distinct reason for which points failed, with one failed point as an
+    example.
     """
     columns = view.point_columns
     for line in str(view.attributes.get(FAILURE_REASONS, "")).splitlines():
@@ -179,7 +179,7 @@ def _failures(view: View) -> Iterable[str]:
 
 
 def _printed(table: TextTable) -> Table:
-    """Table for the terminal: without borders, numbers aligned at their decimal points."""
+    """The table in a form for the terminal: without borders, numbers aligned at their decimal points."""
     printed = Table(*table.headings, box=None, pad_edge=False)
     if table.rows:
         for row in zip(*map(point_aligned, zip(*table.rows, strict=True)), strict=True):
@@ -188,7 +188,9 @@ def _printed(table: TextTable) -> Table:
 
 
 def _axes(view: View) -> TextTable:
-    """Table of an arm's quantities and of the parameters: their values, or their ranges over the points."""
+    """Table of the quantities of an arm and of the parameters, with their values or ranges over the
+    points.
+    """
     rows = []
     for name, values in view.quantities.items():
         si = ALL_QUANTITIES[name].unit
@@ -203,8 +205,8 @@ def _axes(view: View) -> TextTable:
 
 
 def _extent(values: np.ndarray) -> tuple[str, str, str]:
-    """(number of distinct values, smallest, largest) of `values`, of any shape, as text. NaN is ignored; the
-    largest is empty if all are equal.
+    """Returns (count, smallest, largest) of `values`, of any shape, as text. count: number of distinct
+    values. NaN is ignored. `largest` is empty if all values are equal.
     """
     # Twelve digits, because values computed from an arm may differ by rounding.
     different = {f"{value:.12g}" for value in values[~np.isnan(values)]}
@@ -214,7 +216,9 @@ def _extent(values: np.ndarray) -> tuple[str, str, str]:
 
 
 def _statuses(view: View, status: np.ndarray, every: bool) -> Iterable[tuple[str, ...]]:
-    """Yields (status, number of points, meaning); every: whether statuses that no point has are included."""
+    """Yields (status, number of points, meaning of the status). every: whether statuses that no point has are
+    included.
+    """
     sentences = view.sentences | {"missing": "not computed yet"}
     found = dict(zip(*(a.tolist() for a in np.unique(status, return_counts=True)), strict=True))
     for value in sorted(view.flags.keys() | found.keys()) if every else found:

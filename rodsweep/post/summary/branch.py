@@ -13,33 +13,33 @@ from .ranges import listed, rounded, span, to_error
 from .summary_lines import SummaryLines, at_point, first_lines, proof_clause
 from .thresholds import unknown_clause
 
-LIST_TOO_SHORT = "they have more special points than the list holds; raise branch.special"
-"""Reason why branches are not shown, and remedy."""
+LIST_TOO_SHORT = "the list of special points is full; raise branch.special"
+"""Reason for which branches are not shown, and remedy."""
 COEXISTENCE_WORDS = "stable cycles beside a stable straight rod"
-"""Words for a range in which a stable cycle and the stable straight rod coexist."""
+"""Phrase for a range in which a stable cycle and the stable straight rod coexist."""
 TWO_CYCLES_WORDS = "stable cycles of two branches"
-"""Words for a range in which stable cycles of two branches coexist."""
+"""Phrase for a range in which stable cycles of two branches coexist."""
 SPECIAL_WORDS = {
     "fold": "fold",
     "torus": "torus point",
     "symmetry_breaking": "symmetry breaking",
     "period_doubling": "period doubling",
 }
-"""Words for special points between the ends of a branch, by kind. Hopf points and ends have sentences of
-their own."""
+"""Names of special points between the ends of a branch, by kind. Hopf points and ends are described in
+separate sentences."""
 BRANCH_END_WORDS = {
     "left_the_model": "a cycle with h1 = 0",
     "range_end": "the end of the range",
     "crushed": "a force that almost crushes the rod",
-    "no_cycle_found": "a cycle beyond which none is found",
+    "no_cycle_found": "a cycle after which no further cycle was found",
     "list_full": "the last cycle that is stored",
     "none": "an end",
 }
-"""Words for the end of a branch, by reason."""
+"""Phrase for the end of a branch, by reason of the end."""
 
 
 def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary of branches. done: mask of the computed points, of the points' shape."""
+    """Summary of branches. done: mask of the computed points, of the shape of the points."""
     if done.size == 1:
         return SummaryLines(list(_one_rod(RodBranches(view))), [_searched(view, done)])
     v = view.variables
@@ -61,7 +61,7 @@ def _one_rod(rod: RodBranches) -> Iterator[str]:
         part = some_of(rod.hidden, rod.hidden + len(rod.curves), "branch")
         yield f"{part} {is_or_are(rod.hidden)} not shown: {LIST_TOO_SHORT}"
     elif v["branch_count"].max() < 0:
-        yield "its branches are not known"
+        yield "the branches of this rod are not known"
     elif not rod.curves:
         yield f"no Hopf point in the range of {along}, so that no branch begins there"
     for number, curve in enumerate(rod.curves, 1):
@@ -82,8 +82,8 @@ def _one_rod(rod: RodBranches) -> Iterator[str]:
 
 
 def _extent(curve: StoredBranch, errors: Array, along: str) -> str:
-    """Number of cycles on a branch, and ranges of their parameter and largest y. errors: relative errors of
-    y, (cycles,).
+    """Number of cycles on a branch, range of the parameter `along`, and range of the largest tip y, as text.
+    errors: relative errors of y, (cycles,).
     """
     cycles = curve.cycles
     if not cycles.any():
@@ -94,7 +94,7 @@ def _extent(curve: StoredBranch, errors: Array, along: str) -> str:
 
 
 def _special_of_branch(curve: StoredBranch, along: str) -> Iterator[str]:
-    """Yields a line about each special point between the ends of a branch."""
+    """Yields one line for each special point between the ends of a branch. along: followed parameter."""
     for special in curve.special:
         if special.kind in ("hopf", "end"):
             continue
@@ -109,7 +109,7 @@ def _special_of_branch(curve: StoredBranch, along: str) -> Iterator[str]:
 
 
 def _ends(curve: StoredBranch, along: str) -> str:
-    """Clause on the start and the end of a branch."""
+    """Phrase for the start and the end of a branch: "from ... to ...". along: followed parameter."""
     first = curve.special[0]
     last = curve.special[-1]
     start = f"from the Hopf point at {along} = {to_error(first.at, first.error)}"
@@ -127,7 +127,9 @@ def _ends(curve: StoredBranch, along: str) -> str:
 
 
 def _sizes(view: View, done: np.ndarray) -> str:
-    """Clause on the periods and amplitudes of all cycles at the points in the mask `done`; may be empty."""
+    """Clause with the ranges of period and amplitude over all cycles at the points in the mask `done`; empty
+    if there is no cycle.
+    """
     v = view.variables
     if not np.isfinite(v["period"][done]).any():
         return ""
@@ -136,13 +138,15 @@ def _sizes(view: View, done: np.ndarray) -> str:
 
 
 def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
-    """Yields lines about the special points of each kind, and about the ends of branches, over all rods."""
+    """Yields lines on the number and range of special points of each kind, and of branch ends, over all
+    rods.
+    """
     found: dict[str, list[tuple[float, float]]] = {word: [] for word in (*SPECIAL_WORDS, *BRANCH_END_WORDS)}
     curves = [(rod, number, curve) for rod in rods for number, curve in enumerate(rod.curves, 1)]
     for _, number, curve in curves:
         for special in curve.special:
             kind = special.reason if special.kind == "end" else special.kind
-            is_counted = 0 < special.meets < number  # with the other branch at this point
+            is_counted = 0 < special.meets < number  # already counted on the other branch at this point
             if kind in found and not is_counted:
                 found[kind].append((special.at, special.error))
     for kind, located in found.items():
@@ -163,7 +167,7 @@ def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
 
 
 def _coexistence(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
-    """Yields lines about rods with two stable states, with the ranges of some of them."""
+    """Yields lines on the number of rods with two stable states, and on the ranges of the first such rods."""
     complete = [rod for rod in rods if not rod.hidden]
     if len(complete) < len(rods):
         yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {LIST_TOO_SHORT}"
@@ -177,8 +181,8 @@ def _coexistence(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
 def _rods_with(
     rods: Sequence[RodBranches], along: str, words: str, ranges: Sequence[list[Range]]
 ) -> Iterator[str]:
-    """Yields the number of rods that have `ranges`, and the ranges of the first few. words: property of the
-    rods in the ranges.
+    """Yields a line with the number of rods that have ranges with the property `words`, and a line for each
+    of the first such rods. ranges: for each rod, ranges of the parameter `along` with the property.
     """
     unknown = sum(not (own or rod.coexistence_is_decided) for rod, own in zip(rods, ranges, strict=True))
     having = [
@@ -191,7 +195,7 @@ def _rods_with(
 
 
 def _searched(view: View, done: np.ndarray) -> str:
-    """Line on the followed range of the parameter, and on the completeness of the branches."""
+    """Line on the range of the followed parameter, and on the completeness of the list of Hopf points."""
     start, stop = ends_of(view)
     along = followed_parameter(view)
     proved = some_of(view.variables["certified"][done].sum(), done.sum(), "rod")

@@ -15,9 +15,9 @@ from .summary_lines import SummaryLines, TextTable, in_brackets, proof_clause, r
 from .thresholds import ENDED_EARLY, unknown_beyond_clause, unknown_clause, unstored_clause
 
 CRITICALITY_WORDS = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
-"""Word for the criticality of a Hopf point, by sign of Re c."""
+"""Word for the criticality of a Hopf point, by sign of Re c (c: cubic coefficient of the normal form)."""
 MAX_LISTED_RODS = 8
-"""Largest number of rods with subcritical Hopf points that are listed one by one."""
+"""At most this number of rods with subcritical Hopf points are listed one by one."""
 HOPF_NUMBERS = {
     "crossing_F": "F, k3/L^2",
     "crossing_frequency": f"frequency, {ANGULAR_UNIT}",
@@ -28,14 +28,14 @@ HOPF_NUMBERS = {
     "amplitude_coefficient": "a, L",
     "frequency_slope": "b, L^2/(k3 tau2)",
 }
-"""Words and unit of the numbers of a Hopf point, by variable."""
+"""Symbol and unit of each number of a Hopf point, by variable."""
 
 
 def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary of Hopf points. done: mask of the computed points, of the points' shape."""
+    """Summary of Hopf points. done: mask of the computed points, of the shape of the points."""
     v = view.variables
     if done.size == 1:
-        none = "its Hopf points are not known"
+        none = "the Hopf points of this rod are not known"
         if v["crossing_count"].max() >= 0:
             none = f"no Hopf point up to F = {span(v['F_end'])}"
         of_rod = view.of_point(0)
@@ -74,7 +74,7 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
-    """Yields a line about every Hopf point of the only rod in a file. v: its variables."""
+    """Yields one line for each Hopf point of the only rod in a file. v: variables of this rod."""
     for i in np.flatnonzero(v["crossing_kind"] > 0):
         F = rounded(v["crossing_F"][i], v["crossing_error"][i])
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
@@ -87,8 +87,8 @@ def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
 
 
 def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
-    """Table of the Hopf points of the only rod in a file, one column each; None without a Hopf point. v: its
-    variables.
+    """Table with one column for each Hopf point of the only rod in a file; None if the rod has no Hopf point.
+    v: variables of this rod.
     """
     at = np.flatnonzero(v["crossing_kind"] > 0)
     kinds = (CROSSING_KINDS[int(v["crossing_kind"][i])] for i in at)
@@ -101,8 +101,8 @@ def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
 
 
 def _words(v: Mapping[str, np.ndarray], i: int) -> str:
-    """Clause on the cycles near the i-th Hopf point of the only rod: at larger or smaller F, stable or
-    unstable. v: its variables.
+    """Clause on the cycles near the i-th Hopf point of the only rod in a file: whether F is larger or
+    smaller, and whether the cycles are stable. v: variables of this rod.
     """
     side = int(v["criticality"][i])
     if side == 0:
@@ -119,8 +119,8 @@ def _words(v: Mapping[str, np.ndarray], i: int) -> str:
 
 
 def _subcritical_lines(view: View) -> Iterator[str]:
-    """Yields lines about rods with subcritical Hopf points, first rods whose first Hopf point is
-    subcritical.
+    """Yields lines on rods with subcritical Hopf points; rods whose first Hopf point is subcritical come
+    first.
     """
     side = view.by_point("criticality")
     rods = np.flatnonzero((side == 1).any(axis=-1))
@@ -141,7 +141,7 @@ def _subcritical_lines(view: View) -> Iterator[str]:
 
 
 def _counts(side: np.ndarray) -> str:
-    """Numbers of supercritical, subcritical and undecided Hopf points, as text. side: sign of Re c, of any
+    """Numbers of supercritical, subcritical and undecided Hopf points, as text. side: signs of Re c, of any
     shape.
     """
     counts = {word: int((side == value).sum()) for value, word in CRITICALITY_WORDS.items()}
@@ -149,7 +149,7 @@ def _counts(side: np.ndarray) -> str:
 
 
 def _searched(view: View, done: np.ndarray) -> str:
-    """Line on the searched range of F, and on the completeness of the Hopf points."""
+    """Line on the searched range of F, and on the completeness of the list of Hopf points."""
     v = view.variables
     certified = int(v["certified"][done].sum())
     rods = int(done.sum())
@@ -161,6 +161,6 @@ def _searched(view: View, done: np.ndarray) -> str:
 
 
 def _worst(values: np.ndarray) -> str:
-    """Largest finite value, as text."""
+    """Largest of the values that are not NaN, as text; "not known" if all values are NaN."""
     known = values[~np.isnan(values)]
     return f"{known.max():.1e}" if known.size else "not known"

@@ -10,7 +10,7 @@ from ...wording import counted
 from .ranges import error_text, span, to_error
 
 CURVE_END_WORDS = {
-    "none": "goes on",
+    "none": "continues",
     "edge": "edge of the diagram",
     "crushed": "F close to k1",
     "hopf": "Hopf point, where the cycles vanish",
@@ -19,13 +19,13 @@ CURVE_END_WORDS = {
     "closed": "closed curve",
     "not_followed": "no further point found",
 }
-"""Words for the reason why a curve of folds or torus points of cycles ends."""
+"""Phrase for the reason for which a curve of folds or torus points of cycles ends."""
 END_SUFFIXES = ("start", "end")
-"""Suffixes of the variables that store why a curve ends, at its first and at its last point."""
+"""Suffixes of the variables with the reasons for which a curve ends, at its first and at its last point."""
 
 
 def curve_lines(view: View, line: str, row: str) -> list[str]:
-    """Lines about all curves. line: parameter that varies along a row of the diagram. row: parameter that is
+    """Lines about all curves of a diagram. line: parameter that varies along a row. row: parameter that is
     constant on a row.
     """
     v = view.variables
@@ -40,7 +40,9 @@ def curve_lines(view: View, line: str, row: str) -> list[str]:
 
 
 def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
-    """Lines about the curves of folds and torus points of cycles, and the reasons why they end."""
+    """Lines about the curves of folds and torus points of cycles, with the reasons for their ends. line, row:
+    as in `curve_lines`.
+    """
     v = view.variables
     lines = []
     for number in np.unique(v["cycle_curve_number"]):
@@ -60,12 +62,14 @@ def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
 
 
 def agreement_lines(view: View, line: str) -> list[str]:
-    """Lines about how closely the curves agree with the crossings located on rows."""
+    """Lines on the largest distance, along the parameter `line`, between the curves and the points located on
+    rows.
+    """
     v = view.variables
     hopf = len(np.unique(v["curve_number"][v["curve_kind"] == 1]))
     double = len(np.unique(v["curve_number"])) - hopf
     within = error_text(float(v["curve_agreement"]))
-    near = f"crossings on rows lie within {within} of them, over {line}; " * (hopf + double > 0)
+    near = f"crossings on rows lie within {within} of these curves along {line}; " * (hopf + double > 0)
     lines = [
         f"curves: {hopf} of Hopf points, {double} of double eigenvalues; {near}"
         f"{_on_none(int(v['curves_untraced']))}"
@@ -75,13 +79,15 @@ def agreement_lines(view: View, line: str) -> list[str]:
         within = error_text(float(v["cycle_curve_agreement"]))
         lines.append(
             f"curves of cycles: {curves}; folds and torus points of rows lie within {within} of "
-            f"them, over {line}; {_on_none(int(v['cycle_curves_untraced']))}"
+            f"these curves along {line}; {_on_none(int(v['cycle_curves_untraced']))}"
         )
     return lines
 
 
 def cut_lines(view: View, line: str, row: str) -> list[str]:
-    """Lines about boundary curves that end inside the diagram at rods that are not crushed."""
+    """Lines about incomplete boundary curves: curves that could not be followed further, or for which the
+    list was full. line, row: as in `curve_lines`.
+    """
     v = view.variables
     lines = []
     for why in ("not_followed", "list_full"):
@@ -90,17 +96,19 @@ def cut_lines(view: View, line: str, row: str) -> list[str]:
             what = "Hopf points" if v["curve_kind"][i] else "double eigenvalues"
             where = ", ".join(f"{name} = {v[f'curve_{name}'][i]:.6g}" for name in (row, line))
             number = int(v["curve_number"][i])
-            lines.append(f"curve {number}, of {what}, is not whole: at {where} {CURVE_ENDS[why]}")
+            lines.append(f"curve {number}, of {what}, is incomplete: at {where} {CURVE_ENDS[why]}")
     return lines
 
 
 def _on_none(count: int) -> str:
-    """Clause on the number of crossings on rows that lie on no curve."""
-    return f"{count} lies on none" if count == 1 else f"{count} lie on none"
+    """Clause on the number `count` of points on rows that lie on no curve."""
+    return f"{count} is on no curve" if count == 1 else f"{count} are on no curve"
 
 
 def fold_lines(view: View, line: str, row: str) -> list[str]:
-    """Lines about folds of curves, and about the fold for the partial beam of the paper's Sec. VIII."""
+    """Lines about folds of curves, and about the fold in the partial beam limit of the paper's Sec. VIII.
+    line, row: as in `curve_lines`.
+    """
     v = view.variables
     lines = []
     for i, (kind, of) in enumerate(zip(v["fold_kind"], v["fold_of"], strict=True)):
@@ -116,8 +124,8 @@ def fold_lines(view: View, line: str, row: str) -> list[str]:
 
 
 def _place(view: View, what: str, i: int, names: tuple[str, str]) -> str:
-    """Position of the i-th fold or generalised Hopf point as text, with its errors. what: prefix of the
-    variables.
+    """Position of the i-th fold or generalised Hopf point as text, with errors. what: prefix of the
+    variables, "fold" or "bautin". names: parameters.
     """
     v = view.variables
     return ", ".join(
@@ -144,7 +152,9 @@ def criticality_lines(view: View) -> list[str]:
 
 
 def bautin_lines(view: View, line: str, row: str) -> list[str]:
-    """Lines about generalised Hopf points, at which the criticality changes."""
+    """Lines about generalised Hopf points, at which the criticality changes. line, row: as in
+    `curve_lines`.
+    """
     v = view.variables
     lines = [
         f"generalised Hopf point (Re c = 0) on curve {int(v['bautin_curve'][i])}: "
@@ -157,7 +167,9 @@ def bautin_lines(view: View, line: str, row: str) -> list[str]:
 
 
 def bautin_curve_lines(view: View) -> list[str]:
-    """Lines about curves of generalised Hopf points over a third parameter, and the reasons why they end."""
+    """Lines about curves of generalised Hopf points over a third parameter, with the reasons for their
+    ends.
+    """
     v = view.variables
     lines = []
     names = [name for name in LINEAR_PARAMETERS if f"bautin_along_{name}" in v]

@@ -7,8 +7,8 @@ import numpy as np
 from .ranges import span
 
 EIGENVALUE_ERROR = 1e-9
-"""Relative error of the straight rod's eigenvalue in results of limit cycles: the tolerance of the eigenvalue
-solver."""
+"""Relative error of the straight rod's eigenvalue in results of limit cycles, equal to the tolerance of the
+eigenvalue solver."""
 RELATIVE_ERRORS = {
     "period": "period_error",
     "frequency": "period_error",
@@ -23,7 +23,7 @@ RELATIVE_ERRORS = {
     "transient_growth": "growth_error",
     "longitudinal_rate": "longitudinal_error",
 }
-"""Name of the variable with the relative error, by name of the variable."""
+"""For each variable, the name of the variable that contains its relative error."""
 ABSOLUTE_ERRORS = {
     "growth_rate": "error_estimate",
     "frequency": "error_estimate",
@@ -34,26 +34,27 @@ ABSOLUTE_ERRORS = {
     "crossing_at": "crossing_error",
     "crossing_frequency": "crossing_frequency_error",
 }
-"""Name of the variable with the absolute error, by name of the variable. `frequency` has this error only in
-files without a period."""
+"""For each variable, the name of the variable that contains its absolute error. In files with a period, the
+error of `frequency` is relative (see RELATIVE_ERRORS)."""
 COMPLEX_VARIABLES = ("landau", "growth_slope")
-"""Complex variables, stored as real and imaginary part, with an error relative to the modulus."""
+"""Complex variables, stored as real and imaginary part. The stored error is relative to the modulus."""
 EXTREMA_VARIABLES = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretch")
-"""Variables of a cycle whose stored error is in units of tip_y_max."""
+"""Variables of a cycle whose stored error is the absolute error divided by tip_y_max."""
 MAX_DIP_BETWEEN_NODES = 1e-3
-"""Bound on how far h1 between nodes lies below its least nodal value, as a fraction of |1 - h1|."""
+"""Upper bound of (smallest nodal h1 - smallest h1 between nodes)/|1 - h1|."""
 CYCLE_POWER_VARIABLES = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
-"""Mean powers and rms fluctuations, whose errors follow from the errors of amplitude, period and energy
+"""Mean powers and rms fluctuations. Their errors follow from the errors of amplitude, period and energy
 balance."""
 UNKNOWN_FROM_ERROR = 0.5
-"""Relative error from which on the time of the largest transient growth counts as unknown."""
+"""The time of the largest transient growth is treated as unknown if its relative error is at least this
+number."""
 STRAIGHT_EIGENVALUE = ("linear_growth_rate", "linear_frequency")
 """Variables with the eigenvalue of the straight rod in results of limit cycles."""
 
 
 def errors_of(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """Absolute errors of the variable `name`, of its shape; 0 if all digits are correct. v: variables of the
-    file.
+    """Absolute errors of the variable `name`, of the shape of the variable; 0 for a variable without an
+    error. v: variables of the file.
     """
     whole, _, part = name.rpartition("_")
     with np.errstate(invalid="ignore"):  # an infinite value times the error 0
@@ -63,8 +64,8 @@ def errors_of(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 
 
 def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """Absolute errors of the variable `name`, of its shape, unless it is a part of a complex variable. NumPy
-    warns of infinite values.
+    """Absolute errors of the variable `name`, which is not a part of a complex variable. The errors have the
+    shape of the variable. NumPy may warn of infinite values.
     """
     values = np.abs(v[name])
     if name in STRAIGHT_EIGENVALUE:
@@ -84,8 +85,8 @@ def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 
 
 def power_error(v: Mapping[str, np.ndarray], fluctuation: bool = False) -> np.ndarray:
-    """Relative error of the mean power of cycles, or of the rms of its fluctuation. v: variables of the file,
-    of equal shapes.
+    """Relative error of the mean power of cycles, or of the rms fluctuation of the power if `fluctuation`. v:
+    variables of the file, of equal shapes.
 
     The mean power is proportional to the squared amplitude.
     """
@@ -94,10 +95,11 @@ def power_error(v: Mapping[str, np.ndarray], fluctuation: bool = False) -> np.nd
 
 
 def is_known(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """Mask of the known values of the variable `name`, of its shape. v: variables of the file.
+    """Mask of the known values of the variable `name`, of the shape of the variable. v: variables of the
+    file.
 
-    Only the time of the largest transient growth can be unknown: its error is large if the growth hardly
-    exceeds 1.
+    Only the time of the largest transient growth can be unknown: the error of this time is large if the
+    growth hardly exceeds 1.
     """
     values = np.asarray(v[name])
     if name != "transient_time" or "growth_error" not in v:
@@ -106,8 +108,8 @@ def is_known(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 
 
 def span_of(v: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -> str:
-    """Range of the known values of the variable `name` over the points in `mask`, (...,), as text with the
-    digits that the errors allow.
+    """Range of the known values of the variable `name` over the points in `mask`, (...,), as text, rounded
+    according to the errors. v: variables of the file.
     """
     chosen = mask & is_known(v, name) if name == "transient_time" else mask
     return span(v[name][chosen], errors_of(v, name)[chosen])

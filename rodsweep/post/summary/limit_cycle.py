@@ -1,4 +1,4 @@
-"""Limit cycles in `rodsweep show`: which rods beat, numbers of their cycles, and reliability."""
+"""Limit cycles in `rodsweep show`: which rods beat, variables of the cycles, and reliability."""
 
 from collections.abc import Callable, Mapping
 
@@ -17,18 +17,18 @@ from .stability import stability_lines
 from .summary_lines import SummaryLines, TextTable, in_brackets, proof_clause, region, varied
 
 OUTCOME_WORDS = {"cycle": "beats", "straight": "stays straight"}
-"""Words for the outcome at a point, by status; an unlisted status is a word itself."""
+"""Phrase for the outcome at a point, by status; for other statuses the name of the status is used."""
 CYCLE_NUMBERS = (
     ("period", "period", "tau2"),
     ("frequency", "frequency", ANGULAR_UNIT),
     ("largest y of the tip", "tip_y_max", "L"),
     ("largest Floquet multiplier", "multiplier", ""),
 )
-"""(words, variable, unit) of the numbers printed for a single cycle."""
+"""(printed name, variable, unit) of the numbers printed for a single cycle."""
 
 
 def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary of limit cycles. done: mask of the computed points, of the points' shape."""
+    """Summary of limit cycles. done: mask of the computed points, of the shape of the points."""
     v = view.variables
     beats = done & view.with_status("cycle")
     orbit = done & view.with_status(*CYCLE_WORDS)
@@ -55,10 +55,10 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarray], str]) -> str:
-    """Line on the number of points with each outcome, and on the region in which they lie.
+    """Line on the number of points with each outcome, and on the region of parameters of these points.
 
-    done: mask of the computed points, of the points' shape. region: function that describes the points of a
-    mask.
+    done: mask of the computed points, of the shape of the points. region: function that describes the points
+    of a mask.
     """
     status = view.variables["status"]
     whole = counted(int(done.sum()), "point")
@@ -69,15 +69,15 @@ def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarra
     if len(found) == 1:
         word = next(iter(found))
         if done.size > 1:
-            return f"{word} at all {whole}" if done.sum() > 1 else f"{word} at the one point that is solved"
+            return f"{word} at all {whole}" if done.sum() > 1 else f"{word} at the only solved point"
         return f"the rod {word}" if word in OUTCOME_WORDS.values() else word
     counts = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in found.items())
     return f"of {whole}: {', '.join(counts)}"
 
 
 def _stability(view: View) -> tuple[list[str], list[str]]:
-    """(lines about changes of stability of the straight rod along F, the same in an arm's units); along
-    another parameter if F is no axis.
+    """Returns (lines, lines in an arm's units) about changes of stability of the straight rod along F, or
+    along all varied parameters if F is not varied.
     """
     names = [name for name in LINEAR_PARAMETERS if name in varied(view)]
     lines = list[str]()
@@ -90,7 +90,7 @@ def _stability(view: View) -> tuple[list[str], list[str]]:
 
 
 def _proof_lines(view: View) -> list[str]:
-    """Line on whether the list of Hopf points is proved complete; an empty list if no line of points was
+    """List with a line on whether the list of Hopf points is proved complete; empty if no line of points was
     searched.
     """
     v = view.variables
@@ -102,7 +102,9 @@ def _proof_lines(view: View) -> list[str]:
 
 
 def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:
-    """Line on the stability of the only cycle in a file. v: variables of the file, each (1, ...)."""
+    """Line on the stability of the only cycle in a file. v: variables of the file, (1, ...) each. stable:
+    whether the status is "cycle".
+    """
     if np.isnan(v["multiplier"]).all():
         return "the motion in time settles on the cycle; no Floquet multiplier is computed"
     if stable:
@@ -111,7 +113,9 @@ def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:
 
 
 def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
-    """Table of the numbers of the only cycle in a file, with errors. v: variables, each (1, ...)."""
+    """Table of the numbers of the only cycle in a file, with errors. v: variables of the file, (1, ...)
+    each.
+    """
     rows = []
     for words, name, unit in CYCLE_NUMBERS:
         value = float(np.nanmax(v[name], initial=-np.inf))
@@ -121,8 +125,8 @@ def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
 
 
 def _second_state_lines(v: Mapping[str, np.ndarray], done: np.ndarray) -> list[str]:
-    """Lines about computed points with a second stable state, certain or possible. v: variables of the file.
-    done: mask.
+    """Lines about points at which a second stable state is certain or possible. v: variables of the file.
+    done: mask of the computed points.
     """
     numbers = {word: number for number, word in SECOND_STATES}
     lines = []
@@ -132,15 +136,15 @@ def _second_state_lines(v: Mapping[str, np.ndarray], done: np.ndarray) -> list[s
     if cycle.any():
         lines.append(
             f"a second state is possible{_at(cycle, done)}: the rod is straight, and its Hopf point at "
-            f"F = {span(v['subcritical_F'][cycle])} is subcritical, so that a larger start may lead to a "
-            "cycle; the task branch follows it"
+            f"F = {span(v['subcritical_F'][cycle])} is subcritical, so a larger initial deflection may lead "
+            "to a cycle; the task branch follows this cycle"
         )
     return lines
 
 
 def _at(some: np.ndarray, done: np.ndarray) -> str:
-    """Clause on how many of the points in the mask `done` are in the mask `some`; empty if there is a single
-    point.
+    """Clause on the number of points in the mask `done` that are also in the mask `some`; empty if `done` has
+    a single point.
     """
     return "" if done.sum() == 1 else f" at {some_of(some.sum(), done.sum(), 'point')}"
 
@@ -185,4 +189,4 @@ def _error_line(v: Mapping[str, np.ndarray], beats: np.ndarray) -> str:
     for word, name in names.items():
         known = np.abs(v[name][beats & np.isfinite(v[name])])
         errors.append(f"{word} {error_text(float(known.max())) if known.size else 'not known'}")
-    return f"worst errors: {', '.join(errors)}; the error of multipliers is absolute, others are relative"
+    return f"worst errors: {', '.join(errors)}; multiplier errors are absolute, all other errors are relative"

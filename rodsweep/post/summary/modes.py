@@ -20,7 +20,7 @@ from .summary_lines import SummaryLines
 
 
 def modes_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary of modes. done: mask of the computed points, of the points' shape."""
+    """Summary of modes. done: mask of the computed points, of the shape of the points."""
     unknowns = unknowns_lines(view, done)
     if done.size == 1:
         answer = [count_line(view)]
@@ -43,7 +43,7 @@ def modes_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 def growth_lines(view: View, done: np.ndarray) -> list[str]:
     """Lines about the non-normality of the modes, and the transient growth of small disturbances. done: mask
-    of the computed points, of the points' shape.
+    of the computed points, of the shape of the points.
     """
     v = view.variables
     condition = v["condition"][done][:, 0]

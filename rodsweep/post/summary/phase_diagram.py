@@ -17,20 +17,20 @@ from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
 
 LISTED_STATES = {"straight rod and cycle both stable": "both", "stable states undecided": "undecided"}
-"""Values of `stable_states` whose regions are listed, by the words in the summary."""
+"""Values of `stable_states` whose regions are listed, by the phrase in the summary."""
 CYCLE_CHANGE_WORDS = {
     "fold": "folds of cycles",
     "torus": "torus points of cycles",
     "symmetry_breaking": "cycles lose their symmetry",
     "left_the_model": "cycles leave the model (h1 = 0)",
 }
-"""Words for the special points of cycles on rows, by kind."""
+"""Phrase for the special points of cycles on rows, by kind."""
 GRID_RESOLUTION = 1e-8
-"""Spacing, in units of the parameter, of the uniform grid with which the cost of the rows is compared."""
+"""Spacing, in the unit of the parameter, of a uniform grid with which the cost of the rows is compared."""
 
 
 def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary of a phase diagram. done: mask of the computed rows, of the rows' shape."""
+    """Summary of a phase diagram. done: mask of the computed rows, of the shape of the rows."""
     v = view.variables
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next(name for name in view.parameters if len(view.axes[name]) > 1)
@@ -50,13 +50,14 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
 def count_lines(found: np.ndarray) -> list[str]:
     """Line on the number of grid points in each class. found: class of each point, of any shape."""
     counts = [f"{int((found == value).sum())} {word}" for value, word in CLASSES if (found == value).any()]
-    return [f"of {counted(found.size, 'place')} on the rows: {', '.join(counts)}"]
+    return [f"of {counted(found.size, 'grid point')} on the rows: {', '.join(counts)}"]
 
 
 def saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
-    """Line on the cost of the rows compared with a uniform grid; an empty list if the cost is not stored.
+    """List with a line that compares the cost of the rows with the cost of a uniform grid; empty if the cost
+    is not stored.
 
-    done: mask of the computed rows, of the rows' shape. line: parameter that varies along a row.
+    done: mask of the computed rows, of the shape of the rows. line: parameter that varies along a row.
     """
     if not has_covering(view.config):
         return []
@@ -67,14 +68,14 @@ def saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
     uniform = float(np.ptp(v[line])) / GRID_RESOLUTION * rows
     return [
         f"in all {counted(solves, 'eigenproblem')} and {counted(boxes, 'evaluation')} of D; a uniform grid "
-        f"that resolves {line} to {GRID_RESOLUTION:g} on these rows has {uniform:.2g} places, "
+        f"that resolves {line} to {GRID_RESOLUTION:g} on these rows has {uniform:.2g} points, "
         f"{uniform / max(solves + boxes, 1):.1g} times as many"
     ]
 
 
 def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
-    """Lines about the fraction of the plane with each stable state, and changes of cycles. done: mask of the
-    computed rows, of the rows' shape.
+    """Lines about the fraction of the grid with each stable state, and about changes of cycles. done: mask of
+    the computed rows, (...,). line: parameter along a row. row: parameter constant on a row.
     """
     v = view.variables
     of_row = view.point_columns[row].reshape(done.shape)
@@ -107,8 +108,8 @@ def share_lines(found: np.ndarray) -> list[str]:
 
 
 def start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
-    """Line on the classes at the starts of the rows; an empty list if all are monotone. done: mask of the
-    computed rows, of the rows' shape.
+    """List with a line on the classes at the starts of the rows; empty if all these classes are monotone.
+    done: mask of the computed rows, (...,). line: parameter along a row.
     """
     start = view.variables["class"][done][:, 0]
     words = [f"{word} on {int((start == n).sum())}" for n, word in CLASSES if (start == n).any()]
@@ -119,7 +120,9 @@ def start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
 
 
 def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
-    """Lines about the changes of the straight rod along the rows in the mask `done`, (...,)."""
+    """Lines about the changes of the straight rod along the rows in the mask `done`, (...,). line: parameter
+    along a row. row: parameter constant on a row.
+    """
     v = view.variables
     of_row = view.point_columns[row].reshape(done.shape)
     lines = start_lines(view, done, line)
@@ -150,13 +153,13 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     never = ~flutters & (v["class"] != unknown_class).all(axis=-1)
     if (done & never).any() and (done & flutters).any():
         with_it, without = (span(of_row[done & mask]) for mask in (flutters, never))
-        lines.append(f"flutter on the rows {row} = {with_it}; on none of {row} = {without}")
+        lines.append(f"flutter on the rows {row} = {with_it}; no flutter on the rows {row} = {without}")
     return lines
 
 
 def crossings_of_arms(view: View, done: np.ndarray) -> list[str]:
-    """Lines about the changes of the straight arm along F, in the arm's units. done: mask of the computed
-    rows, of the rows' shape.
+    """Lines about the changes of the straight arm along F, in the arm's units; an empty list for a rod. done:
+    mask of the computed rows, of the shape of the rows.
     """
     if not view.quantities or "F" in view.parameters:
         return []

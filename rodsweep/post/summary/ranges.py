@@ -1,7 +1,7 @@
 """Text of numbers with errors, and of ranges of numbers, in summaries.
 
-A printed error includes the rounding of its number: the true value lies within the error. The ends of a
-range, which have no printed errors, are exact to half a unit of the last digit.
+A printed error includes the rounding error of the printed number: the true value lies within the printed
+error. The ends of a range have no printed errors; these ends are accurate to half a unit of the last digit.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,19 +10,18 @@ from math import ceil, floor, inf, isfinite, isnan, log10
 import numpy as np
 
 MAX_DIGITS = 15
-"""Largest number of significant digits of a number, however small its error."""
+"""Largest number of significant digits of a number with an error."""
 RANGE_DIGITS = 6
-"""Largest number of significant digits of an end of a range; larger errors leave fewer."""
+"""Largest number of significant digits of an end of a range; a large error reduces this number."""
 END_DIGITS = 9
-"""Largest number of significant digits of an end of a range that is a single located value, such
-as a fold."""
+"""Largest number of significant digits of an end of a range, if the end is a located point such as a fold."""
 PLAIN_EXPONENTS = range(-4, MAX_DIGITS)
-"""Decimal exponents of numbers that are written without an exponent."""
+"""Numbers with these decimal exponents are written without an exponent."""
 ROUNDING_EXCESS = 1e-9
-"""Relative amount by which rounding may lift an error above a digit without raising the digit."""
+"""An error that exceeds a one-digit number by at most this relative amount (rounding error) is not rounded up
+further."""
 MIN_ERROR = 1e-300
-"""Smallest error that is rounded up to one digit. For a smaller error the unit of the digit would
-underflow."""
+"""Smaller errors are not rounded up, because the unit of their digit would underflow."""
 NONE = "none"
 """Text for a missing number or an empty range."""
 
@@ -30,8 +29,8 @@ NONE = "none"
 def span(values: np.ndarray, errors: np.ndarray | None = None, most: int = RANGE_DIGITS) -> str:
     """Range of the finite `values`, of any shape, as text; NONE if no value is finite.
 
-    errors: absolute errors, of the shape of the values. They limit the number of digits, which is at most
-    `most`.
+    errors: absolute errors, of the shape of the values, which limit the number of digits. most: largest
+    number of digits.
     """
     values = np.asarray(values, dtype=float)
     is_finite = np.isfinite(values)
@@ -46,18 +45,18 @@ def span(values: np.ndarray, errors: np.ndarray | None = None, most: int = RANGE
 
 
 def listed(ranges: Sequence[tuple[float, float]], errors: Mapping[float, float]) -> str:
-    """Ranges of a parameter as text; NONE for an empty list. errors: absolute error of each end that is not
-    exact, by end.
+    """Ranges of a parameter as text; NONE for an empty list. errors: absolute errors of ends of ranges, by
+    end; other ends are exact.
     """
     ends = [[_rounded(end, 2 * errors.get(end, 0.0), END_DIGITS) for end in ends] for ends in ranges]
     return ", ".join(" to ".join(pair) for pair in ends) or NONE
 
 
 def to_error(value: float, error: float) -> str:
-    """A number with its absolute error as text. The last digit of the number is the first digit that the
-    error reaches.
+    """A number with its absolute error, as text: "1.234 (+- 2e-03)". The last printed digit of the number has
+    the decimal place of the error.
 
-    If the error is unknown, the number has six digits. NaN gives NONE, and 0 has no error.
+    If the error is not finite, the number has six digits. NaN gives NONE, and 0 has no error.
     """
     value = float(value)
     error = float(error)
@@ -72,10 +71,10 @@ def to_error(value: float, error: float) -> str:
 
 
 def number_and_error(value: float, error: float) -> tuple[str, str]:
-    """(number, error with one digit) as text. The last digit of the number is the first digit that the error
-    reaches.
+    """Returns (number, error with one digit) as text. The last printed digit of the number has the decimal
+    place of the error.
 
-    If the error is unknown, its text is empty and the number has six digits. 0 and inf have no error.
+    If the error is not finite, its text is empty and the number has six digits. 0 and inf have no error.
     """
     if value == 0 or not isfinite(value):
         return f"{value + 0.0:g}", ""
@@ -92,15 +91,17 @@ def number_and_error(value: float, error: float) -> tuple[str, str]:
 
 
 def stated_error(value: float, error: float) -> tuple[str, float]:
-    """(number as text, error). The error includes the rounding of the number to the first digit that `error`
-    reaches.
+    """Returns (number as text, rounded at the decimal place of `error`; sum of `error` and the rounding
+    error).
     """
     text = _rounded(value, error / 10, MAX_DIGITS)
     return text, error + abs(float(text) - value)
 
 
 def error_text(error: float) -> str:
-    """An error as text with one significant digit, rounded up; inf and nan stay as they are."""
+    """An error as text with one significant digit, rounded up; "inf" or "nan" for an error that is not
+    finite.
+    """
     if not MIN_ERROR < error < inf:
         return f"{error:.0e}"
     unit = 10.0 ** floor(log10(error))
@@ -108,15 +109,15 @@ def error_text(error: float) -> str:
 
 
 def rounded(value: float, error: float, most: int = RANGE_DIGITS) -> str:
-    """A number as text with at most `most` significant digits, so that its error is at most half a unit of
-    the last digit.
+    """A number as text with at most `most` significant digits, chosen such that `error` is at most half a
+    unit of the last digit; NONE for a number that is not finite.
     """
     return _rounded(float(value), 2 * float(error), most) if isfinite(value) else NONE
 
 
 def _rounded(value: float, error: float, most: int) -> str:
-    """A finite number as text, with as many significant digits as its error allows: at least one, at most
-    `most`.
+    """A finite number as text, rounded at the decimal place of `error`, with at least one and at most `most`
+    significant digits.
     """
     if value == 0:
         return "0"

@@ -16,16 +16,16 @@ LOCATION_EXPLANATION = (
     "characteristic determinant D(i eta; F), F* by a double zero of D; `task: thresholds` proves that none "
     "is missing"
 )
-"""Explanation of how the forces in `threshold_lines` are located."""
+"""Explanation of the method by which the forces in `threshold_lines` are located."""
 NOT_LOCATED = "not located between the forces of the file; `task: thresholds` finds them"
-"""Explanation of intervals of force in place of located forces, for arms that are not uniform or not of
-linear material."""
+"""Explanation for arms that are not uniform or not of linear material: the forces are bracketed, not
+located."""
 PROOF_WORDS = {True: "proved by a winding number", False: "not proved"}
-"""Words on whether the number of unstable modes is proved, for a file with one point."""
+"""Phrase that says whether the number of unstable modes is proved, for a file with one point."""
 
 
 def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary of spectra. done: mask of the computed points, of the points' shape."""
+    """Summary of spectra. done: mask of the computed points, of the shape of the points."""
     if done.size == 1:
         return SummaryLines([count_line(view)], [], unknowns_lines(view, done), [], eigenvalue_table(view))
     lines, how, of_arm = threshold_lines(view)
@@ -35,7 +35,9 @@ def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def stable_line(view: View, done: np.ndarray) -> str:
-    """Line on how many straight rods are stable. done: mask of the computed points, of the points' shape."""
+    """Line on the number of stable straight rods. done: mask of the computed points, of the shape of the
+    points.
+    """
     unstable = view.variables["unstable_count"]
     masks = {"stable": unstable == 0, "unstable": unstable > 0, "not known": unstable < 0}
     found = {word: done & mask for word, mask in masks.items() if (done & mask).any()}
@@ -47,7 +49,7 @@ def stable_line(view: View, done: np.ndarray) -> str:
 
 
 def leading_line(view: View, done: np.ndarray) -> str:
-    """Line on the leading eigenvalues. done: mask of the computed points, of the points' shape."""
+    """Line on the leading eigenvalues. done: mask of the computed points, of the shape of the points."""
     v = view.variables
     rate, frequency = (
         span(v[name][done][:, 0], v["error_estimate"][done][:, 0]) for name in ("growth_rate", "frequency")
@@ -56,8 +58,8 @@ def leading_line(view: View, done: np.ndarray) -> str:
 
 
 def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
-    """(lines about changes of stability along F, line on how they are located, lines in an arm's units);
-    empty lists if F is no axis.
+    """Returns (lines about changes of stability along F, line on the method of location, lines in an arm's
+    units); empty lists if F does not vary.
     """
     lines, of_arm = stability_lines(view, "F", StoredChanges(view, "F").on)
     how = LOCATION_EXPLANATION if has_covering(view.config) else NOT_LOCATED
@@ -65,7 +67,7 @@ def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
 
 
 def eigenvalue_table(view: View) -> TextTable | None:
-    """Table of the eigenvalues at the only point of a file, with errors; None without an eigenvalue."""
+    """Table of the eigenvalues at the only point of a file, with errors; None if no eigenvalue is stored."""
     columns = (view.variables[name].ravel() for name in ("growth_rate", "frequency", "error_estimate"))
     rows = [
         (str(number), *number_and_error(growth, error), *number_and_error(frequency, error))
@@ -87,7 +89,9 @@ def count_line(view: View) -> str:
 
 
 def error_lines(view: View, done: np.ndarray) -> list[str]:
-    """Line on the errors of the eigenvalues. done: mask of the computed points, of the points' shape."""
+    """Line on the errors of the eigenvalues. done: mask of the computed points, of the shape of the
+    points.
+    """
     v = view.variables
     size = np.hypot(v["growth_rate"][done], v["frequency"][done])
     relative = v["error_estimate"][done] / size
@@ -97,17 +101,21 @@ def error_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
-    """Line on the number of unknowns of the mesh. done: mask of the computed points, of the points' shape."""
+    """Line on the number of unknowns per point. done: mask of the computed points, of the shape of the
+    points.
+    """
     v = view.variables
     unknowns = 3 * v["elements"][done].astype(int) * v["order"][done]
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
-        return ["eigenvalues of every point were followed from the first point of its stretch, or it failed"]
-    without = f"; none at {followed} that were followed or failed" if followed else ""
+        return ["no mesh: the eigenvalues of all points were followed along the sweep, or not found"]
+    without = f"; no mesh at the {followed} followed or failed" if followed else ""
     return [f"unknowns per point: {span(unknowns[unknowns > 0])}{without}"]
 
 
 def stability_line(view: View, done: np.ndarray) -> str:
-    """Line on how often the number of unstable modes is proved. done: mask of the points' shape."""
+    """Line on the number of points at which the number of unstable modes is proved. done: mask of the
+    computed points, of the shape of the points.
+    """
     unstable = view.variables["unstable_count"][done]
     points = int(done.sum())
     certified = int(view.variables["certified"][done].sum())

@@ -12,19 +12,19 @@ from .arm.arm import thresholds_of_arm
 from .ranges import error_text, stated_error
 
 MAX_LISTED_LINES = 3
-"""Largest number of lines of points whose thresholds are listed one by one; of more lines the
-range is given."""
+"""The thresholds of up to this number of lines of points are listed one by one; for more lines the range is
+printed."""
 FORCE_THRESHOLD_WORDS = {
     "onset": "F* (straight rod starts to oscillate)",
     "hopf": "F** (straight rod starts to beat)",
     "restabilization": "restabilization (straight rod is stable again)",
 }
-"""Words for a threshold along F, by kind."""
+"""Phrase for a threshold along F, by kind."""
 OTHER_THRESHOLD_WORDS = {
     "hopf": "the straight rod starts to beat, as {name} grows, at {name}",
     "restabilization": "the straight rod is stable again, as {name} grows, at {name}",
 }
-"""Words for a threshold along any other parameter, by kind."""
+"""Phrase for a threshold along any parameter other than F, by kind."""
 Threshold = LocatedChange | BracketedChange
 """Change of stability of the straight rod: located, or bracketed by two points of the file."""
 
@@ -32,11 +32,11 @@ Threshold = LocatedChange | BracketedChange
 def stability_lines(
     view: View, name: str, found_on: Callable[[ParameterLine], Sequence[Threshold]]
 ) -> tuple[list[str], list[str]]:
-    """(line for each kind of threshold along the parameter `name`, the same in an arm's units if the
-    parameter is F).
+    """Returns (lines, lines in an arm's units), one line for each kind of threshold along the parameter
+    `name`. The second list is empty unless the parameter is F; both lists are empty if the parameter does not
+    vary.
 
-    Both are empty if the parameter is no axis. found_on: function that returns the thresholds on a line of
-    points.
+    found_on: function that returns the thresholds on a line of points.
     """
     column = view.point_columns[name]
     if len(np.unique(column[np.isfinite(column)])) < 2:
@@ -58,8 +58,8 @@ def stability_lines(
 
 
 def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: str) -> str:
-    """Positions of the thresholds as text: one by one for a few lines of points, else as a range. found:
-    thresholds by number of the line.
+    """Positions of thresholds as text: one by one for a few lines of points, else as a range. found:
+    thresholds by index of the line. names: description of each line. along: parameter along the lines.
     """
     points = [point for line in found.values() for point in line]
     located = [point for point in points if isinstance(point, LocatedChange)]
@@ -81,12 +81,14 @@ def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: st
     first = min(located, key=lambda point: point.position)
     last = max(located, key=lambda point: point.position)
     rest = len(points) - len(located)
-    more = f"; at {counted(rest, 'other place')} known only to lie between two points" if rest else ""
+    more = f"; {counted(rest, 'further threshold')} known only to lie between two points" if rest else ""
     return f"{_text(first)} to {_text(last)}{error}{some}{more}"
 
 
 def _text(threshold: Threshold) -> str:
-    """Position of a threshold as text, to the digits that its error allows; both ends of a bracket."""
+    """Position of a threshold as text, rounded according to its error; for a bracketed threshold, both
+    ends.
+    """
     if isinstance(threshold, BracketedChange):
         return f"between {threshold.low:.6g} and {threshold.high:.6g}"
     return stated_error(threshold.position, threshold.error)[0]

@@ -1,4 +1,4 @@
-"""Lines and tables of the summary of a result file, in the order of printing."""
+"""Lines and tables of the summary of a result file."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ MAX_LISTED_ITEMS = 8
 
 @dataclass(frozen=True, slots=True)
 class TextTable:
-    """Table of texts. headings: one or two lines each. rows: as many cells as headings."""
+    """Table of texts. headings: one heading per column, of one or two lines. rows: one cell per column."""
 
     headings: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
@@ -24,26 +24,26 @@ class TextTable:
 
 @dataclass(frozen=True, slots=True)
 class SummaryLines:
-    """Sentences about the result of a task."""
+    """Summary of the result of a task, as lines and a table."""
 
     answer: Sequence[str]
-    """Lines with the results that the task is for."""
+    """Lines with the main results of the task."""
     trust: Sequence[str] = ()
     """Lines about accuracy and proved completeness."""
     details: Sequence[str] = ()
     """Lines about further results."""
     of_arm: Sequence[str] = ()
-    """Lines of the answer in an arm's own units."""
+    """Lines of the answer in the units of an arm."""
     numbers: TextTable | None = None
     """Table of numbers below the answer."""
 
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """Everything that `rodsweep show` prints about a file, in the order of printing."""
+    """All lines and tables that `rodsweep show` prints about a file."""
 
     answer: Sequence[str]
-    """Lines with the results that the task is for."""
+    """Lines with the main results of the task."""
     trust: Sequence[str]
     """Lines about unfinished points, accuracy and proved completeness."""
     statuses: TextTable
@@ -64,8 +64,9 @@ def varied(view: View) -> dict[str, np.ndarray]:
 
 
 def region(view: View, mask: np.ndarray) -> str:
-    """Ranges of the varied parameters over the points in `mask`, (...,), as text; empty if the file has one
-    rod."""
+    """Ranges of the varied parameters over the points in `mask`, (...,), as text; empty if no parameter
+    varies.
+    """
     ranges = []
     for name, column in varied(view).items():
         values = column[mask.ravel()]
@@ -81,8 +82,8 @@ def at_point(view: View, index: int) -> str:
 
 
 def first_lines(lines: Sequence[str], noun: str) -> Iterator[str]:
-    """Yields the first MAX_LISTED_ITEMS lines, indented, and then a line with the number of the others. noun:
-    what a line is about.
+    """Yields the first MAX_LISTED_ITEMS of `lines`, indented, and a line with the number of further lines.
+    noun: noun for the subject of a line.
     """
     yield from (f"  {line}" for line in lines[:MAX_LISTED_ITEMS])
     if len(lines) > MAX_LISTED_ITEMS:
@@ -90,12 +91,12 @@ def first_lines(lines: Sequence[str], noun: str) -> Iterator[str]:
 
 
 def in_brackets(text: str) -> str:
-    """`text` in brackets, with a blank before; an empty text stays empty."""
+    """`text` in brackets, preceded by a space; an empty text if `text` is empty."""
     return f" ({text})" if text else ""
 
 
 def proof_clause(view: View) -> str:
-    """Predicate on the list of crossings in a file: proved complete for uniform linear rods, else confirmed
-    by counts of modes.
+    """Predicate for the list of crossings in a file: "is proved complete" for uniform rods of linear
+    material, else "is confirmed by counts of unstable modes".
     """
     return "is proved complete" if has_covering(view.config) else "is confirmed by counts of unstable modes"

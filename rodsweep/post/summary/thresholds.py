@@ -19,7 +19,8 @@ FIRST_THRESHOLD_WORDS = {
     "restabilization": ("stable again", "restabilization_frequency", "frequency", ANGULAR_UNIT),
     "onset": ("F* (straight rod starts to oscillate)", "onset_growth_rate", "growth rate", "1/tau2"),
 }
-"""(words for the first threshold, second variable, words for it, unit of it), by kind of threshold."""
+"""(phrase for the first threshold, second variable, name of this variable, unit of this variable), by kind of
+threshold."""
 ENDED_EARLY = "ended_early"
 """Status of a search that stopped before the requested force."""
 FIRST_CROSSING_WORDS = {
@@ -27,11 +28,11 @@ FIRST_CROSSING_WORDS = {
     "hopf": "beats from",
     "restabilization": "stable again from",
 }
-"""Words before the force of the first crossing, by kind, in the summary of a single rod."""
+"""Phrase before the force of the first crossing of each kind, in the summary of a single rod."""
 
 
 def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary of thresholds. done: mask of the computed points, of the points' shape."""
+    """Summary of thresholds. done: mask of the computed points, of the shape of the points."""
     if done.size == 1:
         details = cost_lines(view, done)
         of_arm = crossings_of_arm(view)
@@ -43,7 +44,7 @@ def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 def event_line(view: View, done: np.ndarray, event: str) -> str:
     """Line on the forces at the first threshold of the kind `event`. done: mask of the computed points, of
-    their shape.
+    the shape of the points.
     """
     words, rate, noun, unit = FIRST_THRESHOLD_WORDS[event]
     v = view.variables
@@ -65,7 +66,7 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
 
 
 def unknown_beyond_clause(view: View, F: float) -> str:
-    """Clause on the forces beyond F, for a single rod whose search stopped early at F; empty for a complete
+    """Clause that says that the search for a single rod ended early at the force F; empty for a complete
     search.
     """
     clause = f"; not known beyond F = {F:.6g}, where the search ended early"
@@ -73,8 +74,8 @@ def unknown_beyond_clause(view: View, F: float) -> str:
 
 
 def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
-    """Absolute error of the crossing at the force F of each point, (points,), looked up in the list of
-    crossings. at: variable with their forces.
+    """Absolute errors of one crossing per point, (points,), from the list of crossings. F: force of the
+    crossing, (points,). at: variable with the forces of the list.
     """
     table, errors = map(view.by_point, (at, "crossing_error"))
     return np.where(table == F[:, None], errors, 0.0).max(axis=1)
@@ -91,13 +92,13 @@ def crossing_lines(view: View) -> list[str]:
         meanings = (f"{kind}: {CROSSING_MEANINGS[kind]}" for kind in dict.fromkeys(kinds))
         return ["; ".join(filter(None, (words, count))), *meanings]
     if v["crossing_count"] < 0:
-        return ["its thresholds are not known"]
+        return ["the thresholds of this rod are not known"]
     none = "no threshold is located" if np.isfinite(v["open_from"]) else "no threshold"
     return [f"{none} up to {end}"]
 
 
 def crossing_table(view: View) -> TextTable | None:
-    """Table of the crossings of the only rod in a file; None without a crossing."""
+    """Table of the crossings of the only rod in a file; None if there is no crossing."""
     v = view.of_point(0)
     rows = []
     for i in np.flatnonzero(v["crossing_kind"] > 0):
@@ -119,7 +120,9 @@ def crossing_table(view: View) -> TextTable | None:
 
 
 def trust_of_one(view: View) -> list[str]:
-    """Lines about the searched range and the completeness, for the only rod in a file."""
+    """Lines on the searched range and the completeness of the list of crossings, for the only rod in a
+    file.
+    """
     v = view.of_point(0)
     hidden = int(v["crossing_count"]) - int((v["crossing_kind"] > 0).sum())
     proof = "proved complete" if has_covering(view.config) else "confirmed by counts of unstable modes"
@@ -138,7 +141,9 @@ def unknown_clause(count: int) -> str:
 
 
 def unstored_clause(hidden: int) -> str:
-    """Clause on the number of crossings for which the list had no room; empty for 0."""
+    """Clause on the number `hidden` of crossings that are not stored because the list was full; empty for
+    0.
+    """
     verb = "is" if hidden == 1 else "are"
     return f"; {hidden} more {verb} not stored, raise the option crossings" if hidden > 0 else ""
 
@@ -176,9 +181,9 @@ def monotony_lines(view: View) -> list[str]:
 
 
 def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
-    """Lines about completeness and errors of the searches. noun: name of a point.
+    """Lines about completeness and errors of the searches. noun: noun for a point.
 
-    done: mask of the computed points, of the points' shape.
+    done: mask of the computed points, of the shape of the points.
     """
     v = view.variables
     searches = int(done.sum())
@@ -199,9 +204,10 @@ def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
 
 
 def cost_lines(view: View, done: np.ndarray) -> list[str]:
-    """Line on the cost of the searches. done: mask of the computed points, of the points' shape.
+    """List with a line on the cost of the searches. done: mask of the computed points, of the shape of the
+    points.
 
-    An empty list for searches that count unstable modes, which store no cost.
+    The list is empty for searches that count unstable modes, which store no cost.
     """
     if not has_covering(view.config):
         return []
@@ -214,6 +220,6 @@ def cost_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def count_range(values: np.ndarray, noun: str) -> str:
-    """Range of the integer counts `values`, (n,), as text. noun: what is counted."""
+    """Range of the integer counts `values`, (n,), as text. noun: noun for the counted items."""
     text = span(values)
     return f"{text} {noun if text == '1' else plural(noun)}"

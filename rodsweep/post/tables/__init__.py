@@ -18,9 +18,7 @@ from .rows import Rows, item_rows, line_columns, list_columns, point_columns, si
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Table of results: name, columns of equal length, and `empty_points`, the number of points without a
-    row.
-    """
+    """Table of results. columns: columns of equal length. empty_points: number of points without a row."""
 
     name: str
     columns: tuple[Column, ...]
@@ -36,7 +34,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Tables:
-    """All tables of a result; each is made when it is requested."""
+    """All tables of a result; a table is made when it is requested."""
 
     view: View
 
@@ -46,19 +44,20 @@ class Tables:
 
     @cached_property
     def contents(self) -> Contents:
-        """Names of the tables of the result, and the variables in each."""
+        """Names of the tables of the result, and the variables in each table."""
         return contents_of(self.view)
 
     def table(self, name: str | None = None, columns: Sequence[str] = ()) -> Table:
-        """The table with the given name or columns; by default the first table of the task.
+        """The table with the given name or columns; by default the default table of the task.
 
-        columns: names in the order of the output; by default all columns, except that a list has only the
-        parameters, quantities and status of its points. Raises InputError for an unknown name.
+        columns: names in the order of the output; by default all columns, but for a list only the parameters,
+        quantities and status of the points and the columns of the list. Raises InputError for an unknown
+        name.
         """
         name = chosen_table(self.view, self.contents, name, tuple(columns))
         points, found = self._rows(name)
         beside = [] if points is None else list(point_columns(self.view, self.contents.of_points, points))
-        if name == GRID:  # its first column is a parameter, which takes its place among the other parameters
+        if name == GRID:  # move the first column, a parameter, to its place among the other parameters
             before = list(PARAMETERS)[: list(PARAMETERS).index(found[0].name)]
             beside.insert(sum(column.name in before for column in beside), found.pop(0))
         by_name = {column.name: column for column in (*beside, *found)}
@@ -71,12 +70,12 @@ class Tables:
         return Table(name, tuple(by_name[each] for each in columns), empty, others)
 
     def items(self, name: str) -> tuple[Column, ...]:
-        """Columns of a list, without the columns of its points."""
+        """Columns of the list `name`, without the columns of the points."""
         return tuple(self._rows(name)[1])
 
     def _rows(self, name: str) -> tuple[NDArray[np.int64] | None, list[Column]]:
-        """(index of the point of every row of a table, None for rows without a point; columns of
-        the items).
+        """Returns (point_indices, columns) for the table `name`. point_indices: index of the point of each
+        row, (rows,); None if the rows belong to no point. columns: columns of the items.
         """
         if name == POINTS:
             return np.arange(self.view.variables["status"].size), []
@@ -86,7 +85,9 @@ class Tables:
         return None if name in self.contents.joint else rows[0], columns
 
     def _list(self, name: str) -> tuple[Rows, list[Column]]:
-        """(indices of the items of a list, its columns with SI columns)."""
+        """Returns (rows, columns) of the list `name`. rows: indices of the items. columns: columns, including
+        columns in SI units.
+        """
         joint = name in self.contents.joint
         variables = self.contents.lists[name]
         rows = item_rows(self.view, variables, joint)
@@ -96,8 +97,8 @@ class Tables:
         return rows, [*columns, *si_columns(self.view, variables, columns, points)]
 
     def _branches(self) -> tuple[NDArray[np.int64], list[Column]]:
-        """(index of the point of every row, columns) of the cycles of branches, with special points between
-        the cycles.
+        """Returns (point_indices, columns) of the table `branches`: cycles, with special points between the
+        cycles. point_indices: index of the point of each row, (rows,).
         """
         cycles, of_cycles = self._list("cycles")
         special, of_special = self._list("special_points")
@@ -107,11 +108,10 @@ class Tables:
 
 
 def merged_rows(view: View, cycles: Rows, special: Rows) -> tuple[NDArray, NDArray, NDArray]:
-    """Order of the rows of the table `branches`: (point, row of `cycles` or -1, row of `special` or -1),
-    (rows,) each.
+    """Returns (points, of_cycle, of_special), (rows,) each, for the rows of the table `branches` in order.
 
-    A special point follows the cycle before it on the branch; special points before the first cycle come
-    first.
+    points: index of the point. of_cycle, of_special: row in `cycles` and in `special`; -1 if the row is not a
+    cycle, or not a special point. A special point follows the cycle that precedes it on the branch.
     """
     shape = view.variables["status"].size
     branch = np.concatenate([_of(view, "branch", shape, cycles), _of(view, "special_branch", shape, special)])
@@ -128,11 +128,10 @@ def merged_rows(view: View, cycles: Rows, special: Rows) -> tuple[NDArray, NDArr
 def merged_columns(
     cycles: list[Column], special: list[Column], of_cycle: NDArray, of_special: NDArray, along: str
 ) -> list[Column]:
-    """Columns of the table `branches`: columns of cycles, filled with the values at special points, and the
-    kind of special point.
+    """Columns of the table `branches`: the columns of cycles, with values at special points in the rows of
+    special points, and the kind of special point.
 
-    of_cycle, of_special: row of a cycle or special point in its own table, (rows,); -1 for none. along:
-    followed parameter.
+    of_cycle, of_special: as from `merged_rows`, (rows,). along: followed parameter.
     """
     named = {column.name: column for column in special}
     merged = []
@@ -148,7 +147,7 @@ def merged_columns(
 
 
 def _special_of(name: str, along: str) -> str:
-    """Name of the variable at special points that corresponds to the variable `name` of cycles. along:
+    """Name of the variable of special points that corresponds to the variable `name` of cycles. along:
     followed parameter.
     """
     if name == f"branch_{along}":
@@ -159,5 +158,7 @@ def _special_of(name: str, along: str) -> str:
 
 
 def _of(view: View, name: str, count: int, rows: Rows) -> NDArray:
-    """Values of the variable `name` at the items of a list, (rows,). count: number of points."""
+    """Values of the variable `name` at the items of a list, (rows,). count: number of points. rows: indices
+    of the items.
+    """
     return view.variables[name].reshape(count, -1)[rows]

@@ -1,4 +1,4 @@
-"""Text of tables with aligned columns, and folding of lines at a given width."""
+"""Text of tables with aligned columns, and wrapping of lines at a given width."""
 
 import re
 import textwrap
@@ -9,28 +9,30 @@ WIDTH = 80
 COLUMN_GAP = "  "
 """Space between two columns."""
 MIN_PROSE_WIDTH = 24
-"""Least width, in characters, of a last column of prose; if less is left, the prose gets lines of its own
-below the row."""
+"""Smallest width, in characters, of a last column of prose. If less space remains, the prose is written on
+separate lines below the row."""
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*(?:e[-+]?\d+)?|inf)")
-"""A number in decimal notation, or inf."""
+"""Pattern for a number in decimal notation, or inf."""
 NO_BREAK = "\xa0"
-"""No-break space, at which no line is folded."""
+"""No-break space; a line is never broken at this character."""
 UNBREAKABLE = re.compile(r" = \S+| \(\+- [^)]*\)")
-"""Parts of a sentence that stay on one line: "= value" after a name, and an error in brackets after its
-number."""
+"""Pattern for the parts of a sentence that stay on one line: "= value" after a name, and an error in brackets
+after a number."""
 Line = tuple[str, ...]
-"""Cells of a row, or of a line of a heading."""
+"""Cells of a row, or of one line of the headings."""
 
 
 def folded(text: str, indent: str = "  ", width: int = WIDTH) -> str:
-    """`text` in lines of at most `width` characters; all lines but the first start with `indent`."""
+    """`text` wrapped to lines of at most `width` characters; all lines except the first start with
+    `indent`.
+    """
     return textwrap.fill(text, width, subsequent_indent=indent, break_on_hyphens=False)
 
 
 def refolded(line: str, width: int = WIDTH) -> str:
-    """`line` folded to at most `width` characters, with further lines indented more than the line itself.
+    """`line` wrapped to at most `width` characters; the following lines are indented by two more spaces.
 
-    A name and its value stay on one line, and so do a number and its error. File names are not broken.
+    A name and its value stay on one line, as do a number and its error. File names are not broken.
     """
     indent = " " * (len(line) - len(line.lstrip()) + 2)
     whole = UNBREAKABLE.sub(lambda match: match[0].replace(" ", NO_BREAK), line)
@@ -41,8 +43,8 @@ def refolded(line: str, width: int = WIDTH) -> str:
 
 
 def point_aligned(cells: Sequence[str]) -> list[str]:
-    """Cells of a column padded to equal length: numbers aligned at their decimal points, words at
-    the left.
+    """Cells of a column padded to equal length. Numbers are aligned at their decimal points; if a cell is not
+    a number, all cells are aligned at the left.
     """
     if not all(NUMBER.fullmatch(cell) for cell in cells if cell):
         width = max(map(len, cells), default=0)
@@ -58,7 +60,7 @@ def point_aligned(cells: Sequence[str]) -> list[str]:
 
 
 def column_cells(heads: Sequence[str], cells: Sequence[str]) -> list[str]:
-    """Heading lines and cells of a column, padded to equal length; the cells are aligned as in
+    """Heading lines and cells of a column, padded to equal length. The cells are aligned as in
     `point_aligned`.
     """
     aligned = point_aligned(cells)
@@ -67,9 +69,9 @@ def column_cells(heads: Sequence[str], cells: Sequence[str]) -> list[str]:
 
 
 def blocks(columns: Sequence[Sequence[str]], width: int = WIDTH) -> Iterator[list[str]]:
-    """Yields blocks of lines at most `width` wide: the first column, and as many of the other columns as fit.
+    """Yields blocks of lines at most `width` wide: the first column, and as many of the following columns as
+    fit. columns: cells of every column, as from `column_cells`.
 
-    columns: cells of every column, as made by `column_cells`.
     """
     first, *others = columns
     block = [first]
@@ -83,14 +85,14 @@ def blocks(columns: Sequence[Sequence[str]], width: int = WIDTH) -> Iterator[lis
 
 
 def _lines(columns: Sequence[Sequence[str]]) -> list[str]:
-    """Lines of columns side by side, without empty lines."""
+    """Lines of a table with the given columns, without empty lines."""
     lines = (COLUMN_GAP.join(cells).rstrip() for cells in zip(*columns, strict=True))
     return [line for line in lines if line]
 
 
 def rows_with_prose(rows: Sequence[Line], width: int = WIDTH) -> list[str]:
-    """Lines of a table whose last column is prose. The prose is folded to the right of the other columns, or
-    below the row if little width is left.
+    """Lines of a table whose last column is prose. The prose is wrapped to the right of the other columns, or
+    below the row if less than MIN_PROSE_WIDTH remains.
     """
     if not rows:
         return []

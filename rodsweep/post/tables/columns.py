@@ -1,7 +1,6 @@
 """Columns of a table: numbers or words with unit and meaning, and a mask of missing values.
 
-A result file has room for a fixed number of items in a list, and fill values for unused items. A column has
-no fill values.
+A list in a result file has a fixed length, with fill values for unused items. A column has no fill values.
 """
 
 from collections.abc import Mapping
@@ -13,21 +12,19 @@ from numpy.typing import NDArray
 from ...results.layouts.variables import NOT_KNOWN, SECONDS, Variable
 
 UNUSED_WORDS = ("none", "missing")
-"""Words of a flag variable that mark an unused item of a list."""
+"""Words of a flag variable that mark unused items of a list."""
 BOOLEAN_TEXTS = {0: "false", 1: "true"}
-"""Text in CSV of the boolean values 0 and 1."""
+"""Text in CSV for the boolean values 0 and 1."""
 ERROR_DIGITS = 3
-"""Number of significant digits of errors and computing times, which are estimates."""
+"""Number of significant digits of estimates: errors and computing times."""
 COORDINATE_ROUNDING = 4 * np.finfo(float).eps
-"""Largest relative rounding error of a coordinate that was converted between units, or computed as part of a
+"""Largest relative rounding error of a coordinate that was converted between units or computed from a
 range."""
 
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """Column of a table: name, unit, meaning, values, (rows,), and `absent`, a mask of missing values,
-    (rows,).
-    """
+    """Column of a table. values: (rows,). absent: mask of missing values, (rows,)."""
 
     name: str
     unit: str
@@ -35,7 +32,7 @@ class Column:
     values: NDArray
     absent: NDArray[np.bool_]
     words: Mapping[int, str] = field(default_factory=dict)
-    """Word for each integer value; empty for a column of numbers."""
+    """Words by integer value; empty for a column of numbers."""
     given: bool = False
     """Whether the values are input, such as parameters, and not results."""
     is_boolean: bool = False
@@ -47,7 +44,9 @@ class Column:
         return "error" in self.name or self.name == SECONDS.name
 
     def rows(self, which: NDArray[np.int64] | slice) -> "Column":
-        """Column with the rows of the given indices, in this order; an index -1 gives a missing value."""
+        """Column with the rows `which`: indices, in the order of the new column, or a slice. The index -1
+        gives a missing value.
+        """
         if isinstance(which, slice):
             return replace(self, values=self.values[which], absent=self.absent[which])
         # An appended row makes index -1 a missing value.
@@ -55,7 +54,9 @@ class Column:
         return replace(self, values=values, absent=np.append(self.absent, True)[which])
 
     def text(self) -> list[str]:
-        """Values as text for CSV: words, or the shortest decimal number that reads back as an equal value."""
+        """Values as text for CSV: words, or the shortest decimal number from which the value can be
+        recovered.
+        """
         if self.is_boolean:
             texts = [BOOLEAN_TEXTS[int(value)] for value in self.values]
         elif self.words:
@@ -67,8 +68,8 @@ class Column:
         return ["" if none else text for text, none in zip(texts, self.absent, strict=True)]
 
     def _numbers(self) -> list[str]:
-        """Real numbers as text: errors and computing times to ERROR_DIGITS, coordinates without rounding
-        error.
+        """Real numbers as text: estimates with ERROR_DIGITS digits, coordinates without rounding error, other
+        numbers with all digits.
         """
         if self.is_estimate:
             return [f"{value:.{ERROR_DIGITS}g}" for value in self.values]
@@ -80,8 +81,8 @@ class Column:
 
 
 def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | None = None) -> Column:
-    """Column of a variable with values of shape (rows,). words: words by value, if other than those of the
-    variable.
+    """Column of a variable. values: (rows,). words: words by value, used instead of the flags of the variable
+    if given.
     """
     known = dict(variable.flags) if words is None else words
     meaning = variable.long_name.removesuffix(NOT_KNOWN)
@@ -91,14 +92,16 @@ def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | No
 
 
 def coordinate(name: str, unit: str, meaning: str, values: NDArray) -> Column:
-    """Column of a coordinate with values of shape (rows,). NaN is missing: an arm to which no rod
-    corresponds.
+    """Column of a parameter or another coordinate. values: (rows,); NaN, a missing value, stands for an arm
+    to which no rod corresponds.
     """
     return Column(name, unit, meaning, values, np.isnan(values.astype(float)), given=True)
 
 
 def _typed(value: float, text: str) -> str:
-    """Text of a coordinate without its rounding error, if much shorter: 2500 for 2500.0000000000005."""
+    """Text of a coordinate, without rounding error if this text is much shorter: 2500 for 2500.0000000000005.
+    text: the value with all digits.
+    """
     if not np.isfinite(value):
         return text
     short = f"{value:.15g}"
@@ -107,7 +110,9 @@ def _typed(value: float, text: str) -> str:
 
 
 def absent_in(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
-    """Mask of missing values, of the shape of `values`: NaN, the fill value -1, or a word of UNUSED_WORDS."""
+    """Mask of missing values of a variable, of the shape of `values`. A missing value is NaN, the fill value
+    -1, or a flag with a word in UNUSED_WORDS.
+    """
     if values.dtype.kind == "f":
         return np.isnan(values)
     if variable.flags:
@@ -116,7 +121,7 @@ def absent_in(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
 
 
 def marks_missing_items(variable: Variable) -> bool:
-    """Whether a fill value of the variable shows that its item is missing: no valid value equals the fill
+    """Whether the fill value of the variable marks a missing item, because no valid value equals the fill
     value.
     """
     return variable.dtype.startswith("<f") or bool(variable.flags) or variable.fill == -1

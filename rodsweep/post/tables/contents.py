@@ -1,7 +1,7 @@
 """Names and variables of the tables of a result: a table of points, and a table for each list.
 
-Each row of a list has the parameters and the status of its point. The table `grid` holds the grid points of a
-phase diagram, in which each point of the file is a row.
+Each row of a list has the parameters and the status of its point. The table `grid` contains the grid points
+of a phase diagram; the points of the file are then the rows of the diagram.
 """
 
 from dataclasses import dataclass
@@ -14,9 +14,9 @@ from ...results.layouts import beside_points, layout_of
 from ...results.layouts.variables import Variable
 
 THERE_ARE = "there are"
-"""Words in an error message before the list of known names."""
+"""Phrase before the list of known names in an error message."""
 POINTS = "points"
-"""Name of the table with a row for each point of the file."""
+"""Name of the table with one row for each point of the file."""
 GRID = "grid"
 """Name of the table of grid points of a phase diagram."""
 BRANCHES = "branches"
@@ -53,16 +53,15 @@ DEFAULT_TABLE = {
     "limit_cycle": POINTS,
     "branch": BRANCHES,
 }
-"""Name of the first table, by task."""
+"""Name of the default table, by task."""
 
 
 @dataclass(frozen=True, slots=True)
 class Contents:
     """Variables of a result, divided into tables.
 
-    of_points: variables with one value at each point; columns of `points` and of all other tables. lists:
-    variables of each list, by name of the table. joint: names of lists that belong to all points together,
-    whose rows have no point.
+    of_points: variables with one value per point, which are columns of all tables. lists: variables of each
+    list, by name of the table. joint: names of lists that belong to the whole file, not to single points.
     """
 
     of_points: tuple[Variable, ...]
@@ -76,7 +75,7 @@ class Contents:
         return (POINTS, *branches, *self.lists)
 
     def dimensions(self, table: str) -> tuple[str, ...]:
-        """Dimensions of a table, without the dimensions of the points."""
+        """Dimensions of the list `table`, without the dimensions of the points; empty for other tables."""
         return self.lists[table][0].extra if table in self.lists else ()
 
 
@@ -105,13 +104,14 @@ def contents_of(view: View) -> Contents:
 
 
 def name_of(dimensions: tuple[str, ...]) -> str:
-    """Name of the table with the given dimensions, without the dimensions of the points."""
+    """Name of the table with the given dimensions. dimensions: without the dimensions of the points."""
     return GRID if dimensions[0] in PARAMETERS else TABLE_NAMES[dimensions]
 
 
 def chosen_table(view: View, contents: Contents, table: str | None, columns: tuple[str, ...]) -> str:
-    """Name of the table that the user requests by name or by columns; else the first table of the task.
-    Raises InputError if there is none.
+    """Name of the table that the user requests. table: name of the table, or None. columns: names of columns;
+    if both are missing, the default table of the task is returned. Raises InputError for an unknown name, and
+    for columns of two tables.
     """
     if table is not None:
         if table not in contents.tables:
@@ -127,7 +127,7 @@ def chosen_table(view: View, contents: Contents, table: str | None, columns: tup
     if len(lists) > 1:
         pair = [next(name for name in columns if holding.get(name) == each) for each in lists[:2]]
         raise InputError(
-            f"{pair[0]} and {pair[1]} are in two tables, {lists[0]} and {lists[1]}; ask for one at a time"
+            f"{pair[0]} and {pair[1]} are in two tables, {lists[0]} and {lists[1]}; name columns of one table"
         )
     every = (*(v.name for v in contents.of_points), *holding, *view.point_columns, *view.quantities)
     refuse_unknown(view.path, columns, every, "")
@@ -137,8 +137,8 @@ def chosen_table(view: View, contents: Contents, table: str | None, columns: tup
 
 
 def refuse_unknown(path: object, columns: tuple[str, ...], known: tuple[str, ...], table: str) -> None:
-    """Raises InputError for the first of `columns` that is not in `known`, or is named twice. table: name of
-    the table; empty for all tables.
+    """Raises InputError for the first name in `columns` that is not in `known` or occurs twice. table: name
+    of the table, for the message; empty for all tables.
     """
     for place, name in enumerate(columns):
         if name not in known:

@@ -1,5 +1,5 @@
-"""Rows and columns of the tables of a result: a row for each item of a list, with the parameters of its
-point.
+"""Rows and columns of the tables of a result: one row for each item of a list, with the parameters of the
+point of the item.
 """
 
 from collections.abc import Iterator, Sequence
@@ -17,13 +17,13 @@ from ...results.layouts.variables import DIMENSIONS, MISSING, STATUS, Variable
 from .columns import Column, absent_in, column_of, coordinate, marks_missing_items
 
 Rows = tuple[NDArray[np.int64], ...]
-"""Index of the point of every row, then the index of its item along each dimension of the list,
-(rows,) each."""
+"""Indices of the items of a list, (rows,) each: index of the point, then index along each dimension of the
+list."""
 
 
 def item_rows(view: View, variables: Sequence[Variable], joint: bool) -> Rows:
-    """Rows of a list: all items with a value at any point. joint: whether the list belongs to all points
-    together.
+    """Indices of all items of a list that are not missing. variables: variables of the list. joint: whether
+    the list belongs to the whole file, not to single points.
     """
     points = 1 if joint else view.variables["status"].size
     exists: NDArray[np.bool_] = np.zeros((), bool)
@@ -37,8 +37,8 @@ def item_rows(view: View, variables: Sequence[Variable], joint: bool) -> Rows:
 
 
 def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]) -> Iterator[Column]:
-    """Yields the columns of points: parameters, an arm's quantities, then the variables `own`. points: index
-    of the point of every row, (rows,).
+    """Yields the columns of points: parameters, quantities of an arm, then the variables `own`. points: index
+    of the point of each row, (rows,).
     """
     for name, values in view.point_columns.items():
         yield coordinate(name, *DIMENSIONS[name], values[points])
@@ -55,8 +55,8 @@ def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]
 
 
 def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: bool) -> Iterator[Column]:
-    """Yields the columns of a list: coordinates of the items, then the variables. joint: whether the list
-    belongs to all points together.
+    """Yields the columns of a list: coordinates of the items, then the variables. rows: indices of the items.
+    joint: as in `item_rows`.
     """
     names = variables[0].extra
     for name, items in zip(names, rows[1:], strict=True):
@@ -68,7 +68,7 @@ def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: b
         elif _is_of_points(view, variable):
             inner = values.shape[values.ndim - len(names) :]
             yield column_of(variable, values.reshape(-1, *inner)[rows])
-        else:  # the variable depends on some parameters, or on the point, and is stored once
+        else:  # the variable is stored with dimensions for some parameters, or for the point
             along = variable.extra[: -len(names)]
             places = [rows[0] if name == "point" else _places(view, name)[rows[0]] for name in along]
             yield column_of(variable, values[(*places, *rows[1:])])
@@ -77,10 +77,11 @@ def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: b
 def si_columns(
     view: View, variables: Sequence[Variable], columns: Sequence[Column], points: NDArray[np.int64] | None
 ) -> Iterator[Column]:
-    """Yields columns in SI units for variables of a list that the file of an arm stores only dimensionless.
+    """Yields columns in SI units for variables of a list that the file of an arm stores only in dimensionless
+    form.
 
-    points: index of the point of each row, (rows,). None for rows without a point, which get SI units only if
-    all points have the same arm.
+    columns: columns of `variables`. points: index of the point of each row, (rows,); None if the list
+    belongs to the whole file; columns in SI units are then possible only if all points have the same arm.
     """
     if not view.quantities:
         return
@@ -103,8 +104,8 @@ def si_columns(
 
 
 def line_columns(view: View, rows: Rows) -> Iterator[Column]:
-    """Yields columns of an arm's quantities that vary along a row of a diagram, such as the
-    pressure for F.
+    """Yields columns of the quantities of an arm that vary along a row of a diagram, such as the pressure if
+    F varies. rows: indices of the grid points.
     """
     for name, values in view.quantities.items():
         if values.size > 1 and view.is_grid and STORED_ALONG.get(name, "") not in view.parameters:
@@ -118,20 +119,20 @@ def quantity_column(name: str, values: NDArray) -> Column:
 
 
 def _is_of_points(view: View, variable: Variable) -> bool:
-    """Whether a variable of a list has a value at every point; its declaration omits the dimensions of the
-    points.
+    """Whether a variable of a list is stored for each point. The declaration of such a variable omits the
+    dimensions of the points.
     """
     return variable.extra[0] not in ("point", *view.parameters)
 
 
 def _places(view: View, parameter: str) -> NDArray[np.int64]:
-    """Index of every point along the axis of `parameter`, (points,)."""
+    """Index of each point along the axis of `parameter`, (points,)."""
     return np.searchsorted(view.axes[parameter], view.point_columns[parameter])
 
 
 def quantities_at_points(view: View) -> dict[str, NDArray]:
-    """An arm's quantities at all points, (points,) each, except quantities that vary along a row of a
-    diagram.
+    """Quantities of an arm at all points, (points,) each, by name, except quantities that vary along a row of
+    a diagram.
     """
     count = view.variables["status"].size
     found = {}

@@ -183,7 +183,7 @@ def test_transients_are_suggested_where_there_are_no_shapes_to_draw(tmp_path, vi
         (
             view_with_transients((0, 0), (True, False)),
             (2,),
-            "motion of the point from its start is not stored",
+            "motion of this point from its initial state is not stored",
         ),
         (view_with_transients((0, 0), (False, False)), (), "holds no transient that could be drawn"),
         (view_with_transients(), (3,), "points 1 to 2"),

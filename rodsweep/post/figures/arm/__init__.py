@@ -1,1 +1,1 @@
-"""Figures of arms in SI units: axes, maps and panels, and regions where the model does not apply."""
+"""Figures of arms in SI units: axes, maps and panels, and hatches where the model does not apply."""

@@ -1,7 +1,7 @@
-"""A second scale in SI units along an axis of the follower force F, in figures of an arm.
+"""A second scale in SI units for axes of the follower force F, in figures of an arm.
 
-If all points belong to one arm, F corresponds to a pressure or a force at its tip. A linear or logarithmic
-axis of F then gets the SI scale on the opposite side of the panel.
+If all points belong to one arm, F corresponds to a pressure or a force at the tip of this arm. The SI scale
+of a linear or logarithmic axis of F is on the opposite side of the panel.
 """
 
 from collections.abc import Sequence
@@ -40,8 +40,8 @@ def add_si_scales(figure: Figure, views: Sequence[View]) -> None:
 
 
 def _outermost(axes: Axes, which: str) -> Axes:
-    """Among the panels that share an axis with `axes`, the panel farthest from the axis label. which: "x" or
-    "y".
+    """Of the panels in the same column (for "x") or row (for "y") that share an axis with `axes`, the panel
+    at the top or at the right. which: "x" or "y".
     """
     shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
     place = axes.get_subplotspec()
@@ -56,8 +56,8 @@ def _outermost(axes: Axes, which: str) -> Axes:
 
 
 def _add(axes: Axes, which: str, unit: float, load: str) -> None:
-    """Adds a scale to the opposite side of a panel, whose numbers are `unit` times those of the
-    axis `which`.
+    """Adds a second scale to a panel, opposite to the axis `which` ("x" or "y"). unit: load at F = 1, in SI
+    units. load: kind of load.
     """
     symbol = UNITS[load][0]
     word = LOAD_WORDS[load]

@@ -1,5 +1,5 @@
 """Figures over the quantities of an arm, in the units typed by the user: lines over one quantity, maps over
-two.
+two quantities.
 
 Each point of the file is the centre of a cell of a map. Cells are hatched where the model does not apply, and
 grey where no rod corresponds to the arm.
@@ -43,7 +43,7 @@ COVERED_CELL_LOOKS: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
 """(variable, value, legend entry, look) of covered cells of a map. Later entries are drawn over earlier
 entries."""
 DRAG = "drag"
-"""Name of the axis of drags. In a figure with a further axis, the range over drags is drawn as a band."""
+"""Name of the axis of drags. In a figure over another quantity, the range over drags is drawn as a band."""
 BAND_OPACITY = 0.25
 """Opacity of the band between the smallest and the largest value over all drags."""
 EMPTY_CELL_LOOK: dict[str, Any] = {"fc": "#E8EDF2"}
@@ -53,8 +53,8 @@ MAP_HATCH_COLOUR = "0.35"
 
 
 def draw_arm_map(request: FigureRequest) -> str:
-    """Draws the main results of a task over the quantities of an arm, in two panels of lines or maps; returns
-    a sentence.
+    """Draws the main results of a task over one or two quantities of an arm, with a panel of lines or a map
+    for each result; returns a sentence.
     """
     view = replace(request, what=None).only_view()
     long = [name for name in view.over if len(view.variables[name]) > 1]
@@ -64,7 +64,7 @@ def draw_arm_map(request: FigureRequest) -> str:
     x = next(name for name in view.over if name in axes)
     y = next((name for name in view.over if name in axes and name != x), "")
     first = {name: 0 for name in view.over if name not in axes}
-    if DRAG in first:  # drags are numbered from the likeliest
+    if DRAG in first:  # the likeliest drag has the smallest number
         first[DRAG] = int(np.argmin(view.variables[DRAG]))
     place = tuple(first.get(name, slice(None)) for name in view.over)
     panels = PANELS[view.task](view)
@@ -77,7 +77,7 @@ def draw_arm_map(request: FigureRequest) -> str:
         else:
             handles = [*handles, *_lines(subplot, panel, view, x, place)]
     covers = [_cover(plot, view, panel, (x, y), place) for plot, panel in zip(drawn, panels, strict=True)]
-    entries = {str(handle.get_label()): handle for handle in reversed(handles)}  # the first of equal ones
+    entries = {str(handle.get_label()): handle for handle in reversed(handles)}  # first of equal entries
     style.legend_below(figure, [*reversed(entries.values()), *covers[0]], columns=3)
     banded = [DRAG] if not y and DRAG in first else []
     figure.suptitle(style.heading(view, _fixed(view, axes + banded)))
@@ -86,8 +86,8 @@ def draw_arm_map(request: FigureRequest) -> str:
 
 
 def can_draw(request: FigureRequest) -> bool:
-    """Whether `draw_arm_map` draws the request: quantities of the arm vary, and the user asks for no other
-    figure.
+    """Whether `draw_arm_map` draws the requested figure: quantities of the arm vary, and the user has not
+    chosen another kind of figure.
     """
     view = request.views[0]
     chosen = request.what not in (None, *MAP_KINDS) or request.points or request.roots
@@ -96,7 +96,7 @@ def can_draw(request: FigureRequest) -> bool:
 
 
 def _axis(view: View, name: str) -> tuple[Array, str]:
-    """(values along the axis `name`, label of the axis), in the unit typed by the user."""
+    """Returns (values along the axis `name`, label of the axis), in the unit typed by the user."""
     values = view.variables[name]
     if name in style.LABELS:
         return values, style.LABELS[name]
@@ -105,7 +105,7 @@ def _axis(view: View, name: str) -> tuple[Array, str]:
 
 
 def _panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
-    """Figure with `count` panels: side by side for maps on a wide page, else stacked."""
+    """Returns (figure, panels) with `count` panels: side by side if `maps` and not `narrow`, else stacked."""
     across = maps and not narrow
     size = (4.8 * count, 4.4) if across else (4.6, 2.9 * count)
     apart = ConstrainedLayoutEngine(wspace=0.06 if across else 0.0)  # room for the label of a colour bar
@@ -115,8 +115,8 @@ def _panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
 
 
 def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], place: Any) -> list[Artist]:
-    """Draws a panel as a map over two quantities; returns legend entries. place: index of the drawn points in
-    the grid.
+    """Draws a panel as a map over two quantities; returns legend entries. names: quantities on x and y.
+    place: index of the drawn points in the grid.
     """
     (x, x_label), (y, y_label) = (_axis(view, name) for name in names)
     values = np.ma.masked_invalid(panel.values[place].T)
@@ -153,8 +153,8 @@ def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[
 
 
 def _band(axes: Axes, view: View, x: str, values: Array, place: Any, colour: str) -> list[Artist]:
-    """Draws the range of a result over the drags as a band; returns its legend entry. x: name of the quantity
-    on the horizontal axis.
+    """Draws the range of a result over the drags as a band; returns the legend entry as a list. x: name of
+    the quantity on the horizontal axis. values: the result at all points. place: as in `_lines`.
     """
     if DRAG not in view.over or x == DRAG or len(view.variables[DRAG]) < 2:
         return []
@@ -167,8 +167,8 @@ def _band(axes: Axes, view: View, x: str, values: Array, place: Any, colour: str
 
 
 def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], place: Any) -> list[Artist]:
-    """Hatches the cells where the model does not apply, and fills those without a rod; returns legend
-    entries.
+    """Hatches the cells where the model does not apply, and fills the cells without a rod or a value; returns
+    legend entries. names: quantities on x and y. place: as in `_map`.
     """
     x, y = names
     rods = view.variables["status"][place] < NOT_SLENDER
@@ -197,7 +197,7 @@ def _fixed(view: View, drawn: list[str]) -> str:
     for name, values in view.quantities.items():
         if name in drawn or name in ARM_UNITS:
             continue
-        if np.size(values) > 1 and name not in view.over:  # varies with others, as a load relative to flutter
+        if np.size(values) > 1 and name not in view.over:  # varies with another quantity, as a relative load
             continue
         more = f" (of {len(values)} values)" if np.size(values) > 1 else ""
         texts.append(quantity_text(view, name, float(np.min(values))) + more)

@@ -1,4 +1,4 @@
-"""Which results of each task are drawn over the quantities of an arm, in the units typed by the user."""
+"""Results of each task that are drawn over the quantities of an arm, in the units typed by the user."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -15,10 +15,10 @@ THRESHOLD_KIND_WORDS = {"hopf": "flutter", "onset": "onset of oscillations", "re
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """A result at every point of the file, with label and unit, for one panel.
+    """Content of one panel. label: name and unit of the result. values: result at all points of the file.
 
-    lines: several results to draw together over one axis, by legend entry; empty if only `values` are drawn.
-    zero_label: legend entry of the contour at zero in a map; empty for no contour.
+    lines: several results that are drawn together over one axis, by legend entry; empty if only `values` are
+    drawn. zero_label: legend entry of the contour of zero in a map; empty if no contour is drawn.
     """
 
     label: str
@@ -32,8 +32,8 @@ class Panel:
 
 
 def _of_thresholds(view: View) -> list[Panel]:
-    """Panels of the task `thresholds`: loads at flutter, onset of oscillation and restabilization; frequency
-    at flutter.
+    """Panels of the task `thresholds`: load at flutter (as lines, also at onset of oscillation and
+    restabilization), and frequency at flutter.
     """
     # A threshold pressure is shown in the unit in which the user typed Young's modulus.
     load, si, typed = ("force", "N", "force") if "force" in view.quantities else ("pressure", "Pa", "young")
@@ -72,4 +72,5 @@ PANELS: dict[str, Callable[[View], list[Panel]]] = {
     "modes": _of_modes,
     "limit_cycle": _of_cycles,
 }
-"""Function of each task that returns its panels. An unlisted task has no figure over an arm's quantities."""
+"""For each task, the function that returns the panels. A task that is not listed has no figure over the
+quantities of an arm."""

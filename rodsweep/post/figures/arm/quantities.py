@@ -1,4 +1,4 @@
-"""Quantities of an arm in figures: their names in words, and their values in the units typed by the user."""
+"""Text of the quantities of an arm in figures: names, and values in the units typed by the user."""
 
 from math import isclose
 from typing import Any
@@ -16,14 +16,15 @@ from ....results.file.view import View
 from ...summary.arm.arm import quantity_words
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
-"""No-break space between a number and its unit, at which no line of text is broken."""
+"""No-break space, used between a number and its unit; a line is never broken at this character."""
 SAME_NUMBER_TOLERANCE = 1e-9
-"""Largest relative difference up to which a stored parameter equals the parameter computed from the arm."""
+"""A stored parameter equals the parameter computed from the arm if the relative difference is at most this
+number."""
 
 
 def in_typed_unit(view: View, name: str, values: Array, si: str = "") -> tuple[Array, str]:
-    """(values of the quantity `name` in the unit typed by the user, this unit). values: in SI units, of any
-    shape.
+    """Returns (values, unit) of the quantity `name` in the unit typed by the user. values: in the SI unit
+    `si` (by default the unit of the quantity), of any shape.
     """
     si = si or ALL_QUANTITIES[name].unit
     unit = view.typed.get(name, si)
@@ -31,7 +32,9 @@ def in_typed_unit(view: View, name: str, values: Array, si: str = "") -> tuple[A
 
 
 def quantity_text(view: View, name: str, value: float) -> str:
-    """Name and value of a quantity, in the unit typed by the user: `length 12 cm`."""
+    """Name and value of a quantity in the unit typed by the user, such as "length 12 cm". value: in SI
+    units.
+    """
     if name == "drag":
         return f"{name}{NO_BREAK}{DRAGS[int(value)].replace('_', NO_BREAK)}"
     shown, unit = in_typed_unit(view, name, np.array([value]))
@@ -45,18 +48,20 @@ def given_quantities(view: View) -> list[str]:
 
 
 def at_point(view: View, name: str, number: int) -> float:
-    """Value of the quantity `name` at a point of the file; number: from 1."""
+    """Value of the quantity `name` at a point of the file. number: number of the point, from 1."""
     values = np.asarray(view.variables[name])
     if values.size == 1:
         return float(values.ravel()[0])
-    if view.is_grid:  # the quantity lies along the parameter that it changes
+    if view.is_grid:  # the quantity is stored along the parameter that depends on it
         shape = view.variables["status"].shape
         return float(values[np.unravel_index(number - 1, shape)[view.parameters.index(STORED_ALONG[name])]])
     return float(values.ravel()[number - 1])
 
 
 def replaced_parameters(view: View, number: int) -> dict[str, float]:
-    """Parameters at a point that the config gives instead of the arm's own, by name; number: from 1."""
+    """Parameters at a point, by name, that the config gives and that differ from the parameters of the arm.
+    number: number of the point, from 1.
+    """
     given: dict[str, Any] = {name: at_point(view, name, number) for name in given_quantities(view)}
     if "drag" in given:
         given["drag"] = DRAGS[int(given["drag"])]

@@ -1,5 +1,5 @@
-"""Hatches in figures of an arm over dimensionless parameters, where the model does not apply, and a note
-about them.
+"""Hatches, with a note, where the model does not apply, in figures of an arm over dimensionless
+parameters.
 """
 
 from collections.abc import Sequence
@@ -20,8 +20,8 @@ VALIDITY_HATCH: dict[str, Any] = {"fc": "none", "ec": "0.6", "hatch": "////", "l
 
 
 def add_validity(figure: Figure, views: Sequence[View]) -> None:
-    """Hatches a figure where the model does not apply to the arm, if its axes allow it; otherwise adds a
-    note.
+    """Hatches a figure where the model does not apply to the arm, if the axes are parameters of the file, and
+    adds a note to the title. Without such points, the figure is unchanged.
     """
     judged = [view.variables["model_applies"] for view in views if "model_applies" in view.variables]
     outside = [np.asarray(values == Validity.does_not_apply) for values in judged]
@@ -37,8 +37,8 @@ def add_validity(figure: Figure, views: Sequence[View]) -> None:
 
 
 def _hatch(figure: Figure, view: View, along: list[str], outside: np.ndarray) -> bool:
-    """Hatches cells over the one or two parameters `along`; returns whether any panel has these axes.
-    outside: mask of the points.
+    """Hatches the cells of points in the mask `outside`, in all panels whose axes are the one or two
+    parameters `along`; returns whether any panel has these axes.
     """
     cells = np.squeeze(outside)
     edges = [cell_edges(view.axes[name]) for name in along]
@@ -56,15 +56,15 @@ def _hatch(figure: Figure, view: View, along: list[str], outside: np.ndarray) ->
 
 
 def _label(axes: Axes, which: str) -> str:
-    """Label of an axis, from this panel or from a panel that shares the axis. which: "x" or "y"."""
+    """Label of an axis, from the panel itself or from a panel that shares the axis. which: "x" or "y"."""
     shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
     labels = [getattr(each, f"get_{which}label")() for each in (axes, *shared.get_siblings(axes))]
     return next(filter(None, labels), "")
 
 
 def _spans(axes: Axes, which: str, edges: Array, there: np.ndarray) -> None:
-    """Hatches intervals of one axis over the whole panel. edges: of the intervals; there: mask of the hatched
-    intervals.
+    """Hatches intervals of the axis `which` over the whole panel. edges: edges of the intervals. there: mask
+    of the hatched intervals.
     """
     limits = axes.get_xlim() if which == "x" else axes.get_ylim()
     hatch = axes.axvspan if which == "x" else axes.axhspan
@@ -76,7 +76,7 @@ def _spans(axes: Axes, which: str, edges: Array, there: np.ndarray) -> None:
 
 
 def _cells(axes: Axes, edges: list[Array], there: np.ndarray) -> None:
-    """Hatches cells of a map. edges: of the cells along x and y; there: mask of the hatched
+    """Hatches cells of a map. edges: edges of the cells along x and along y. there: mask of the hatched
     cells, (nx, ny).
     """
     limits = axes.get_xlim(), axes.get_ylim()

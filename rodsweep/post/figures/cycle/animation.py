@@ -22,11 +22,11 @@ FILM_SUFFIXES = (".gif", ".mp4")
 PERIOD_SECONDS = 2.4
 """Duration of one period of the cycle on the screen, in s."""
 MIN_SHAPES = 8
-"""Least number of stored shapes per period; with fewer, the motion is not recognisable."""
+"""Smallest number of stored shapes per period; with fewer shapes the motion is not recognisable."""
 GHOST_COUNT = 6
 """Number of earlier shapes drawn in fading colours behind the arm."""
 TIME_DIGITS = 3
-"""Number of significant digits of the period; the running time has equally many decimals."""
+"""Number of significant digits of the period. The running time has the number of decimals of the period."""
 TIME_HEIGHT = 0.08
 """Height of the line with the running time, as a fraction of the panel's height."""
 MAX_GHOST_AGE = 0.2
@@ -34,8 +34,8 @@ MAX_GHOST_AGE = 0.2
 
 
 def write_animation(view: View, points: Sequence[int], output: Path) -> str:
-    """Writes one period of up to three cycles side by side, each scaled to the same duration; returns a
-    description. Raises InputError for too few shapes.
+    """Writes an animation of one period of up to three cycles, side by side and with equal durations; returns
+    a description. points: numbers of the chosen points. Raises InputError for too few shapes.
     """
     selection = chosen_cycles(view, points, SHAPE_VARIABLES)
     frames = len(selection.cycles[0].values["shape_x"])
@@ -55,7 +55,7 @@ def write_animation(view: View, points: Sequence[int], output: Path) -> str:
 
 
 def first_frame(selection: CycleSelection) -> tuple[Figure, list["MovingArm"]]:
-    """(figure in its final layout, arms at the starts of their periods)."""
+    """Returns (figure, arms): the figure in its final layout, and the animated arms in their first shapes."""
     cycles = selection.cycles
     figure = Figure(figsize=(2.7 * len(cycles) + 0.9, 4.4), layout="constrained")
     panels = figure.subplots(1, len(cycles), squeeze=False, sharey=True)[0]
@@ -86,7 +86,7 @@ def _writer(output: Path, rate: int) -> AbstractMovieWriter:
 
 
 class MovingArm:
-    """Animated arm in one panel, with its follower force, earlier shapes in grey, and the running time."""
+    """Animated arm in one panel, with the follower force, earlier shapes in grey, and the running time."""
 
     def __init__(self, axes: Axes, cycle: StoredCycle) -> None:
         self.axes = axes
@@ -103,7 +103,7 @@ class MovingArm:
         axes.set_title(cycle.heading(cycle.period_text))
 
     def show(self, k: int) -> None:
-        """Moves the arm to its shape number `k`, from 0."""
+        """Moves the arm to the shape with index `k`."""
         shapes = [self.cycle.values[name] for name in SHAPE_VARIABLES]
         back = np.linspace(MAX_GHOST_AGE * self.frames, 0, GHOST_COUNT, endpoint=False).round().astype(int)
         for ghost, steps in zip(self.ghosts, back, strict=True):

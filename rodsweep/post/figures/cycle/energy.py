@@ -19,11 +19,11 @@ RATE_MARK_COUNT = 24
 
 
 def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
-    """(figure with a column for each cycle: energy U, injection and dissipation, their difference with dU/dt,
-    description).
+    """Returns (figure, description). A column of panels for each cycle: energy U; injection and dissipation;
+    injection minus dissipation with marks of dU/dt.
 
-    The marks of dU/dt are derivatives of the stored energy U, computed independently of the curve on which
-    they must lie. narrow: whether the page is narrow.
+    The marks are derivatives of the stored energy U, computed independently of the curve, and must lie on the
+    curve. points: numbers of the chosen points. narrow: whether the page is narrow.
     """
     selection = chosen_cycles(view, points, ENERGY_BUDGET_VARIABLES)
     cycles = selection.cycles
@@ -45,7 +45,9 @@ def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tupl
 
 
 def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
-    """(mean power of the force with its error, energy imbalance) as text, in the units of the panels."""
+    """Returns (mean power of the force, relative energy imbalance) as text, the power in the unit of the
+    panels, rounded according to its error.
+    """
     v = {name: float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance")}
     error = power_error(cycle.values)
     mean = in_tex(rounded(v["injection_mean"], abs(v["injection_mean"]) * float(error)))
@@ -55,7 +57,7 @@ def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
 
 
 def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
-    """Draws the three panels of a cycle."""
+    """Draws the three panels of a cycle, from top to bottom in `column`."""
     from ....discretization.elements.periodic import interpolate_samples, time_derivative  # compiled code
 
     top, middle, bottom = column

@@ -47,15 +47,15 @@ STATUS_LOOKS = {
     "failed": ("#6E6E6E", "xxxx"),
     "torus": ("#D9CBBF", "++++"),
 }
-"""(colour, hatch) of cells without a cycle, by status. They are greys, which the colour maps do
-not contain."""
+"""(colour, hatch) of cells without a cycle, by status. The colours are greys, which the colour maps do not
+contain."""
 OTHER_LOOKS = (("#BFA893", "----"), ("#8F7A68", "oooo"))
-"""(colour, hatch) of statuses that STATUS_LOOKS does not list, in order of appearance."""
+"""(colour, hatch) of cells with a status that is not in STATUS_LOOKS, in order of appearance."""
 PANEL_POINTS = 250
 """Width of a panel, in points (1/72 inch)."""
 MARKER_SIZES = 1.0, 4.0
-"""Smallest and largest size, in points, of the open marker of an unstable cycle; in between the size is half
-a cell."""
+"""Smallest and largest size, in points, of the open marker of an unstable cycle. Between these limits the
+size is half a cell."""
 CYCLE_HATCH_COLOUR = "0.25"
 """Grey of the hatches of cells without a cycle, and of the markers of unstable cycles."""
 MAX_ROW_ENTRIES = 6
@@ -66,8 +66,8 @@ panel."""
 
 
 def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
-    """(figure of the period and the largest y of the tip, with Hopf points, description); narrow: whether the
-    panels are stacked.
+    """Returns (figure, description). The figure has maps of the period and of the largest y of the tip, with
+    Hopf points. narrow: whether the panels are stacked.
     """
     points = point_map(view)
     words = view.outcomes[points.at]
@@ -94,8 +94,8 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
 
 
 def _shared(view: View, points: PointMap, in_si: bool) -> str:
-    """Text of the parameters that are equal at all points; of the quantities if in_si, which means that the
-    rod is an arm.
+    """Text of the parameters that are equal at all points; for an arm (`in_si`), of the quantities that are
+    equal at all points.
     """
     if not in_si:
         return parameter_text(points.shared)
@@ -105,7 +105,9 @@ def _shared(view: View, points: PointMap, in_si: bool) -> str:
 
 
 def map_panels(count: int, narrow: bool) -> tuple[Figure, list[Axes]]:
-    """Figure with `count` panels that share axes; narrow: whether they are stacked, not side by side."""
+    """Returns (figure, panels) with `count` panels that share axes, stacked if `narrow`, else side by
+    side.
+    """
     apart = ConstrainedLayoutEngine(wspace=0.0 if narrow else 0.06)  # room for the first colour bar's label
     figure = Figure(figsize=(4.2, 3.2 * count) if narrow else (4.8 * count, 4.5), layout=apart)
     shape = (count, 1) if narrow else (1, count)
@@ -113,8 +115,8 @@ def map_panels(count: int, narrow: bool) -> tuple[Figure, list[Axes]]:
 
 
 def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
-    """Sets scales and labels of panels that share axes. Only panels at the left and at the bottom
-    get labels.
+    """Sets scales and labels of panels that share axes. Only panels at the left and at the bottom have
+    labels.
     """
     for axes in panels:
         scale(axes, "x", points.x)
@@ -123,8 +125,8 @@ def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
 
 
 def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> list[Artist]:
-    """Fills cells without a cycle by their status; returns legend entries. words: status of each cell, (ny,
-    nx).
+    """Fills the cells without a cycle with colours and hatches by status; returns legend entries. words:
+    status of each cell, (ny, nx).
     """
     further = cycle(OTHER_LOOKS)
     handles: list[Artist] = []
@@ -141,7 +143,9 @@ def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> lis
 
 
 def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) -> list[Artist]:
-    """Draws an open marker in each cell of the mask `unstable`, (ny, nx); returns the legend entry."""
+    """Draws an open marker in each cell of the mask `unstable`, (ny, nx); returns a list with the legend
+    entry.
+    """
     if not unstable.any():
         return []
     look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": CYCLE_HATCH_COLOUR, "ls": "", "mew": 0.6}
@@ -152,8 +156,8 @@ def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) ->
 
 
 def _runs(chosen: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
-    """(left edge, width) of each run of neighbouring cells in a row. chosen: mask of the cells, (n,). edges:
-    (n + 1,).
+    """(left edge, width) of each run of neighbouring chosen cells in a row. chosen: mask of the cells, (n,).
+    edges: edges of the cells, (n + 1,).
     """
     steps = np.diff(np.concatenate(([0], chosen.astype(int), [0])))
     starts = edges[np.flatnonzero(steps > 0)]
@@ -162,10 +166,10 @@ def _runs(chosen: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
 
 
 def _draw_hopf_lines(axes: Axes, points: PointMap, lines: Sequence[Array]) -> list[Artist]:
-    """Draws lines of Hopf points, each (2, n): x, y; returns the legend entry.
+    """Draws lines of Hopf points; returns a list with the legend entry. lines: (x, y) of each line, (2, n).
 
-    On such a line the leading growth rate is zero. No eigenvalue can pass through 0, because D(0) = 1, so
-    every zero is a Hopf point.
+    On these lines the leading growth rate is zero. Every zero is a Hopf point: no eigenvalue can pass through
+    0, because the characteristic determinant is D(0) = 1.
     """
     look: dict[str, Any] = {"color": "k", "lw": 1.4}
     halo = [withStroke(linewidth=3.0, foreground="white")]
@@ -176,7 +180,7 @@ def _draw_hopf_lines(axes: Axes, points: PointMap, lines: Sequence[Array]) -> li
 
 
 def hopf_lines(points: PointMap, view: View) -> list[Array]:
-    """Lines of Hopf points, each (2, n): x, y, as contours of zero leading growth rate.
+    """Lines of Hopf points, (x, y) of shape (2, n) each, as contours of zero leading growth rate.
 
     Along each row the growth rate is interpolated linearly between the points of the file and the located
     Hopf points; between rows, linearly on the scale of y. A contour therefore passes through the located Hopf
@@ -200,7 +204,7 @@ def hopf_lines(points: PointMap, view: View) -> list[Array]:
 
 
 def _hopf_points(points: PointMap, view: View) -> Iterator[Array]:
-    """Yields the Hopf points of each row of a map, (n,)."""
+    """Yields, for each row of a map, the positions of the located Hopf points, (n,)."""
     name, other = points.names
     stored = StoredChanges(view, name)
     for value, at in zip(points.y, points.at, strict=True):

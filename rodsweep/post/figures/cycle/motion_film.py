@@ -1,4 +1,4 @@
-"""Film of an arm that moves from a given shape, with the path of its tip, as a GIF."""
+"""Film, as a GIF, of the motion of an arm from an initial shape, with the path of the tip."""
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,9 +18,10 @@ FRAME_SIZE = (3.6, 4.0)
 DPI = 100
 """Resolution of a frame, in pixels per inch."""
 FRAME_RATE = 16
-"""Frames per second. One return of the tip, 32 shapes, takes 2 s, as on the page of `rodsweep explore`."""
+"""Frames per second. The 32 shapes between two returns of the tip take 2 s, as on the page of `rodsweep
+explore`."""
 MAX_FRAMES = 256
-"""Largest number of frames: 16 s of film, which take some 10 s to draw."""
+"""Largest number of frames: a film of 16 s, whose drawing takes some 10 s."""
 
 
 class FilmedMotion(NamedTuple):
@@ -38,7 +39,7 @@ class FilmedMotion(NamedTuple):
 
 
 def motion_film(motion: FilmedMotion) -> bytes:
-    """The motion as the content of a GIF file; a motion with more shapes than MAX_FRAMES is cut off."""
+    """The motion as the content of a GIF file, with at most the first MAX_FRAMES shapes."""
     frames = min(len(motion.x), MAX_FRAMES)
     figure = Figure(figsize=FRAME_SIZE, layout="constrained")
     axes = figure.subplots()

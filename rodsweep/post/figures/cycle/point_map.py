@@ -1,5 +1,5 @@
-"""Points of a file as a map over two parameters: values on the axes, edges of cells, and the point in each
-cell.
+"""Points of a file as a map over two parameters: values on the axes, edges of cells, and the index of the
+point in each cell.
 """
 
 from collections.abc import Callable
@@ -29,7 +29,7 @@ class PointMap:
     shared: dict[str, float]
     """Parameters that are equal at all points, by name."""
     left_out: str
-    """Clause on infinite values, which an axis cannot show; empty if there are none."""
+    """Clause on infinite values, which an axis cannot show; empty if all values are finite."""
 
 
 def varied_parameters(view: View) -> list[str]:
@@ -38,8 +38,8 @@ def varied_parameters(view: View) -> list[str]:
 
 
 def point_map(view: View) -> PointMap:
-    """Points of a file as a map; infinite values are left out. Raises InputError if the points form no grid
-    over two parameters.
+    """Points of a file as a map, without infinite values of the parameters. Raises InputError if the points
+    do not form a grid over two parameters.
     """
     varied = varied_parameters(view)
     if len(varied) != 2:
@@ -73,7 +73,7 @@ def is_map(view: View) -> bool:
 
 
 def _varying(names: list[str]) -> str:
-    """Clause on the varied parameters `names`, of which there are not two, with a remedy."""
+    """Clause on the varied parameters `names`, with a remedy, for a file in which other than two vary."""
     if not names:
         return "no parameter varies"
     if names[1:]:
@@ -82,19 +82,21 @@ def _varying(names: list[str]) -> str:
 
 
 def in_its_scale(values: Array) -> tuple[Array, Callable[[Array], Array]]:
-    """(`values`, (n,), on the linear or logarithmic scale of their axis, inverse function)."""
+    """Returns (coordinates, inverse): the values, (n,), on the linear or logarithmic scale of their axis, and
+    the function that converts coordinates to values.
+    """
     return (np.log(values), np.exp) if is_logarithmic(values) else (values, np.asarray)
 
 
 def cell_edges(values: Array) -> Array:
-    """Edges, (n + 1,), of cells around increasing `values`, (n,), half-way on the scale of their axis."""
+    """Edges, (n + 1,), of the cells around increasing `values`, (n,): midpoints on the scale of the axis."""
     centres, back = in_its_scale(values)
     inner = (centres[1:] + centres[:-1]) / 2
     return back(np.concatenate(([2 * centres[0] - inner[0]], inner, [2 * centres[-1] - inner[-1]])))
 
 
 def cell_centres(edges: Array) -> Array:
-    """Values, (n,), whose cells have the given `edges`, (n + 1,): the inverse of `cell_edges`, on a linear
+    """Values, (n,), whose cells have the edges `edges`, (n + 1,): the inverse of `cell_edges` for a linear
     scale.
     """
     centres = np.empty(len(edges) - 1)

@@ -1,8 +1,8 @@
 """Portrait of the beating arm, as in the paper's Fig. 5: shapes over a period, and motion of the tip over
 time.
 
-The motion of the tip is drawn from the initial state, if the file stores it, to show how the cycle emerges;
-otherwise over two periods.
+The motion of the tip is drawn from the initial state if the file contains this motion, and otherwise over two
+periods.
 """
 
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ from .selection import SHAPE_VARIABLES, StoredCycle, chosen_cycles
 from .transient import draw_start_of_motion, label_time, label_tip
 
 MAX_SHAPES = 12
-"""Largest number of drawn shapes; a reader cannot distinguish more."""
+"""Largest number of drawn shapes; a reader cannot distinguish more shapes."""
 ARROW_LENGTH = 0.14
 """Length of the arrow for the follower force, in L."""
 WALL_DEPTH = 0.05
@@ -38,27 +38,27 @@ SHAPE_MARGIN = 0.04
 TIP_PERIODS = 2
 """Duration of the drawn motion of the tip, in periods of the slowest cycle."""
 FEW_SAMPLES = 48
-"""Number of samples per period below which each sample of the tip's motion is marked."""
+"""With fewer samples per period than this, each sample of the tip's motion is marked."""
 SHAPES_WIDTH = 3.2
 """Width of a panel with shapes, in inches."""
 TIP_HEIGHT = 1.0
 """Height of a panel with the motion of the tip, in inches."""
 PADDING = 0.1
-"""Space around panels, in inches. Matplotlib's layout misjudges labels of panels with equal scales by up to
-half of it."""
+"""Space around panels, in inches. Matplotlib's layout misjudges the labels of panels with equal scales by up
+to half this space."""
 TEXT_HEIGHT = 1.4
 """Height of all labels and headings above and below the panels, in inches."""
 NARROW_TEXT_HEIGHT = 2.0
-"""The value of `TEXT_HEIGHT` on a narrow page, where the colour bar lies below the panels."""
+"""Height corresponding to `TEXT_HEIGHT` on a narrow page, with the colour bar below the panels."""
 UNUSED_COLOUR_FRACTION = 0.14
-"""Fraction of the colour map that is not used: its yellow end is invisible on white paper."""
+"""Fraction of the colour map that is not used: the yellow end, which is invisible on white paper."""
 
 
 def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
-    """(figure with a column for each cycle, description). Later shapes are darker; x and y of the tip over
-    time are below.
+    """Returns (figure, description). The figure shows, for each cycle, the shapes over a period, later shapes
+    darker, and x and y of the tip over time.
 
-    narrow: whether the page has no room for panels side by side.
+    points: numbers of the chosen points. narrow: whether the page is too narrow for panels side by side.
     """
     selection = chosen_cycles(view, points, SHAPE_VARIABLES)
     cycles = selection.cycles
@@ -95,10 +95,10 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
 def _panels(
     cycles: Sequence[StoredCycle], narrow: bool
 ) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
-    """(figure, one panel for the shapes of each cycle, two panels for the tip of each cycle).
+    """Returns (figure, one panel for the shapes of each cycle, two panels for the tip of each cycle).
 
-    The panels of the tip are to the right of the shapes of a single cycle, and below those of several. A
-    panel with shapes has the aspect ratio of its content, so no space is blank.
+    The panels of the tip are to the right of the shapes of a single cycle, and below the shapes of several
+    cycles. A panel with shapes has the aspect ratio of its content, so no space is blank.
     """
     count = len(cycles)
     (left, right), (low, high) = region(cycles)
@@ -121,16 +121,16 @@ def _panels(
 
 
 def drawn_shapes(stored: int) -> tuple[range, float]:
-    """(indices of the drawn shapes, time between two of them in periods). stored: number of stored shapes per
-    period.
+    """Returns (indices, step): indices of the drawn shapes, and time between two drawn shapes, in periods.
+    stored: number of stored shapes per period.
     """
     stride = -(-stored // MAX_SHAPES)
     return range(0, stored, stride), stride / stored
 
 
 def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step: float, below: bool) -> None:
-    """Draws the colour bar with the times of the shapes. step: time between two shapes, in periods. below:
-    whether the bar is below the panels.
+    """Draws the colour bar with the times of the shapes. colours: colours of the shapes. step: time between
+    two shapes, in periods. below: whether the bar is below the panels.
     """
     n = colours.N
     norm = BoundaryNorm((np.arange(n + 1) - 0.5) * step, n)
@@ -160,8 +160,8 @@ def draw_tip_path(axes: Axes, cycle: StoredCycle) -> None:
 
 
 def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, length: float) -> Quiver:
-    """Draws the follower force as an arrow that ends at the tip, along -(cos theta, sin theta). length: L, in
-    the unit of the axes.
+    """Draws the follower force as an arrow that ends at the tip, along -(cos theta, sin theta). x, y, theta:
+    shape of the arm, (nodes,) each. length: L, in the unit of the axes.
     """
     e1 = np.array([np.cos(theta[-1]), np.sin(theta[-1])])
     along = -ARROW_LENGTH * length * e1
@@ -189,7 +189,9 @@ def set_frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
 
 
 def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[float, float]]:
-    """((left, right), (bottom, top)) of all shapes and arrows, in the cycles' unit of length."""
+    """Returns ((left, right), (bottom, top)), the limits of all shapes and arrows, in the cycles' unit of
+    length.
+    """
     longest = max(cycle.units.length for cycle in cycles)
     wall = -WALL_DEPTH * longest
     margin = SHAPE_MARGIN * longest
@@ -208,7 +210,9 @@ def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[fl
 
 
 def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
-    """Draws x and y of the tip over time, with a second axis in tau1 if the rod has this time scale."""
+    """Draws x and y of the tip over the time from 0 to `end`, with a second time axis in tau1 if the rod has
+    this time scale.
+    """
     from ....discretization.elements.periodic import (
         interpolate_samples,  # compiled code, which few figures need
     )

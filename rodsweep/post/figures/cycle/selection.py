@@ -1,7 +1,7 @@
-"""Limit cycles and transients in a result file, as `StoredCycle`, and which of them a figure shows.
+"""Selection of the limit cycles or transients of a result file that a figure shows.
 
-Samples and shapes of a cycle are at the times k T/n, k = 0 ... n - 1, of a period T. The sample after the
-last equals the first.
+Samples and shapes of a cycle are at the times k T/n, k = 0 ... n - 1, of a period T. The sample at the time T
+would equal the first sample.
 """
 
 from collections.abc import Collection, Sequence
@@ -27,20 +27,20 @@ ENERGY_BUDGET_VARIABLES = ("energy", "injection", "dissipation")
 TRACE_VARIABLES = ("transient_time", "transient_x", "transient_y")
 """Names of the variables with the motion from the initial state."""
 STORING_OPTIONS = dict.fromkeys(SHAPE_VARIABLES, "shapes") | dict.fromkeys(TRACE_VARIABLES, "transient")
-"""Option of the config that makes the task store a variable; all unlisted variables over a period need
-`samples`."""
+"""Option of the config with which the task stores a variable. Other variables over a period are stored with
+the option `samples`."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoredCycle:
-    """Limit cycle or transient at one point of a result file, with its variables in `units`. The period is
-    NaN without a cycle.
+    """Limit cycle or transient at one point of a result file. values: variables in `units`, by name. period:
+    NaN if there is no cycle.
     """
 
     number: int
     """Number of the point in the file, from 1."""
     label: str
-    """Text of the parameters in which this cycle differs from others in the figure."""
+    """Text of the parameters in which this cycle differs from the other cycles of the figure."""
     parameters: dict[str, float]
     period: float
     values: dict[str, Array]
@@ -50,31 +50,35 @@ class StoredCycle:
 
     @property
     def tau1(self) -> float:
-        """Short time scale gamma3/k2 in units of tau2; 0 for a rod without it, and for an arm in SI units."""
+        """Short time scale tau1 = gamma3/k2, in tau2; 0 for a rod without this time scale, and for an arm in
+        SI units.
+        """
         if self.units.in_si:
             return 0.0
         return self.parameters["gamma3"] / self.parameters["k2"]
 
     @property
     def period_text(self) -> str:
-        """The period as TeX, with the digits that its error allows; a line can be broken after the symbol."""
+        """The period as TeX, rounded according to its error; a line can be broken after the symbol T."""
         if self.units.in_si:
             return f"$T$ = {self.units.time_text(self.period)}"
         return self._period(self.period, r"\tau_2", r"T\,")
 
     @property
     def period_in_tau1(self) -> str:
-        """A further line of text with the period in units of tau1; empty for a rod without tau1."""
+        """The period in units of tau1 as TeX; empty for a rod without tau1."""
         return self._period(self.period / self.tau1, r"\tau_1") if 0 < self.tau1 < np.inf else ""
 
     def _period(self, value: float, unit: str, symbol: str = "") -> str:
-        """A period with its unit as TeX. symbol: suffix of the symbol T."""
+        """A period with its unit as TeX. value: the period in `unit`. symbol: symbol before the equals sign,
+        or empty.
+        """
         error = float(self.values["period_error"])
         return rf"${symbol}{{=}}$ ${in_tex(rounded(value, abs(value) * error))}\,{unit}$"
 
     @property
     def tip(self) -> tuple[Array, Array]:
-        """(x, y) of the tip over a period: from the samples if stored, else from the shapes."""
+        """Returns (x, y) of the tip over a period, from the samples if stored, else from the shapes."""
         if "tip_x" in self.values:
             return self.values["tip_x"], self.values["tip_y"]
         return self.values["shape_x"][:, -1], self.values["shape_y"][:, -1]
@@ -90,7 +94,7 @@ class StoredCycle:
 
 
 def in_tex(number: str) -> str:
-    """A number written by `rounded` as TeX, with its power of ten as a superscript."""
+    """TeX for a number written by `rounded`, with the power of ten as a superscript."""
     mantissa, _, power = number.partition("e")
     return rf"{mantissa}\times10^{{{int(power)}}}" if power else mantissa
 
@@ -103,12 +107,12 @@ class CycleSelection:
     title: str
     """Title of the file, and text of the parameters that all cycles share."""
     left_out: str
-    """Clause on cycles for which the figure has no room; empty if all are shown."""
+    """Clause on cycles that the figure leaves out; empty if all cycles are shown."""
 
 
 def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> CycleSelection:
-    """Cycles at the points that the user chose by number, else the first cycles. needs: variables. Raises
-    InputError if a cycle or a variable is missing.
+    """Cycles at the points with the numbers `points`, or the first cycles if `points` is empty. needs:
+    variables that the figure needs. Raises InputError if a cycle or a variable is missing.
     """
     _refuse_missing(view, needs)
     words = view.outcomes
@@ -121,21 +125,23 @@ def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Cy
 
 
 def chosen_traces(view: View, points: Sequence[int]) -> CycleSelection:
-    """Motions from the initial state at the points that the user chose by number, else the first. Raises
-    InputError if there is none.
+    """Motions from the initial state at the points with the numbers `points`, or the first stored motions if
+    `points` is empty. Raises InputError if a chosen motion, or every motion, is missing.
     """
     _refuse_missing(view, TRACE_VARIABLES)
     _refuse_bad_points(view, points)
     is_stored = np.isfinite(view.variables[TRACE_VARIABLES[0]][..., -1].ravel())
     for number in points:
         if not is_stored[number - 1]:
-            raise InputError(f"--point {number}: the motion of the point from its start is not stored")
+            raise InputError(
+                f"--point {number}: the motion of this point from its initial state is not stored"
+            )
     return _selection(view, points, is_stored, "transient")
 
 
 def _refuse_missing(view: View, needs: Sequence[str]) -> None:
-    """Raises InputError, naming the option that stores it, if one of the variables `needs` is not in the
-    file.
+    """Raises InputError if one of the variables `needs` is missing; the message names the option with which
+    the variable is stored.
     """
     for name in needs:
         if name not in view.variables:
@@ -144,14 +150,16 @@ def _refuse_missing(view: View, needs: Sequence[str]) -> None:
 
 
 def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], what: str) -> CycleSelection:
-    """Selection of the points with the given numbers, else of the first drawable points. drawable: mask,
-    (points,). what: noun for messages.
+    """Selection of the points with the numbers `points`, or of the first drawable points if `points` is
+    empty. drawable: mask, (points,). what: noun for messages. Raises InputError if no point is drawable.
     """
     available = np.flatnonzero(drawable)
     words = view.outcomes
     if not available.size:
         states = ", ".join(sorted({word.replace("_", " ") for word in words.tolist()}))
-        raise InputError(f"{view.path} holds no {what} that could be drawn; its points are: {states}")
+        raise InputError(
+            f"{view.path} holds no {what} that could be drawn; the statuses of its points are: {states}"
+        )
     numbers = list(points) or [int(index) + 1 for index in available[:MAX_CYCLES]]
     columns = view.point_columns
     parameters = [{name: float(columns[name][n - 1]) for name in columns} for n in numbers]
@@ -171,7 +179,9 @@ def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], w
 
 
 def _refuse_bad_points(view: View, points: Sequence[int]) -> None:
-    """Raises InputError if the user chose more points than a figure shows, or a point that does not exist."""
+    """Raises InputError if `points` has more than MAX_CYCLES numbers, or the number of a point that does not
+    exist.
+    """
     count = view.variables["status"].size
     if len(points) > MAX_CYCLES:
         raise InputError(
@@ -183,8 +193,8 @@ def _refuse_bad_points(view: View, points: Sequence[int]) -> None:
 
 
 def shared_and_own_texts(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:
-    """(text of the parameters with equal values in all mappings, text of the other parameters of each
-    mapping).
+    """Returns (shared, own): text of the parameters with equal values in all mappings, and text of the other
+    parameters of each mapping.
     """
     shared = {n: v for n, v in parameters[0].items() if all(other[n] == v for other in parameters)}
     own = [parameter_text({n: v for n, v in each.items() if n not in shared}) for each in parameters]
@@ -192,8 +202,8 @@ def shared_and_own_texts(parameters: Sequence[dict[str, float]]) -> tuple[str, l
 
 
 def shared_and_own_of_points(view: View, numbers: Sequence[int]) -> tuple[str, list[str]]:
-    """(text of the parameters that all points share, text of the other parameters of each point); for an arm,
-    of its quantities. numbers: from 1.
+    """Returns (shared, own): text of the parameters that are equal at all points, and text of the other
+    parameters of each point; for an arm, of the quantities. numbers: numbers of the points, from 1.
     """
     if all(name in view.quantities for name in REQUIRED_QUANTITIES):
         return shared_and_own_of_arms(view, numbers)
@@ -204,11 +214,11 @@ def shared_and_own_of_points(view: View, numbers: Sequence[int]) -> tuple[str, l
 def shared_and_own_of_arms(
     view: View, numbers: Sequence[int], without: Collection[str] = ()
 ) -> tuple[str, list[str]]:
-    """(text of the quantities that all arms share, text of the other quantities of each arm), in the units
-    typed by the user.
+    """Returns (shared, own): text of the quantities that are equal for all arms, and text of the other
+    quantities of each arm, in the units typed by the user.
 
-    numbers: of the points of the arms, from 1. without: quantities and parameters to leave out, such as those
-    on axes.
+    numbers: numbers of the points of the arms, from 1. without: quantities and parameters that are left out,
+    for example because they are on axes.
     """
     texts = []
     for number in numbers:

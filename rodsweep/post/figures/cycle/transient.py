@@ -1,6 +1,4 @@
-"""Motion of the tip from the initial state, as at the right of the paper's Fig. 5: beating
-emerges or decays.
-"""
+"""Motion of the tip from the initial state, as at the right of the paper's Fig. 5."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -20,10 +18,10 @@ EXTREMUM_LINE_LOOK: dict[str, Any] = {"color": "0.55", "lw": 0.8, "ls": (0, (4, 
 
 
 def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
-    """(figure with x and y of the tip over time in a column for each point, description). Horizontal lines
-    are the extrema of the cycle, if any.
+    """Returns (figure, description). The figure has a column for each point: x and y of the tip over time,
+    with horizontal lines at the extrema of the cycle, if any.
 
-    narrow: whether the titles leave out the explanation of these lines.
+    points: numbers of the chosen points. narrow: whether the titles leave out the explanation of these lines.
     """
     selection = chosen_traces(view, points)
     count = len(selection.cycles)
@@ -43,8 +41,8 @@ def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> 
 
 
 def draw_start_of_motion(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
-    """Draws x and y of the tip from the initial state, with horizontal lines at the extrema of the cycle, if
-    any.
+    """Draws x (upper panel) and y (lower panel) of the tip from the initial state on, with horizontal lines
+    at the extrema of the cycle, if any.
     """
     time, *tip = (cycle.values[name] for name in TRACE_VARIABLES)
     v = cycle.values
@@ -58,13 +56,17 @@ def draw_start_of_motion(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
 
 
 def label_tip(upper: Axes, lower: Axes, units: CycleUnits) -> None:
-    """Labels the vertical axes of two panels, x and y of the tip, in the colours of the curves."""
+    """Labels the vertical axes of the panels with x (upper) and y (lower) of the tip, in the colours of the
+    curves.
+    """
     upper.set_ylabel("tip " + units.along("x"), color=BLUE)
     lower.set_ylabel("tip " + units.along("y"), color=VERMILION)
 
 
 def label_time(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
-    """Labels the time axis below in the cycle's unit, and above in tau1 if the rod has this time scale."""
+    """Labels the lower time axis in the unit of the cycle, and adds an upper time axis in tau1 if the rod has
+    this time scale.
+    """
     tau1 = cycle.tau1
     upper.tick_params(labelbottom=False)
     lower.axhline(0, color="0.8", lw=0.6, zorder=0)

@@ -1,4 +1,4 @@
-"""Units in figures of cycles: the dimensionless units of the paper, or SI_UNITS units for an arm."""
+"""Units in figures of cycles: the dimensionless units of the paper, or SI units for an arm."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,21 +24,21 @@ ENERGY_VARIABLES = ("energy",)
 POWER_VARIABLES = ("injection", "dissipation", "injection_mean", "dissipation_mean")
 """Names of variables that are powers."""
 SHORT_PERIOD = 0.1
-"""Period, in s, below which times have a prefix, such as ms; longer times are in seconds."""
+"""If the longest period is below this value, in s, times have a prefix such as ms."""
 Factor = Any
 """A number, or an array with a number for each point, (points,)."""
 SI_UNITS = ("m", "s", "J", "W")
-"""SI_UNITS units of length, time, energy and power."""
+"""SI units of length, time, energy and power."""
 REQUIRED_QUANTITIES = ("length", "tau2", "force_scale")
-"""Quantities of an arm from which its units are computed."""
+"""Quantities of an arm from which the units of a figure are computed."""
 
 
 @dataclass(frozen=True, slots=True)
 class CycleUnits:
     """Units of a figure of cycles; by default dimensionless.
 
-    length, time, energy, power: the scales L, tau2, k3/L and k3/(L tau2) in the drawn units. Each is an
-    array, (points,), for several points.
+    length, time, energy, power: the scales L, tau2, k3/L and k3/(L tau2) in the units of the figure, as
+    numbers, or as arrays, (points,), for several points.
     """
 
     length: Factor = 1.0
@@ -50,7 +50,7 @@ class CycleUnits:
     """Names of the units of length, time, energy and power, as TeX."""
 
     def along(self, axis: str) -> str:
-        """Label of an axis for the coordinate `axis`, "x" or "y", with the unit."""
+        """Label, with the unit, of an axis for a coordinate. axis: "x" or "y"."""
         return f"${axis}$ ({self.names[0]})" if self.in_si else f"${axis}/L$"
 
     @property
@@ -60,9 +60,7 @@ class CycleUnits:
 
     @property
     def labels_over(self) -> tuple[str, str, str, str]:
-        """Labels of the panels over a parameter: half the range of the tip's x, its largest y,
-        period, power.
-        """
+        """Labels of the panels over a parameter: (x_max - x_min)/2 and y_max of the tip, period, power."""
         if self.in_si:
             length, time, _, power = self.names
             return (
@@ -88,15 +86,17 @@ class CycleUnits:
 
     @property
     def power_of_rate(self) -> float:
-        """The drawn unit of energy divided by the drawn unit of time, in drawn units of power."""
+        """Ratio of the figure's units of energy and time, (energy unit)/(time unit), in the figure's unit of
+        power.
+        """
         return self.power * self.time / self.energy
 
     def time_text(self, time: float) -> str:
-        """A time with its unit as text, such as `53.91 s`; only for SI_UNITS units."""
+        """A time with its unit as text, such as `53.91 s`; only for SI units."""
         return f"{time:.4g}{NO_BREAK}{self.names[1]}"
 
     def drawn(self, values: dict[str, Array]) -> dict[str, Array]:
-        """Variables of a point, by name, converted to these units; each of any shape."""
+        """Variables of a point, of any shape, by name, converted to these units."""
         factors: dict[str, Factor] = (
             dict.fromkeys((*LENGTH_VARIABLES, *CYCLE_LENGTH_VARIABLES), self.length)
             | dict.fromkeys(TIME_VARIABLES, self.time)
@@ -111,8 +111,8 @@ PLAIN_UNITS = CycleUnits()
 
 
 def units_of(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
-    """Units at each point, with the same names of units at all points; dimensionless without an arm. numbers:
-    of the points, from 1.
+    """Units at each point, with equal names of the units at all points; dimensionless if the file has no arm.
+    numbers: numbers of the points, from 1.
     """
     (units,) = units_over([view], [np.array(numbers, int) - 1])
     if not units.in_si:
@@ -122,8 +122,8 @@ def units_of(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
 
 
 def units_over(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
-    """Units for the points of each file, with factors (n,); dimensionless if a file has no arm. at: indices
-    of the points of each file.
+    """Units for the points of each file, with factors of shape (n,); dimensionless if a file has no arm. at:
+    indices of the points of each file, (n,).
     """
     if not all(name in view.quantities for view in views for name in REQUIRED_QUANTITIES):
         return [PLAIN_UNITS] * len(views)
@@ -148,7 +148,7 @@ def units_over(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[C
 
 
 def _largest(view: View, name: str, at: NDArray[np.int64], factors: Array) -> float:
-    """Largest absolute value of the variable `name` times `factors`, (n,), over points with indices `at`; 0
-    if no value is finite.
+    """Maximum of |v| f over the points with the indices `at`, (n,); 0 if no value is finite. v: variable
+    `name`. f: `factors`, (n,).
     """
     return float(np.nanmax(np.abs(view.variables[name].ravel()[at]) * factors, initial=0.0))

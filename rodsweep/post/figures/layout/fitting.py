@@ -1,4 +1,4 @@
-"""Fits the texts of a figure to its page: breaks lines, and adapts columns of legends and heights of panels.
+"""Layout of a figure so that all texts fit: broken lines, columns of legends, and heights of panels.
 
 All sizes are measured in the figure after matplotlib's constrained layout.
 """
@@ -17,34 +17,36 @@ from .remembered_ticks import remembered_ticks
 from .ticks import thin_ticks
 
 MIN_ASPECT = 0.45
-"""Least ratio of height to width of a panel. If a panel is flatter, the figure grows in height."""
+"""Smallest ratio of height to width of a panel. If a panel is flatter, the height of the figure is
+increased."""
 MAP_ASPECT = 0.7
-"""Least ratio of height to width of a map, whose slopes matter in both directions."""
+"""Smallest ratio of height to width of a map, in which slopes along x and along y must be visible."""
 STRIP_ASPECT = 0.25
-"""Least ratio of height to width of a panel with a curve over time, in a figure with several panels."""
+"""Smallest ratio of height to width of a panel with a curve over time, in a figure with several panels."""
 MAX_FIGURE_HEIGHT = 9.5
 """Largest height of a figure, in inches: the printable height of a page."""
 MAX_PASSES = 6
-"""Largest number of layouts. Several are needed, because each change of the figure moves texts already
-measured."""
+"""Largest number of layouts. Several layouts are needed, because each change of the figure moves texts that
+have been measured."""
 MIN_PANEL_HEIGHT = 0.45
-"""Least height of a panel, in inches, at which two tick labels fit above each other."""
+"""Smallest height of a panel, in inches; two tick labels fit above each other."""
 SPARE_HEIGHT = 4.0
-"""Height added to the figure while texts are measured, in inches, so that no panel shrinks to nothing."""
+"""Height, in inches, that is added to the figure while texts are measured, so that no panel vanishes."""
 EQUAL_SCALE_SLACK = 1.03
-"""Factor that enlarges the height of panels with equal scales. If height and width both just suffice,
-successive layouts alternate."""
+"""Factor on the required height of panels with equal scales. Without this factor, height and width would both
+just suffice, and successive layouts would alternate."""
 TEXT_MARGIN = 0.04
-"""Least distance of a text from the edge of the figure, in inches."""
+"""Smallest distance of a text from the edge of the figure, in inches."""
 WORD_PATTERN = re.compile(r"(?:\\.|\$(?:\\.|[^$\\])*\$|[^\s$]|\xa0)+")
-"""Regular expression for a word of a text. Mathematics between dollar signs is part of a word, blanks
-included. A no-break space joins a number and its unit."""
+"""Pattern for a word of a text. A formula between dollar signs, including spaces, is part of a word, as is a
+no-break space."""
 
 
 def fit(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
-    """Lays out a figure so that no text is cut off or overlaps, and no panel is flatter than `min_aspect`.
+    """Lays out a figure so that no text is cut off or overlaps, and no panel has a ratio of height to width
+    below `min_aspect`.
 
-    The width of the figure does not change. Its height does not change if everything fits.
+    The width of the figure does not change. The height is increased only if the content does not fit.
     """
     width, height = figure.get_size_inches()
     figure.set_size_inches(width, height + SPARE_HEIGHT)
@@ -53,7 +55,7 @@ def fit(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
         changes = [_fit_legends(figure), _break_texts(figure), thin_ticks(figure)]
         if not any(changes):
             break
-    # The texts fit; now remove the additional height, which does not lengthen any text.
+    # The texts fit; now remove the additional height. No text becomes longer by this.
     spare = _spare_height(figure, min_aspect)
     figure.set_size_inches(width, max(height, min(height + SPARE_HEIGHT - spare, MAX_FIGURE_HEIGHT)))
     for _ in range(MAX_PASSES):
@@ -65,9 +67,7 @@ def fit(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
 
 
 def _lay_out(figure: Figure) -> None:
-    """Positions panels and legends of a figure. The content of panels, which needs no measuring, is not
-    drawn.
-    """
+    """Positions panels and legends of a figure, without drawing the content of the panels."""
     canvas = figure.canvas
     if not isinstance(canvas, FigureCanvasAgg):
         canvas = FigureCanvasAgg(figure)  # otherwise each text creates a canvas to measure itself
@@ -79,7 +79,7 @@ def _lay_out(figure: Figure) -> None:
 
 
 def break_lines(text: Text, room: float, upright: bool = False) -> bool:
-    """Breaks a text at blanks into lines of at most `room` pixels; returns whether the text changed.
+    """Breaks a text at spaces into lines of at most `room` pixels; returns whether the text changed.
 
     upright: whether the text is rotated by 90 degrees.
     """
@@ -131,8 +131,8 @@ def _break_texts(figure: Figure) -> bool:
 
 
 def _pitch(axes: Axes, figure: Figure) -> float:
-    """Distance, in pixels, between the centres of a panel and its nearest horizontal neighbour; the figure's
-    width if there is none.
+    """Distance, in pixels, between the centres of a panel and of the nearest panel in another column; the
+    width of the figure if there is only one column.
     """
     place = axes.get_subplotspec()
     if place is None:
@@ -170,7 +170,7 @@ def _columns(legend: Legend) -> int:
 
 
 def _with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
-    """Replaces a legend of the figure by the same legend with another number of columns; returns the new
+    """Replaces a legend of the figure by a legend with the same entries in `columns` columns; returns the new
     legend.
     """
     texts = [text.get_text() for text in legend.get_texts()]
@@ -182,7 +182,7 @@ def _with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
 
 
 def _spare_height(figure: Figure, min_aspect: float) -> float:
-    """Height, in inches, by which the figure can shrink before a panel reaches its least height."""
+    """Height, in inches, by which the figure can shrink until the first panel reaches its smallest height."""
     width, height = figure.get_size_inches()
     spare = [height]
     for axes in figure.axes:

@@ -1,7 +1,7 @@
-"""Ticks and boxes of their labels, found once for each position of a panel.
+"""Cache of the ticks of axes, and of the boxes of tick labels, for each position of a panel.
 
-To lay out a panel, matplotlib finds the ticks of each axis a dozen times: for the axis, its label, the title
-and the spines. Finding the ticks takes a quarter of the time of a layout.
+To lay out a panel, matplotlib computes the ticks of each axis a dozen times: for the axis, the axis label,
+the title and the spines. These computations take a quarter of the time of a layout.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -12,14 +12,15 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 
 FOUND_BY = ("_update_ticks", "_get_ticklabel_bboxes")
-"""Methods of matplotlib's axes that find ticks and boxes. Without them nothing is remembered."""
+"""Methods of matplotlib's Axis that compute ticks and boxes. If a method is missing, the cache is not
+used."""
 
 
 @contextmanager
 def remembered_ticks(figure: Figure) -> Iterator[None]:
-    """Within the context each axis of the figure finds its ticks anew only once the panel has moved.
+    """Context in which an axis of the figure computes its ticks again only after the panel or its limits have
+    changed. Nothing except positions and limits of panels may change in this context.
 
-    Nothing but the positions and limits of panels may change within the context.
     """
     panels = [panel for axes in figure.axes for panel in (axes, *axes.child_axes)]
     known = all(hasattr(Axis, name) for name in FOUND_BY)
@@ -36,7 +37,7 @@ def remembered_ticks(figure: Figure) -> Iterator[None]:
 
 
 def _remembering(axis: Any) -> tuple[Callable[[], list[Any]], Callable[[Sequence[Any], Any], Any]]:
-    """Both methods of an axis, which remember the last position of its panel."""
+    """Returns the two methods FOUND_BY of an axis with a cache for the last position of the panel."""
     find, measure = (getattr(axis, name) for name in FOUND_BY)
     last: dict[str, Any] = {}
 

@@ -1,4 +1,4 @@
-"""Removes tick labels of a figure where neighbouring labels overlap."""
+"""Removal of tick labels of a figure where neighbouring labels overlap."""
 
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
@@ -6,21 +6,19 @@ from matplotlib.text import Text
 from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, SymmetricalLogLocator
 
 LABEL_GAP = 0.25
-"""Least gap between neighbouring tick labels, as a fraction of their height."""
+"""Smallest gap between neighbouring tick labels of a horizontal axis, divided by the height of the labels."""
 EDGE_TOLERANCE = 1e-9
-"""Rounding tolerance for a tick at the end of an axis, as a fraction of the axis' length."""
+"""Rounding tolerance for a tick at the end of an axis, divided by the length of the axis."""
 
 
 def thin_ticks(figure: Figure) -> bool:
-    """Removes tick labels from all axes of a figure on which labels overlap; returns whether any label was
-    removed.
-    """
+    """Removes tick labels from all axes with overlapping labels; returns whether any label was removed."""
     every = [*figure.axes, *(child for axes in figure.axes for child in axes.child_axes)]
     return any([_thin(axis, way) for axes in every for axis, way in ((axes.xaxis, 0), (axes.yaxis, 1))])
 
 
 def visible_labels(axis: Axis) -> list[Text]:
-    """Tick labels of an axis within its limits."""
+    """Visible tick labels within the limits of an axis."""
     low, high = sorted(axis.get_view_interval())
     near = EDGE_TOLERANCE * (high - low)
     return [
@@ -31,8 +29,8 @@ def visible_labels(axis: Axis) -> list[Text]:
 
 
 def _thin(axis: Axis, way: int) -> bool:
-    """Removes overlapping tick labels of an axis; returns whether any was removed. way: 0 for a horizontal
-    axis, 1 for a vertical axis.
+    """Removes tick labels of an axis if labels overlap; returns whether any label was removed. way: 0 for a
+    horizontal axis, 1 for a vertical axis.
     """
     shown = visible_labels(axis)
     boxes = [label.get_window_extent() for label in shown]
@@ -57,8 +55,8 @@ def _thin(axis: Axis, way: int) -> bool:
 
 
 def _thin_powers(axis: Axis, shown: int) -> bool:
-    """Removes powers of ten from a symmetric logarithmic axis; returns whether any was removed. shown:
-    present number of labels.
+    """Removes labelled powers of ten from a symmetric logarithmic axis; returns whether any label was
+    removed. shown: present number of labels.
     """
     start = getattr(axis.get_transform(), "linthresh", None)
     if start is None:
@@ -71,8 +69,8 @@ def _thin_powers(axis: Axis, shown: int) -> bool:
 
 
 def _thin_decades(axis: Axis, locator: LogLocator) -> bool:
-    """Labels fewer numbers of each decade: 1 and 3, 1 alone, or 2 alone; returns whether labels
-    were removed.
+    """Reduces the labelled numbers of each decade to 1 and 3, only 1, or only 2; returns whether labels were
+    removed.
     """
     low, high = sorted(axis.get_view_interval())
     for subs in ((1.0, 3.0), (1.0,), (2.0,)):

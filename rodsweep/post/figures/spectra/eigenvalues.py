@@ -1,4 +1,4 @@
-"""Figures of spectra that lie on no line: eigenvalues of one point in the complex plane, or of a list of
+"""Figures of eigenvalues without lines between points: one point in the complex plane, or a list of
 points.
 """
 
@@ -12,20 +12,21 @@ from ..lists import number_points, shared_parameters
 from ..style import BLUE, VERMILION, heading, legend_below, parameter_text, require
 
 SPREAD_RATIO = 100.0
-"""Ratio of the largest to the smallest eigenvalue above which axes are symmetric logarithmic."""
+"""An axis is symmetric logarithmic if the ratio of the largest to the smallest modulus exceeds this
+number."""
 LINEAR_RANGE_FRACTION = 1e-6
-"""Fraction of the largest eigenvalue up to which an axis is always linear."""
+"""A symmetric logarithmic axis is linear at least up to this fraction of the largest modulus."""
 LINEAR_FRACTION = 0.1
-"""Fraction of the eigenvalues in the linear range of a symmetric logarithmic axis."""
+"""Fraction of the eigenvalues that lie in the linear range of a symmetric logarithmic axis."""
 MODE_LOOKS = {True: (VERMILION, "s", "growing mode"), False: (BLUE, "o", "decaying mode")}
-"""(colour, marker, legend entry) of a mode, by whether it grows."""
+"""(colour, marker, legend entry) of growing modes (True) and decaying modes (False)."""
 MAX_NUMBERED = 8
-"""Largest number of modes of which each is labelled with its number."""
+"""The first modes, up to this number, are labelled with their numbers."""
 
 
 def draw_eigenvalues(view: View) -> Figure:
-    """Figure of the stored eigenvalues of the only point in a file, in the complex plane, labelled with their
-    numbers.
+    """Figure of the stored eigenvalues of the only point in a file, in the complex plane, with the numbers of
+    the modes.
     """
     modes = len(view.variables["mode"])
     growth, frequency = (view.variables[name].reshape(modes) for name in ("growth_rate", "frequency"))
@@ -48,9 +49,7 @@ def draw_eigenvalues(view: View) -> Figure:
 
 
 def draw_list_of_spectra(view: View) -> Figure:
-    """Figure of the growth rates and frequencies of a list of points, over the number of the point, without
-    lines.
-    """
+    """Figure of the growth rates and frequencies of a list of points over the number of the point."""
     growth = view.variables["growth_rate"]
     frequency = view.variables["frequency"]
     figure = Figure(figsize=(5.2, 5.4), layout="constrained")
@@ -68,8 +67,8 @@ def draw_list_of_spectra(view: View) -> Figure:
 
 
 def _mark(axes: Axes, x: np.ndarray, y: np.ndarray, grows: np.ndarray) -> list[Line2D]:
-    """Marks the points (x, y), arrays of equal shape; returns legend entries. grows: mask of
-    growing modes.
+    """Draws markers at the points (x, y); returns legend entries. x, y: arrays of equal shape. grows: mask of
+    growing modes, of the same shape.
     """
     handles = []
     for kind, (colour, marker, word) in MODE_LOOKS.items():
@@ -80,8 +79,8 @@ def _mark(axes: Axes, x: np.ndarray, y: np.ndarray, grows: np.ndarray) -> list[L
 
 
 def scale_if_spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
-    """Makes an axis symmetric logarithmic if its numbers span a large ratio. x: None for the vertical axis
-    alone; y: of any shape.
+    """Makes an axis symmetric logarithmic if the ratio of its largest to smallest modulus exceeds
+    SPREAD_RATIO. x, y: values on the axes, of any shape; None for an axis that stays unchanged.
     """
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
         sizes = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)

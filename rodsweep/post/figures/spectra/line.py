@@ -1,5 +1,5 @@
-"""Spectra along a line of points: two roots over the parameter and in the complex plane, as in the paper's
-Fig. 2.
+"""Figures of spectra along a line of points: two roots over the parameter and in the complex plane, as in the
+paper's Fig. 2.
 """
 
 from collections.abc import Sequence
@@ -23,11 +23,12 @@ FOLLOWED_ROOTS = {
     "smallest": "of the stored roots, the two smallest in magnitude",
     "all": "all stored roots",
 }
-"""Descriptions of the choices of roots, by name."""
+"""Description of each choice of roots, by name."""
 FOLLOWED_COUNT = 2
 """Number of roots that are followed along a line."""
 LARGE_RATIO = 10.0
-"""Ratio of the largest to the median root above which the axis of roots is logarithmic except near 0."""
+"""If the ratio of the largest to the median modulus of the roots exceeds this number, the axis of the roots
+is logarithmic except near 0."""
 THRESHOLD_DIGITS = 6
 """Number of significant digits of a threshold in the legend."""
 THRESHOLD_LOOKS = {
@@ -43,11 +44,11 @@ SHADE_LOOK: dict[str, Any] = {"color": "0.92", "lw": 0, "zorder": 0}
 
 
 def select_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.ndarray:
-    """Two followed roots at each point, (points, 2), complex; or all stored roots, (points, modes) if `roots`
+    """Two followed roots at each point, complex, (points, 2); all stored roots, (points, modes), if `roots`
     is "all".
 
-    growth, frequency: parts of the stored roots, (points, modes). The first root of a complex pair has
-    positive frequency; two real roots are in the order of `roots`.
+    growth, frequency: real and imaginary parts of the stored roots, (points, modes). The first root of a
+    complex pair has positive frequency; two real roots are in the order of the choice `roots`.
     """
     w = growth + 1j * frequency
     if roots == "all":
@@ -59,23 +60,23 @@ def select_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.nd
 
 
 def with_gaps(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(x, w) with NaN inserted where the followed roots jump to other roots between two points. w: followed
-    roots, (n, 2).
+    """Returns (x, w) with NaN inserted between points at which the followed roots are different roots. x:
+    parameter, (n,). w: followed roots, (n, 2).
     """
     step = np.abs(np.diff(w, axis=0)).max(axis=1)
     size = np.abs(w).max(axis=1)
-    # A root that is exchanged jumps far beyond the neighbouring steps, and by much of its own size.
+    # If roots are exchanged, the step is far larger than the neighbouring steps and comparable to the root.
     around = np.array([np.median(step[max(0, i - 3) : i + 4]) for i in range(len(step))])
     jump = np.flatnonzero((step > 8 * around) & (step > 0.5 * np.minimum(size[1:], size[:-1]))) + 1
     return np.insert(x, jump, np.nan), np.insert(w, jump, np.nan, axis=0)
 
 
 def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
-    """Name of the roots to follow along lines of spectra: the user's choice `asked`, or the choice with fewer
-    gaps.
+    """Choice of the roots along lines of spectra, one of ROOTS: the user's choice `asked`, or else "smallest"
+    or "rightmost", whichever gives fewer gaps.
 
-    If both choices have equally many gaps, the smallest roots are followed, as in the paper. All roots are
-    drawn if a file stores one root only.
+    If the numbers of gaps are equal, the smallest roots are followed, as in the paper. If a file stores only
+    one root, the choice is "all".
     """
     if any(len(view.variables["mode"]) < FOLLOWED_COUNT for view in views):
         return "all"
@@ -90,12 +91,14 @@ def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
 
 
 def _followed(view: View, roots: str) -> Complex:
-    """Roots that are drawn for each point of a line: two, (points, 2), or all stored roots."""
+    """Roots at the points of a line, as from `select_roots`."""
     return select_roots(view.by_point("growth_rate"), view.by_point("frequency"), roots)
 
 
 def _scatter_all(axes: Axes, x: Array, w: Complex, label: str) -> None:
-    """Draws all roots w, (n, modes), in the complex plane; their colour shows the parameter x, (n,)."""
+    """Draws all roots w, (n, modes), in the complex plane, in colours that show the parameter x, (n,). label:
+    label of the colour bar.
+    """
     across = np.broadcast_to(x[:, None], w.shape)
     dots = axes.scatter(w.real.ravel(), w.imag.ravel(), s=6, c=across.ravel(), cmap="viridis_r")
     scale_if_spread(axes, w.real, w.imag)
@@ -103,7 +106,7 @@ def _scatter_all(axes: Axes, x: Array, w: Complex, label: str) -> None:
 
 
 def draw_line(view: View, name: str, roots: str) -> Figure:
-    """Figure of the followed roots over the parameter `name`, and of their paths in the complex plane."""
+    """Figure of the roots over the parameter `name`, and in the complex plane. roots: choice of the roots."""
     figure = Figure(figsize=(5.2, 6.6), layout="constrained")
     top, bottom = figure.subplots(2, 1)
     w = draw_roots(top, view, name, roots)
@@ -122,14 +125,14 @@ def draw_line(view: View, name: str, roots: str) -> Figure:
 
 
 def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
-    """Draws the followed roots, (n, 2), or all roots, over the parameter `name`; returns them, with NaN in
-    gaps.
+    """Draws roots over the parameter `name`, and returns the roots, with NaN in gaps: followed roots, (n, 2),
+    or all roots, (n, modes). roots: choice of the roots.
     """
     x = view.axes[name]
     w = _followed(view, roots)
     if roots != "all":
         x_broken, w = with_gaps(x, w)
-        # Thin on thick, so that both show where they coincide.
+        # A thin line over a thick line: both are visible where the lines coincide.
         for i, (colour, width) in enumerate(((BLUE, 3.0), (VERMILION, 1.2))):
             look: dict[str, Any] = {"color": colour, "lw": width}
             axes.plot(x_broken, w[:, i].real, label=rf"$\mathrm{{Re}}\,\omega_{i + 1}$", **look)
@@ -154,8 +157,8 @@ def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
 
 
 def _point_along(axes: Axes, w: Complex, colour: str) -> None:
-    """Draws an arrow in the middle of the longest segment of a root's path w, (n,), in the direction of the
-    path.
+    """Draws an arrow at the middle of the path w, (n,), of a root, in the direction of the path. If w has
+    gaps, the part with the most points is used.
     """
     pieces = np.split(w, np.flatnonzero(~np.isfinite(w)))
     path = max((piece[np.isfinite(piece)] for piece in pieces), key=len)
@@ -176,10 +179,10 @@ def threshold_text(threshold: LocatedChange) -> str:
 
 
 def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
-    """Shades the range in which the straight rod is unstable, draws lines at thresholds over F, and returns
-    the thresholds.
+    """Shades the range in which the straight rod is unstable, draws lines at thresholds if the parameter
+    `name` is F, and returns the thresholds.
 
-    They are the first onset of oscillation, and forces at which the stability of the straight rod changes.
+    Thresholds are onsets of oscillation, and forces at which the stability of the straight rod changes.
     """
     x = view.axes[name]
     unstable = view.variables["unstable_count"].reshape(-1) > 0
@@ -194,7 +197,8 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
     for threshold in thresholds:
         _, style = THRESHOLD_LOOKS[threshold.kind]
         axes.axvline(threshold.position, ls=style, label=threshold_text(threshold), **THRESHOLD_LINE)
-    # The unstable range begins behind a bracketed loss of stability, and ends before a bracketed return.
+    # The shaded range begins at the upper end of a bracketed Hopf point, and ends at the lower end of a
+    # bracketed restabilization.
     starts, ends = (
         [
             change.position if isinstance(change, LocatedChange) else getattr(change, inner)

@@ -1,4 +1,4 @@
-"""Stability class of single rods over F: a bar for each rod, whose colours are classes, with its
+"""Stability class of single rods over F: one bar for each rod, with a colour for each class, and
 thresholds.
 """
 
@@ -24,11 +24,12 @@ from ..lists import number_points, shared_parameters
 from ..style import BLUE, GREEN, LABELS, SYMBOLS, VERMILION, heading, legend_below, parameter_text, require
 
 CLASS_WORDS = {"class": CLASSES, "stable_states": STABLE_STATES}
-"""(code, word) of every value of the variables `class` and `stable_states`, by variable."""
+"""(code, word) of the values of the variables `class` and `stable_states`, by variable."""
 STABILITY_CROSSINGS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
 """Codes of the kinds of crossings at which the stability of the straight rod may change."""
 CHANGE_TOLERANCE = 1e-9
-"""Relative distance between a point and a change of class below which the point belongs to neither class."""
+"""A point closer to a change of class than this relative distance is not used, because its class is
+uncertain."""
 CLASS_COLOURS = {
     "missing": "white",
     "monotone": "#DCE9F5",
@@ -37,7 +38,7 @@ CLASS_COLOURS = {
     "undecided": "#666666",
     "crushed": "#BBBBBB",
 }
-"""Colours of the classes: light to dark blue for stable rods, orange for unstable rods. They differ in grey
+"""Colours of the classes: blue for stable rods, orange for unstable rods. The colours also differ in grey
 prints."""
 STABLE_CLASS = {
     "onset": "oscillatory",
@@ -46,17 +47,17 @@ STABLE_CLASS = {
     "real_leads": "monotone",
     "pair_leads": "oscillatory",
 }
-"""Class of a stable rod beyond a crossing, by kind of the crossing."""
+"""Class of a stable rod at forces above a crossing, by kind of the crossing."""
 FURTHER_HOPF = "later"
-"""Kind of a Hopf point at which a further pair of modes becomes unstable, while the rod is
-unstable already."""
+"""Key in CROSSING_MARKS of a Hopf point at which a further pair of modes of an unstable rod becomes
+unstable."""
 CROSSING_MARKS = {
     "onset": (BLUE, "o", rf"onset ${SYMBOLS['F']}_*$"),
     "hopf": (VERMILION, "s", rf"Hopf ${SYMBOLS['F']}_{{**}}$"),
     FURTHER_HOPF: (VERMILION, "D", "further Hopf point"),
     "restabilization": (GREEN, "^", "restabilization"),
 }
-"""(colour, marker, legend entry) of a marked crossing, by kind."""
+"""(colour, marker, legend entry) of each kind of crossing that is marked."""
 BAR_WIDTH = 0.8
 """Width of a bar, as a fraction of the distance between bars."""
 BAR_ASPECT = 0.12
@@ -66,7 +67,7 @@ THRESHOLD_DIGITS = 6
 
 
 def draw_class_bars(view: View) -> Figure:
-    """Figure of a horizontal bar for a single rod, or of vertical bars for a list of rods."""
+    """Figure with a horizontal bar for a single rod, or with vertical bars for a list of rods."""
     count = view.variables["status"].size
     v = {name: view.variables[name] for name in ("F_end", "crossing_kind")}
     require(view, np.isfinite(v["F_end"]).any(), "computed rod")
@@ -96,8 +97,8 @@ def class_entries(seen: set[str]) -> list[Patch]:
 
 
 def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str]]:
-    """Yields (start, end, class) of each interval of F, from F = 0, where the class is "monotone", to the end
-    of the search.
+    """Yields (start, end, class) of each interval of F between crossings, from F = 0, with the class
+    "monotone", to the end of the search. rod: index of the rod.
     """
     kinds, F, after = (view.by_point(name)[rod] for name in ("crossing_kind", "crossing_F", "unstable_after"))
     end = float(view.variables["F_end"].ravel()[rod])
@@ -115,10 +116,10 @@ def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str
 
 
 def classes_between_crossings(view: View, row: str) -> tuple[Array, Array, NDArray[np.intp]]:
-    """(value along the row, value of the row, class) of points half-way between neighbouring crossings on
-    rows.
+    """Returns (x, y, classes), (n,) each, of the midpoints between neighbouring crossings on rows.
 
-    The class of such a point is known however close the crossings are. Rows at infinity are left out.
+    x: value along the row. y: value of the row, the parameter `row`. The class of a midpoint is known even if
+    the crossings are close. Rows at infinity are left out.
     """
     numbers = {word: number for number, word in CLASSES}
     kinds, after, at = map(view.by_point, ("crossing_kind", "unstable_after", "crossing_at"))
@@ -134,7 +135,9 @@ def classes_between_crossings(view: View, row: str) -> tuple[Array, Array, NDArr
 
 
 def _class_beyond(kind: int, unstable: int) -> str:
-    """Class of a rod at F beyond a crossing. unstable: number of unstable modes there, -1 if unknown."""
+    """Class of a rod at F just above a crossing. kind: code of the crossing. unstable: number of unstable
+    modes above the crossing; -1 if unknown.
+    """
     stable = STABLE_CLASS.get(CROSSING_KINDS[kind], "undecided")
     if unstable > 0:
         return "flutter"
@@ -142,8 +145,8 @@ def _class_beyond(kind: int, unstable: int) -> str:
 
 
 def draw_class_bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
-    """Draws the bar of the rod with index `rod`; returns its classes. upright: whether the bar is
-    vertical.
+    """Draws the bar of the rod with the index `rod`; returns the classes of the bar. upright: whether the bar
+    is vertical.
     """
     pieces = list(classes_over_force(view, rod))
     from_, to = (view.variables[name].ravel()[rod] for name in ("open_from", "open_to"))
@@ -162,7 +165,8 @@ def mark_thresholds_on_bars(
 ) -> list[Line2D]:
     """Marks the thresholds of all bars; returns legend entries, which for a single rod contain the forces.
 
-    unit: of the loads in legend entries; empty for the F of a rod. factor: the load in this unit at F = 1.
+    upright: whether bars are vertical. unit: unit of the loads in legend entries; empty for F. factor: load
+    at F = 1, in this unit.
     """
     kinds, F, after = map(view.by_point, ("crossing_kind", "crossing_F", "unstable_after"))
     hopf = kinds == CROSSING_KINDS.index("hopf")
@@ -189,11 +193,11 @@ def mark_thresholds_on_bars(
 def class_along_row(
     view: View, variable: str, line: str, row: str, place: int, edges: Array
 ) -> NDArray[np.intp]:
-    """Class of each pixel of a row of a diagram, (n,), from the edges of the pixels, (n + 1,). place: index
-    of the row.
+    """Class of each pixel of a row of a diagram, (n,). variable: `class` or `stable_states`. line, row:
+    parameters along and across rows. place: index of the row. edges: edges of the pixels, (n + 1,).
 
-    variable: `class` or `stable_states`. A pixel takes the class of the nearest computed point between the
-    same two changes of class. Without such a point its class is undecided.
+    A pixel has the class of the nearest computed point between the same two changes of class; "undecided" if
+    there is no such point.
     """
     x = view.variables[line]
     classes = view.by_point(variable)[place]
@@ -218,7 +222,7 @@ def class_along_row(
 
 
 def _changes(view: View, variable: str, line: str, place: int) -> Array:
-    """Positions of the changes of class along a row, increasing, (m,)."""
+    """Positions of the changes of class along a row, in increasing order, (m,). place: index of the row."""
     names = ("crossing_at", "crossing_kind", f"cycle_special_{line}")
     v = {name: view.by_point(name)[place] for name in names if name in view.variables}
     at = v["crossing_at"]
@@ -227,7 +231,7 @@ def _changes(view: View, variable: str, line: str, place: int) -> Array:
         found = [at[kinds > 0]]
     else:
         found = [at[np.isin(kinds, STABILITY_CROSSINGS)], v[f"cycle_special_{line}"]]
-    if line in CRUSHING and has_covering(view.config):  # elsewhere, or never, where arms vary
+    if line in CRUSHING and has_covering(view.config):  # other rods are not crushed at F = k1
         (other,) = set(CRUSHING) - {line}
         found.append(view.point_columns[other][[place]])
     changes = np.concatenate(found)

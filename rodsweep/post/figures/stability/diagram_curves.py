@@ -1,4 +1,4 @@
-"""Curves of a phase diagram, special points on the curves, and their legend entries."""
+"""Curves and special points of a phase diagram. line, row: parameters along a row, and constant on a row."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,15 +14,16 @@ from ..style import GREEN, SYMBOLS
 from ..style import number as number_text
 
 CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")}
-"""(legend entry, width, style) of a boundary curve, by kind as coded in the file."""
+"""(legend entry, width, style) of a boundary curve, by code of the kind in the file."""
 CURVE_NAMES = {1: (r"$\tilde F_{**}$", 0.85), 0: (r"$\tilde F_*$", 0.12)}
-"""(symbol, position) of the text at the longest curve of a kind; position: fraction of visible length."""
+"""(symbol, position) of the symbol at the longest curve of a kind; position: fraction of the visible
+length."""
 SIDE_LOOKS = {
     -1: ("supercritical Hopf points", 1.4, "-"),
     1: ("subcritical Hopf points", 1.4, "--"),
     0: ("Hopf points, side undecided", 0.6, "-"),
 }
-"""(legend entry, width, style) of a part of a Hopf curve, by sign of Re c."""
+"""(legend entry, width, style) of parts of a Hopf curve, by sign of Re c."""
 CYCLE_MARKS = {
     "fold": ("folds of cycles on rows", "s"),
     "torus": ("torus points on rows", "D"),
@@ -31,19 +32,19 @@ CYCLE_MARKS = {
 }
 """(legend entry, marker) of special points of cycles on rows that lie on no curve, by kind."""
 CURVE_TOLERANCE = 1e-3
-"""Distance, as a fraction of the axis, up to which a point lies on a curve drawn by chords."""
+"""A point lies on a curve if its distance from the chords, divided by the axis length, is at most this."""
 CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", GREEN)}
 """(legend entry, colour) of curves of special points of cycles, by kind."""
 CHORD_ROUNDING = 1e-6
-"""Relative rounding error in the distance of a curve's vertex from its own chord."""
+"""Relative tolerance for the rounding error of the position of a vertex on a chord of its curve."""
 NAME_SIZE = 8
 """Font size of a curve's symbol, in points."""
 BESIDE_SIDES = "double eigenvalue", 1.0, ":"
-"""(legend entry, width, style) of double eigenvalues in a figure whose dashed curves are subcritical."""
+"""(legend entry, width, style) of double eigenvalues in figures whose dashed curves are subcritical."""
 
 
 def draw_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> list[Line2D]:
-    """Draws boundary curves and folds, or with `states` only Hopf points; returns legend entries."""
+    """Draws boundary curves and folds, or only Hopf curves if `states`; returns legend entries."""
     v = view.variables
     sides = "curve_criticality" in v
     handles = _sides(axes, view, line, row) if sides else []
@@ -69,9 +70,9 @@ def draw_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> li
 
 
 def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArray[np.bool_]]:
-    """Masks of the curves of a kind that get a symbol, over the curve points of the file, (curve_point,).
+    """Masks, (curve_point,), of the curves of the kind `kind` that are labelled with a symbol.
 
-    F** bounds the region of stable straight rods; curves of Hopf points of further modes get no symbol.
+    F** bounds the region of stable straight rods; curves of Hopf points of further modes have no symbol.
     """
     v = view.variables
     numbers = np.unique(v["curve_number"][v["curve_kind"] == kind])
@@ -80,12 +81,12 @@ def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArr
 
 
 def force_of_plane(view: View, line: str, row: str) -> str:
-    """Constant F of a plane, as text to follow a symbol; empty for a plane with an axis of F."""
+    """Text " = F" with the constant F of a plane, to follow a symbol; empty if F is on an axis."""
     return "" if "F" in (line, row) else f" = {float(view.axes['F'][0]):g}"
 
 
 def _points(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Marks the folds of Hopf curves and of the partial beam; returns legend entries."""
+    """Marks the folds of Hopf curves, and the fold in the partial beam limit; returns legend entries."""
     v = view.variables
     handles = []
     for i in range(len(v["fold"])):
@@ -123,7 +124,7 @@ def draw_cycle_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2
 
 
 def mark_cycles_on_rows(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Marks special points of cycles that were found on rows and lie on no curve; returns legend entries."""
+    """Marks the special points of cycles on rows that lie on no curve; returns legend entries."""
     handles: list[Line2D] = []
     values = view.point_columns[row]
     kinds, at = (view.by_point(f"cycle_special_{name}") for name in ("kind", line))
@@ -157,8 +158,8 @@ def _on_curves(view: View, kind: int, line: str, row: str, x: Array, y: Array) -
 
 
 def _sides(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Draws Hopf curves with line styles by criticality, and generalised Hopf points; returns
-    legend entries.
+    """Draws Hopf curves with line styles by criticality, and generalised Hopf points; returns legend
+    entries.
     """
     v = view.variables
     used = set()
@@ -196,7 +197,7 @@ def _bautin_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
 
 
 def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple[int, np.ndarray]]:
-    """(sign of Re c or 0, points (n, 2)) of each part of a Hopf curve between generalised Hopf points."""
+    """(sign of Re c, points, (n, 2)) of each part of a Hopf curve between generalised Hopf points."""
     v = view.variables
     rows = np.flatnonzero(v["curve_number"] == curve)
     on = np.flatnonzero(v["bautin_curve"] == curve)
@@ -204,7 +205,7 @@ def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple
     columns = [np.insert(v[f"curve_{name}"][rows], places, v[f"bautin_{name}"][on]) for name in (line, row)]
     points = np.column_stack(columns)
     side = np.insert(np.nan_to_num(v["curve_criticality"][rows]), places, 0)
-    # A piece has the sign of its ends; a point with an undecided sign takes that of its neighbour.
+    # A segment has the sign of its ends; if the sign at one end is undecided, the sign of the other end.
     ends = side[:-1], side[1:]
     pieces = np.where(ends[0] * ends[1] < 0, 0, np.sign(ends[0] + ends[1])).astype(int)
     cuts = [0, *(np.flatnonzero(np.diff(pieces)) + 1), len(pieces)]
@@ -212,7 +213,7 @@ def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple
 
 
 def _first_over_force(paths: list[Array], force: int) -> list[Array]:
-    """Parts of curves, (n, 2) each, that have the smallest F of all curves; force: column with F."""
+    """Parts of curves, (n, 2) each, that have the smallest F of all curves. force: column with F."""
     starts, ends = (
         np.concatenate([path[piece] for path in paths]) for piece in (slice(None, -1), slice(1, None))
     )
@@ -229,8 +230,8 @@ def _first_over_force(paths: list[Array], force: int) -> list[Array]:
 
 
 def _name_longest(axes: Axes, paths: list[Array], name: str, share: float) -> None:
-    """Writes a symbol next to the curve, (points, 2), of the greatest visible length, at its fraction
-    `share`.
+    """Writes the symbol `name` next to the path, (points, 2), with the greatest visible length. share:
+    position of the symbol, as a fraction of this length.
     """
     lengths = []
     seen = []

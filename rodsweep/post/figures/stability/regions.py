@@ -1,5 +1,5 @@
-"""Regions of a plane that are bounded by curves. Each pixel takes the class of a known point in
-its region.
+"""Regions of a plane that are bounded by curves. Each pixel has the class of a known point in the same
+region.
 """
 
 from collections.abc import Sequence
@@ -14,22 +14,22 @@ from ....arrays import Array
 from ..style import is_logarithmic
 
 PIXEL_COUNT = 900
-"""Number of pixels along each axis. In a figure 183 mm wide a pixel measures 0.2 mm, half the width of the
-line over a boundary."""
+"""Number of pixels along each axis. In a figure of 183 mm width a pixel measures 0.2 mm, half the width of
+the line that is drawn over a boundary."""
 CURVE_STEP = 0.4
-"""Distance, in pixels, between points of a drawn curve. Below 1 the curve has no gap."""
+"""Distance, in pixels, between points of a boundary; with a distance below 1 the boundary has no gap."""
 
 
 @dataclass(frozen=True, slots=True)
 class DrawnPlane:
-    """Rectangle of a plane. x, y: values along the axes, whose first and last values are the edges."""
+    """Rectangle of a plane. x, y: values along the axes; the first and last values are the edges."""
 
     x: Array
     y: Array
 
     def unit(self, x: Array, y: Array) -> Array:
-        """Points x, y, both (n,), as fractions of the axes, (n, 2): 0 and 1 are the edges. Logarithmic axes
-        are taken into account.
+        """Points as fractions of the axes, (n, 2), with 0 and 1 at the edges, linear or logarithmic as the
+        axes. x, y: coordinates, (n,) each.
         """
         columns = []
         for values, axis in ((x, self.x), (y, self.y)):
@@ -49,8 +49,8 @@ class ClassifiedPoints:
     classes: NDArray[Any]
 
     def within(self, regions: NDArray[Any]) -> tuple["ClassifiedPoints", NDArray[Any]]:
-        """(points inside the plane, region of each of these points). regions: number of the region of every
-        pixel, (PIXEL_COUNT, PIXEL_COUNT).
+        """Returns (points inside the plane, number of the region of each of these points). regions: number of
+        the region of each pixel, (PIXEL_COUNT, PIXEL_COUNT).
         """
         inside = ((self.at >= 0) & (self.at <= 1)).all(axis=1)
         at = self.at[inside]
@@ -62,8 +62,8 @@ def pixel_classes(
 ) -> NDArray[Any]:
     """Class of each pixel, (PIXEL_COUNT, PIXEL_COUNT): the class of the nearest point in the same region.
 
-    The lowest row of pixels comes first. further: points used in regions without a computed point. curves:
-    boundaries, (m, 2) each, as fractions of the axes. A region without any point takes the class of the
+    The lowest row of pixels comes first. further: points that are used in regions without a computed point.
+    curves: boundaries as fractions of the axes, (m, 2) each. A region without any point has the class of the
     nearest computed point.
     """
     walls = np.zeros((PIXEL_COUNT, PIXEL_COUNT), bool)
@@ -88,8 +88,8 @@ def pixel_classes(
 
 
 def _nearest(pixels: tuple[NDArray[Any], ...], places: Array, classes: NDArray[Any]) -> NDArray[Any]:
-    """Class of the point nearest to each pixel, (n,). pixels: (row, column), (n,) each. places: points in
-    pixels, (m, 2). classes: (m,).
+    """Class of the point nearest to each pixel, (n,). pixels: (row, column), (n,) each. places: points as
+    fractions of the axes, (m, 2). classes: classes of the points, (m,).
     """
     if (classes == classes[0]).all():
         return classes[0]
@@ -98,20 +98,21 @@ def _nearest(pixels: tuple[NDArray[Any], ...], places: Array, classes: NDArray[A
 
 
 def _pixels(places: Array) -> NDArray[np.intp]:
-    """(row, column), (n,) each, of the pixels that contain the points, (n, 2)."""
+    """(row, column) of the pixels that contain the points, (n, 2). places: fractions of the axes, (n, 2)."""
     return np.clip(places[:, ::-1] * PIXEL_COUNT, 0, PIXEL_COUNT - 1).astype(np.intp)
 
 
 def _dense(curve: Array) -> Array:
-    """Points less than a pixel apart on the part of a curve, (n, 2), that lies inside the plane.
+    """Points, (m, 2), less than a pixel apart, on the part of a curve that lies inside the plane. curve:
+    vertices, (n, 2).
 
-    Each segment is first cut at the edges of the plane, because it may be a thousand times as long as the
-    plane is wide.
+    Each segment is first cut at the edges of the plane, because a segment may be a thousand times longer than
+    the plane.
     """
     curve = curve[np.isfinite(curve).all(axis=1)]
-    edge = 0.5 / PIXEL_COUNT  # rounding may move an end on the edge outside
+    edge = 0.5 / PIXEL_COUNT  # rounding may move an end from the edge to the outside
     steps = np.diff(curve, axis=0)
-    with np.errstate(all="ignore"):  # a piece parallel to an axis gives infinities, which are right
+    with np.errstate(all="ignore"):  # a segment parallel to an axis gives infinities, which are correct
         crossed = np.stack([(bound - curve[:-1]) / steps for bound in (-edge, 1 + edge)])
     enters = np.maximum(crossed.min(axis=0).max(axis=1), 0)
     leaves = np.minimum(crossed.max(axis=0).min(axis=1), 1)

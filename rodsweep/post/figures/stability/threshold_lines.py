@@ -1,4 +1,5 @@
-"""First thresholds of rods over a parameter, as lines for all or some values of a second parameter."""
+"""Figures of first thresholds of rods over a parameter, with lines for all or some values of a second
+parameter."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -18,27 +19,28 @@ CRITICAL_FORCES = (
     ("F_hopf", r"Hopf $\tilde F_{**}$", style.VERMILION, "s", "-"),
     ("F_restabilization", "restabilization", style.GREEN, "^", "--"),
 )
-"""(variable, legend entry, colour, marker, line style) of each kind of threshold; the colour is used for a
-single rod."""
+"""(variable, legend entry, colour, marker, line style) of each kind of threshold. The colours are used if a
+panel has no other colours for its lines."""
 FILE_COLOURS = (style.BLUE, style.VERMILION, style.GREEN, "#CC79A7", "#56B4E9", "0.3")
 """Colours of the files in a figure of several files."""
 LINE_STYLES = ("-", "--", ":")
-"""Line styles of the values of the second parameter in one panel."""
+"""Line styles for the values of the second parameter in one panel."""
 MAX_LINES = 6
-"""Largest number of values of the second parameter whose lines have distinguishable colours."""
+"""Largest number of values of the second parameter that have distinguishable colours."""
 DARKEST_SHADE = 0.0
 """Start of the used range of the colour map."""
 LIGHTEST_SHADE = 0.85
 """End of the used range of the colour map; lighter colours are invisible on white paper."""
 MIN_LINE_DISTANCE = 0.01
-"""Distance of two lines, as a fraction of the largest force, below which one line stands for both."""
+"""Two lines are drawn as one line if their distance, divided by the largest force, is below this number."""
 HEADROOM = 1.05
-"""Upper limit of the axis of forces, in units of the largest force."""
+"""Upper limit of the axis of forces, divided by the largest force."""
 
 
 def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, str]:
-    """(figure of thresholds over the parameter with more values, a line for each value of the other,
-    description). long: both parameters.
+    """Returns (figure, description). The figure shows thresholds over the parameter with more values, with a
+    line for each value of the other parameter. long: the one or two parameters with several values. searched:
+    clause on the searched range.
     """
     along = max(long, key=lambda name: np.count_nonzero(np.isfinite(view.axes[name])))
     other = next((name for name in long if name != along), None)
@@ -63,7 +65,9 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
 
 
 def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tuple[Figure, str]:
-    """(figure of thresholds over the parameter `along`, in one colour for each file, description)."""
+    """Returns (figure, description). The figure shows thresholds over the parameter `along`, with a colour
+    for each file. searched: clause on the searched range.
+    """
     figure = Figure(figsize=(5.6, 4.6), layout="constrained")
     axes = figure.subplots()
     tables = np.concatenate([_table(view, along, None) for view in views])
@@ -84,8 +88,9 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
 
 
 def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str) -> tuple[Figure, str]:
-    """(figure as the paper's Fig. 3, description): a panel over each of two parameters, with lines for some
-    values of the other.
+    """Returns (figure, description). As in the paper's Fig. 3, the figure has a panel over each of the two
+    parameters `long`, with lines for some values of the other parameter. narrow: whether the panels are
+    stacked.
     """
     rows, columns = (2, 1) if narrow else (1, 2)
     figure = Figure(figsize=(4.6 * columns + 0.4, 4.0 * rows), layout="constrained")
@@ -107,8 +112,8 @@ def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str)
 
 
 def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:
-    """Draws thresholds over `along` for up to three values of `other` that differ most; returns the number of
-    values.
+    """Draws thresholds over the parameter `along` for up to three different values of the parameter `other`,
+    see `_far_apart`; returns the number of values.
     """
     table = _table(view, along, other)
     some = _far_apart(table)
@@ -123,10 +128,8 @@ def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:
 
 
 def _table(view: View, along: str, other: str | None) -> Array:
-    """First forces of the three kinds of thresholds, (values of `other`, 3, values of `along`), NaN where
-    there is none.
-
-    other: name of the second parameter; None for one row.
+    """First forces of the three kinds of thresholds, (values of `other`, 3, values of `along`); NaN for a
+    missing threshold. along, other: parameters; `other` is None if there is no second parameter.
     """
     names = list(view.axes)
     kept = [names.index(name) for name in (other, along) if name]
@@ -140,16 +143,16 @@ def _table(view: View, along: str, other: str | None) -> Array:
 
 
 def _abscissa(view: View, along: str) -> Array:
-    """Values on the horizontal axis: of the parameter `along`, or 1/gamma3 as in the paper."""
+    """Values on the horizontal axis: values of the parameter `along`, or 1/gamma3 instead of gamma3, as in
+    the paper.
+    """
     values = view.axes[along]
     return 1 / values if along == "gamma3" else values
 
 
 def _draw(axes: Axes, x: Array, values: Array, look: dict[str, Any]) -> list[Line2D]:
-    """Draws lines of the three kinds of thresholds; returns legend entries. values: first forces, (3, n),
-    with NaN as gaps.
-
-    look: colour, style or markers that replace those of CRITICAL_FORCES.
+    """Draws lines of the three kinds of thresholds; returns legend entries. x: (n,). values: first forces,
+    (3, n), with NaN at gaps. look: keywords for matplotlib that replace the look in CRITICAL_FORCES.
     """
     place = np.isfinite(x)
     handles = []
@@ -162,7 +165,9 @@ def _draw(axes: Axes, x: Array, values: Array, look: dict[str, Any]) -> list[Lin
 
 
 def _label(axes: Axes, view: View, along: str, table: Array) -> None:
-    """Labels the horizontal axis and sets its scale. The axis of forces starts at 0."""
+    """Labels the horizontal axis, of the parameter `along`, and sets the scales. The axis of forces starts at
+    0. table: drawn forces.
+    """
     x = _abscissa(view, along)
     style.scale(axes, "x", np.sort(x[np.isfinite(x)]))
     axes.set_xlabel(style.INVERSE_DRAG_LABEL if along == "gamma3" else style.LABELS[along])
@@ -181,8 +186,8 @@ def _kinds(table: Array) -> list[Line2D]:
 
 
 def _left_out(view: View, names: list[str]) -> str:
-    """Clause on infinite values of the parameters `names`, which an axis cannot show; empty if there are
-    none.
+    """Clause on infinite values of the parameters `names`, which an axis cannot show; empty if all values are
+    finite.
     """
     left_out = [
         f"{name} = {value:g}"
@@ -193,7 +198,9 @@ def _left_out(view: View, names: list[str]) -> str:
 
 
 def _far_apart(table: Array) -> list[int]:
-    """Indices of the first and the last line, and of the line half-way in height. table: (lines, 3, n)."""
+    """Indices of the first line, of a line whose mean height is half-way, and of the last line. table:
+    (lines, 3, n).
+    """
     last = len(table) - 1
     if last < 2:
         return list(range(len(table)))
@@ -204,7 +211,9 @@ def _far_apart(table: Array) -> list[int]:
 
 
 def _alike(lines: dict[int, Array]) -> list[list[int]]:
-    """Groups of lines that cannot be distinguished in the figure, by index. lines: (3, points) each."""
+    """Groups of lines that cannot be distinguished in the figure, as lists of keys. lines: forces, (3,
+    points) each, by key.
+    """
     size = max(float(np.nanmax(values, initial=0.0)) for values in lines.values())
     groups: list[list[int]] = []
     for number, values in lines.items():

@@ -1,6 +1,6 @@
-"""First lines of `rodsweep show` for an arm: validity of the model, flutter load, and frequency of beating.
+"""First lines of `rodsweep show` for an arm: validity of the model, flutter load, frequency of beating.
 
-Quantities are in the units typed by the user, frequencies in Hz.
+Quantities are in the units typed by the user, frequencies in Hz. rods: mask of the points with a rod.
 """
 
 from collections.abc import Callable
@@ -21,32 +21,31 @@ from .validity import plane_lines, validity_sentence
 Lines = list[str]
 """Lines of text."""
 ANSWER_DIGITS = 3
-"""Largest number of significant digits in an answer; numbers with larger errors have fewer."""
+"""Largest number of significant digits in an answer; a number with a large error has fewer digits."""
 FAILED_STATUS = "failed"
-"""Status of a point without a result, whose solve failed."""
+"""Status of a point whose solve failed."""
 NO_CYCLE_WORDS = {
     "straight": "does not beat",
-    "unstable": "has a cycle that it leaves at the least disturbance",
+    "unstable": "has an unstable cycle",
     "torus": "beats without repeating",
-    "not_settled": "is not settled: no stable cycle was found, but one may exist",
+    "not_settled": "is not settled: no stable cycle was found, but a stable cycle may exist",
     "left_the_model": "is crushed somewhere or loses its stiffness, where the model ends",
     FAILED_STATUS: "is not known: the integration failed",
 }
-"""Words about an arm without a stable cycle, by status."""
+"""Predicate for an arm without a stable cycle, by status."""
 
 
 def arm_answer(view: View, done: np.ndarray) -> Lines:
-    """Lines with the answer about the arms at the points in the mask `done`, (...,); an empty list for a
-    rod."""
+    """Lines with the answer about the arms at the points in the mask `done`, (...,); empty for a rod."""
     return [*plane_lines(view.quantities), *_applied(view, done)] if view.quantities else []
 
 
 def _applied(view: View, done: np.ndarray) -> Lines:
-    """Lines about the points in the mask `done`, with the validity of the model."""
+    """Answer about the points in the mask `done`, with a line on the validity of the model."""
     rods = done & (view.variables["status"] < NOT_SLENDER)
     if not rods.any():
         return (
-            ["none of these arms corresponds to a rod of the model; the statuses say why"]
+            ["none of these arms corresponds to a rod of the model; the statuses state the reasons"]
             if done.any()
             else []
         )
@@ -54,29 +53,29 @@ def _applied(view: View, done: np.ndarray) -> Lines:
     caveat = validity_sentence(validity)
     inside = rods & (view.variables["model_applies"] != Validity.does_not_apply)
     if not inside.any():
-        return [caveat, *(f"if it applied: {line}" for line in ANSWERS[view.task](view, rods))]
+        return [caveat, *(f"if the model applied: {line}" for line in ANSWERS[view.task](view, rods))]
     if (inside != rods).any():
-        return [caveat, *(f"where it applies: {line}" for line in ANSWERS[view.task](view, inside))]
+        return [caveat, *(f"where the model applies: {line}" for line in ANSWERS[view.task](view, inside))]
     answer = ANSWERS[view.task](view, rods)
     return [caveat, *answer] if validity["model_applies"].any() else [*answer[:1], caveat, *answer[1:]]
 
 
 def spanned(view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
-    """Range of `values` in the SI unit `si`, as text in the arm's own unit. errors: absolute, of
-    equal shape.
+    """Range of `values`, in the SI unit `si`, as text in the unit that the user typed.
+    errors: absolute errors, of the shape of `values`, or 0.
     """
     return in_own_unit(view, values, si, errors, ANSWER_DIGITS)
 
 
 def load_spanned(view: View, loads: np.ndarray) -> str:
-    """Range of loads in SI units, (n,), as text in the unit of the arm's load."""
+    """Range of the loads `loads`, (n,) in SI units, as text in the unit that the user typed."""
     return spanned(view, loads, UNITS[load_of(view)][0])
 
 
 def _of_search(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
-    """Lines of a task that searches along the load: answer, failed points, further lines.
+    """Function that returns the lines of a task that searches along the load, with a line on failed searches.
 
-    answer: function of the view and a mask of points with a result; returns (answer, further lines).
+    answer: function of the view and the mask of points with a result; returns (answer, further lines).
     """
 
     def lines(view: View, rods: np.ndarray) -> Lines:
@@ -91,7 +90,7 @@ def _of_search(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Cal
 
 
 def _of_thresholds(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """(lines about the loads from which arms flutter, oscillate or are stable again, further lines)."""
+    """Returns (lines about flutter, lines about onset of oscillation and return to stability)."""
     load = load_of(view)
     v = view.variables
     hopf, end, rate = (v[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz"))
@@ -107,15 +106,15 @@ def _of_thresholds(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 
 
 def _where(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines:
-    """Lines on the arms with the smallest and the largest load, (n,) in SI units, and on the
-    effect of drag.
+    """Lines on the arms with the smallest and the largest flutter load, and on the effect of drag.
+    loads: flutter loads of the points in the mask `rods`, (n,).
     """
     if np.isfinite(loads).sum() < 2:
         return []
     places = np.flatnonzero(rods)
     ends = [places[found(loads)] for found in (np.nanargmin, np.nanargmax)]
     least, most = (region_of_arms(view, np.arange(rods.size) == end) for end in ends)
-    lines = [] if least == most else [f"least at {least}; most at {most}"]
+    lines = [] if least == most else [f"smallest at {least}; largest at {most}"]
     numbers = {"flutter": loads, "its frequency": view.variables["frequency_hopf_hz"][rods]}
     whole = {name: np.full(rods.size, np.nan) for name in numbers}
     for name, values in numbers.items():
@@ -124,7 +123,7 @@ def _where(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines:
 
 
 def _of_crossings(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """(lines about the loads and frequencies at the first Hopf points, further lines)."""
+    """Returns (lines about the loads and frequencies at the first Hopf points, empty list)."""
     v = view.variables
     load = load_of(view)
     end = v[f"{load}_end"][rods] if f"{load}_end" in v else np.full(rods.sum(), np.nan)
@@ -133,12 +132,12 @@ def _of_crossings(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 
 
 def _share(some: np.ndarray, rods: np.ndarray) -> str:
-    """End of a sentence with the share of the arms in `rods` that are in `some`; empty for a single arm."""
+    """Clause on the number of points in `rods` that are also in `some` (masks); empty for a single point."""
     return f" at {int(some.sum())} of {int(rods.sum())} points" if rods.sum() > 1 else ""
 
 
 def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> Lines:
-    """Lines about flutter. hopf: flutter loads; end: largest searched loads; frequency: in Hz; (n,) each."""
+    """Lines about flutter. hopf: flutter loads. end: largest searched loads. frequency: in Hz. All (n,)."""
     flutters = np.isfinite(hopf)
     searched = f"up to {load_spanned(view, end)}" if np.isfinite(end).any() else ""
     if not flutters.any():
@@ -157,7 +156,7 @@ def _of_cycles(view: View, rods: np.ndarray) -> Lines:
     v = {name: view.variables[name][rods] for name in names}
     errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}
     cycles = rods & view.with_status("cycle")
-    if not cycles.any():  # where some arms beat, the line with all outcomes counts the others
+    if not cycles.any():  # if some arms beat, another line of the summary counts all outcomes
         masks = {words: rods & view.with_status(status) for status, words in NO_CYCLE_WORDS.items()}
         return [f"{words}{_share(mask, rods)}" for words, mask in masks.items() if mask.any()]
     beats = cycles[rods]
@@ -172,8 +171,8 @@ def _of_cycles(view: View, rods: np.ndarray) -> Lines:
 
 
 def _decided(view: View, rods: np.ndarray) -> Lines:
-    """Line on the number of combinations of arm and load for which the drag decides whether a cycle exists;
-    may be empty.
+    """Line with the numbers of arms (with load) that beat for all, some or no drags of their range; an empty
+    list if drag is not varied or an outcome is undecided.
     """
     arms = arms_of_drags(view)
     if arms is None:
@@ -202,12 +201,12 @@ def _of_modes(view: View, rods: np.ndarray) -> Lines:
     elif not unknown.any():
         lines = ["stays straight"]
     if unknown.any():
-        lines.append(f"whether it gives way is not known{_share(unknown, rods)}")
+        lines.append(f"whether the arm gives way is not known{_share(unknown, rods)}")
     return lines
 
 
 def _of_branches(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """(lines about the loads and the frequencies of the cycles on branches, further lines)."""
+    """Returns (lines about the loads and the frequencies of the cycles on branches, empty list)."""
     loads = view.variables[f"branch_{load_of(view)}"][rods]
     if not np.isfinite(loads).any():
         return ["has no branch of cycles from a Hopf point in the range searched"], []
@@ -217,7 +216,7 @@ def _of_branches(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 
 
 def _of_diagram(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """(lines about the loads and frequencies at the first Hopf points on rows over F, further lines)."""
+    """Returns (lines about loads and frequencies at the first Hopf points on rows over F, empty list)."""
     v = view.variables
     scale = np.broadcast_to(v[SCALE_OF[load_of(view)]], rods.shape)[rods]
     forces, frequency = _at_first_hopf(view, rods, "crossing_at")
@@ -226,8 +225,8 @@ def _of_diagram(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 
 
 def _at_first_hopf(view: View, rods: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """(variable `name`, frequency in Hz) at the first Hopf point of each arm, (n,); NaN without a
-    Hopf point.
+    """Returns (values of the variable `name`, frequencies in Hz) at the first Hopf point of each arm, (n,)
+    each; NaN for an arm without a Hopf point.
     """
     hopf = view.variables["crossing_kind"][rods] == CROSSING_KINDS.index("hopf")
     at = np.arange(len(hopf)), np.argmax(hopf, axis=-1)
@@ -247,4 +246,4 @@ ANSWERS: dict[str, Callable[[View, np.ndarray], Lines]] = {
     "branch": _of_search(_of_branches),
     "phase_diagram": lambda view, rods: [] if "F" in view.parameters else _of_search(_of_diagram)(view, rods),
 }
-"""Function of each task that returns the lines of the answer, from the view and a mask of computed points."""
+"""For each task, the function of the view and a mask of computed points that returns the answer's lines."""

@@ -1,4 +1,4 @@
-"""Results about an arm in its own units for `rodsweep show`: quantities, variables of every task, thresholds.
+"""Results about an arm for `rodsweep show`: quantities, variables in SI units of every task, thresholds.
 
 Loads and lengths are in the units typed by the user, frequencies in Hz. All powers of an answer have the same
 unit.
@@ -23,20 +23,20 @@ from ..errors import errors_of, is_known
 from ..ranges import RANGE_DIGITS, rounded, span
 
 SI_LINE_WIDTH = 80
-"""Largest length of a line in SI units, in characters."""
+"""Largest length of a line with variables in SI units, in characters."""
 FEW_ITEMS = 4
-"""Largest number of values in a table that are listed one by one; more values are given as a range."""
+"""Up to this number of values of an array are listed one by one; more values are printed as a range."""
 TYPED_UNIT_SOURCES = {"m": ("length",), "Pa": ("pressure", "young"), "N": ("force",)}
-"""Quantities whose unit, as typed by the user, all numbers with an SI unit take. The first quantity that the
-user typed decides."""
+"""Quantities of the arm, by SI unit. All numbers with this SI unit are printed in the unit of the
+first of these quantities for which the user typed a unit."""
 PREFIXED_UNITS = ("J", "W")
 """SI units that get a prefix, such as mW."""
 SHORT_TIME = 0.1
-"""Time below which times are written with a prefix, such as ms; in s."""
+"""Times are printed with a prefix, such as ms, if all are shorter than this time, in s."""
 AXIS_DIGITS = 3
-"""Number of significant digits of a quantity that identifies a point of the file."""
+"""Number of significant digits of a quantity in the description of a point of the file."""
 QUANTITY_WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
-"""Words for quantities of an arm whose names are unclear."""
+"""Printed names of quantities of an arm, if different from the key of the config."""
 THRESHOLD_SENTENCES = {
     "hopf": "flutters at {load}{rate}",
     "restabilization": "is straight again from {load} on",
@@ -46,12 +46,15 @@ THRESHOLD_SENTENCES = {
 
 
 def quantity_words(name: str) -> str:
-    """Words for the quantity of an arm with the given name."""
+    """Printed name of a quantity of an arm. name: key of the config."""
     return QUANTITY_WORDS.get(name, name.replace("_", " "))
 
 
 def own_unit(view: View, si: str, largest: float) -> tuple[float, str]:
-    """(factor, unit) that converts numbers up to `largest` from the SI unit `si` to the arm's own unit."""
+    """Returns (factor, unit): unit for printing numbers given in the SI unit `si`, and the factor that
+    converts the numbers to this unit. The unit is typed by the user, or has a prefix suitable for numbers up
+    to `largest`.
+    """
     typed = next((view.typed[name] for name in TYPED_UNIT_SOURCES.get(si, ()) if name in view.typed), si)
     if typed != si:
         return written_in(1.0, typed, si), typed
@@ -67,10 +70,10 @@ def in_own_unit(
     errors: np.ndarray | float = 0.0,
     most: int = RANGE_DIGITS,
 ) -> str:
-    """Range of `values` in the SI unit `si`, as text in the arm's own unit.
+    """Range of `values`, in the SI unit `si`, as text in the unit of `own_unit`.
 
-    errors: absolute errors, of the shape of the values, or 0. They limit the number of digits, which is at
-    most `most`.
+    errors: absolute errors, of the shape of the values, or 0, which limit the number of digits. most: largest
+    number of digits.
     """
     factor, unit = own_unit(view, si, _largest(values))
     return f"{span(factor * values, np.broadcast_to(factor * errors, values.shape), most)} {unit}"
@@ -89,8 +92,8 @@ def given_columns(view: View) -> dict[str, np.ndarray]:
 
 
 def region_of_arms(view: View, mask: np.ndarray) -> str:
-    """Ranges of an arm's quantities and of the taper over the points in `mask`, (...,); empty if all points
-    have the same arm.
+    """Ranges of an arm's quantities and of the taper over the points in `mask`, (...,), as text; empty if all
+    points of the file have the same arm.
     """
     chosen = mask.ravel()
     ranges = [quantity_range(view, name, column, chosen) for name, column in given_columns(view).items()]
@@ -103,8 +106,8 @@ def region_of_arms(view: View, mask: np.ndarray) -> str:
 
 
 def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray) -> str:
-    """Range of the quantity `name` over chosen points, as text; column: all values, (points,). Empty if the
-    points have all drags.
+    """Range of the quantity `name` over the points in the mask `chosen`, as text. column: values at all
+    points, (points,). Empty for the quantity "drag" if the chosen points include all drags.
     """
     values = column[chosen]
     if name == "drag":
@@ -120,7 +123,7 @@ def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray
 
 
 def _unit(view: View, name: str) -> str:
-    """Unit of the quantity `name` in the summary; empty for a ratio."""
+    """Unit in which the quantity `name` is printed; empty for a dimensionless quantity."""
     si = ALL_QUANTITIES[name].unit
     return "" if si == "1" else view.typed.get(name, own_unit(view, si, 1.0)[1])
 
@@ -173,8 +176,8 @@ def wrapped(text: str) -> list[str]:
 
 
 def errors_in_si(v: Mapping[str, np.ndarray], own: str, si_name: str) -> np.ndarray:
-    """Absolute errors, in SI units, of the SI variable `si_name`, from the errors of the dimensionless
-    variable `own`; both have the shape of the points, (...,).
+    """Absolute errors of the variable `si_name`, in SI units, from the errors of the dimensionless variable
+    `own`. v: variables of the file. The errors have the shape of the two variables.
     """
     known = np.isfinite(v[own]) & (v[own] != 0)
     scale = np.divide(v[si_name], v[own], out=np.zeros_like(v[si_name]), where=known)
@@ -182,18 +185,20 @@ def errors_in_si(v: Mapping[str, np.ndarray], own: str, si_name: str) -> np.ndar
 
 
 def load_of(view: View) -> str:
-    """Kind of the load on an arm to which the follower force corresponds: "force" or "pressure"."""
+    """Kind of the load of an arm: "force" or "pressure"."""
     return "force" if "force" in view.quantities else "pressure"
 
 
 def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:
-    """Dimensionless forces F, (n,), as text of the loads. points: indices of the points of the arms, (n,)."""
+    """Range of the loads for the dimensionless forces F, (n,), as text. points: index of the point of each
+    force, (n,).
+    """
     load = load_of(view)
     return in_own_unit(view, F * _at(view.quantities[SCALE_OF[load]], points), UNITS[load][0])
 
 
 def crossings_of_arm(view: View) -> list[str]:
-    """A line for every change of stability of the only arm in a file, with load and frequency; an empty list
+    """One line for each change of stability of the only arm in a file, with load and frequency; an empty list
     for a rod.
     """
     if not view.quantities:
@@ -212,10 +217,10 @@ def crossings_of_arm(view: View) -> list[str]:
 
 
 def thresholds_of_arm(view: View, kind: str, found: Sequence[tuple[LocatedChange, np.ndarray]]) -> list[str]:
-    """Sentence, as a list, on thresholds of the given kind in SI units; an empty list for a rod, or without a
-    threshold.
+    """List with a sentence on the thresholds of the given kind, with load and frequency; empty for a rod, or
+    if there is no threshold.
 
-    found: (threshold, indices of the points on its line, (points,)).
+    found: pairs of a threshold and the indices of the points on its line, (points,).
     """
     if not view.quantities or not found:
         return []
@@ -230,14 +235,14 @@ def thresholds_of_arm(view: View, kind: str, found: Sequence[tuple[LocatedChange
 
 
 def _in_hertz(view: View, frequency: np.ndarray, points: np.ndarray) -> str:
-    """Angular frequencies in rad/tau2, (n,), as text in Hz. points: indices of the points of the
-    arms, (n,).
+    """Range of the frequencies in Hz as text. frequency: angular frequencies in rad/tau2, (n,). points: index
+    of the point of each frequency, (n,).
     """
     return in_own_unit(view, frequency / (2 * np.pi * _at(view.quantities["tau2"], points)), HERTZ)
 
 
 def _at(values: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Values of a quantity at points, given by indices; a quantity of shape () has the same value at all
-    points.
+    """Values of a quantity at the points with the indices `points`. values: (all points,), or () for a
+    quantity with the same value at all points.
     """
     return values[points] if values.ndim else values

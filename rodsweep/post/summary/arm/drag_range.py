@@ -1,4 +1,4 @@
-"""How much the results about an arm vary over the drag coefficients of its range."""
+"""Variation of the results about an arm over the drags of its range."""
 
 from collections.abc import Mapping
 
@@ -9,8 +9,8 @@ from .arm import given_columns
 
 
 def drag_lines(view: View, numbers: Mapping[str, np.ndarray]) -> list[str]:
-    """Line on how much the numbers, (points,) by name, vary over the drags of an arm; an empty list if drag
-    never varies.
+    """Line on the variation of each of the `numbers` over the drags of an arm; an empty list if drag does not
+    vary. numbers: values at all points, (points,), by name.
     """
     arms = arms_of_drags(view)
     if arms is None:
@@ -29,8 +29,8 @@ def drag_lines(view: View, numbers: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def arms_of_drags(view: View) -> np.ndarray | None:
-    """Number of the arm at each point, (points,): equal for points that differ in drag alone. None if drag
-    never varies.
+    """Index of the arm at each point, (points,): equal for points that differ only in drag. None if drag does
+    not vary.
     """
     columns = given_columns(view)
     if columns.pop("drag", None) is None:
@@ -41,8 +41,8 @@ def arms_of_drags(view: View) -> np.ndarray | None:
 
 
 def _largest_spread(values: np.ndarray, arms: np.ndarray) -> float:
-    """Largest ratio, over all arms, of the largest to the smallest of an arm's values; NaN if no arm has two
-    values. arms: as from `arms_of_drags`.
+    """Maximum, over all arms, of the largest value of an arm divided by the smallest; NaN if no arm has two
+    positive values. arms: index of the arm at each point, as from `arms_of_drags`.
     """
     spreads = [np.nan]
     for arm in np.unique(arms):

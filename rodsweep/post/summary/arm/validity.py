@@ -9,26 +9,25 @@ from ....results.layouts.arm import EFFECTS, NOT_KNOWN, VALIDITY
 from ....wording import some_of
 
 OTHER_PLANE = (
-    "the motion is in the plane of the height; where that is above the width, the arm flutters first in the "
-    "other plane, at a lower load: exchange width and height to see it"
+    "the motion is in the plane of the height; where the height exceeds the width, the arm flutters first in "
+    "the other plane, at a lower load: exchange width and height to compute it"
 )
-"""Warning about a rectangular section whose height exceeds its width."""
+"""Warning for a rectangular section whose height exceeds its width."""
 
 
 def plane_lines(quantities: Mapping[str, np.ndarray]) -> list[str]:
-    """Warning, as a list, if a rectangular arm flutters first in the plane that is not computed; else an
-    empty list.
+    """List with the warning OTHER_PLANE if some arm is higher than wide, and flutters first in the plane that
+    is not computed; else an empty list.
 
-    quantities: quantities of the arm in SI units, by name; each a number, or (n,).
+    quantities: quantities of the arm in SI units, by name, () or (n,).
     """
     height, width = (np.asarray(quantities.get(name, np.nan)) for name in ("height", "width"))
     return [OTHER_PLANE] if np.max(height) > np.min(width) else []
 
 
 def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str:
-    """Sentence on the validity of the model at n points, which names the largest neglected effect.
-
-    validity: variables of VALIDITY, (n,) each. when: condition under which the sentence holds, as a clause.
+    """Sentence on the validity of the model at n points; if the model is not valid everywhere, with the
+    largest neglected effect. validity: variables of VALIDITY, (n,) each. when: conditional clause to insert.
     """
     applies, effect, excess = (validity[variable.name] for variable in VALIDITY)
     unknown = applies == NOT_KNOWN

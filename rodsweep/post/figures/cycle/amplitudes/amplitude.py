@@ -25,16 +25,16 @@ BRANCH_LOOKS = tuple(
         (BLUE, VERMILION, GREEN, "#CC79A7", "#56B4E9", "#000000"), ("o", "s", "^", "D", "v", "P"), strict=True
     )
 )
-"""(colour, marker) of each line, with colours from Okabe and Ito's palette."""
+"""(colour, marker) of each line. The colours are Okabe and Ito's palette."""
 MIN_ARROW_POINTS = 4
-"""Least number of points of a line that gets an arrow in the direction of continuation."""
+"""Only a line with at least this number of points has an arrow in the direction of continuation."""
 UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
-"""Open markers of unstable cycles, drawn over the markers of their line."""
+"""Look of the open markers of unstable cycles, which are drawn over the markers of the line."""
 
 
 def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure, str]:
-    """(figure of half the range of the tip's x, its largest y, period and power over a parameter,
-    description).
+    """Returns (figure, description). The figure shows (x_max - x_min)/2 and y_max of the tip, period and
+    power over a parameter.
 
     A straight arm has amplitude 0 and no period. narrow: whether the panels are stacked. Raises InputError
     for too many lines.
@@ -77,14 +77,14 @@ def _draw_branches(
     texts: Sequence[str],
     words: dict[Path, tuple[str, bool | None]],
 ) -> list[Line2D]:
-    """Draws all lines in all panels; returns legend entries. texts: legend entry of each line. words: of each
-    file, see `_file_words`.
+    """Draws all lines in all panels; returns legend entries. texts: legend entry of each line. words: result
+    of `_file_words`.
     """
     handles = []
     lost = set[str]()
     for branch, text, (colour, marker) in zip(branches, texts, BRANCH_LOOKS, strict=False):
         look: dict[str, Any] = {"color": colour, "marker": marker, "lw": 1.2, "ms": 3.5}
-        # Open, larger markers leave the markers of the first file visible.
+        # Open, larger markers do not hide the markers of the first file.
         if branch.view is not branches[0].view:
             look |= {"mfc": "none", "ms": 6.5, "ls": "--"}
         word, upward = words[branch.view.path]
@@ -101,11 +101,10 @@ def _draw_branches(
 
 
 def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool | None]]:
-    """(legend entry, whether continuation goes upward) of each file, by path. The second is None unless files
-    differ in direction.
+    """Returns {path: (legend entry, is_upward)}. is_upward: whether the parameter `name` increased during the
+    continuation; None unless the files differ in this direction.
 
-    Files that were followed along `name` in both directions are distinguished by direction, all other files
-    by name.
+    Files with different directions of continuation are distinguished by direction, other files by name.
     """
     if len(views) == 1:
         return {views[0].path: ("", None)}
@@ -125,8 +124,8 @@ def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool 
 
 
 def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: bool, colour: str) -> None:
-    """Draws an arrow on each line in the direction of continuation; upward: whether the parameter
-    increases.
+    """Draws an arrow on a line, in each panel, in the direction of continuation. upward: whether the
+    parameter increased.
     """
     arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14}
     for axes, values in zip(panels, branch.measures, strict=True):
@@ -141,8 +140,9 @@ def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: boo
 
 
 def _names(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[str]]:
-    """(text of the parameters that all lines share, text of each line's own parameters); for an arm in typed
-    units.
+    """Returns (text of the parameters that are equal for all lines, text of the other parameters of each
+    line); for an arm, of the quantities in the units typed by the user. name: parameter on the horizontal
+    axis.
     """
     view = branches[0].view
     if branches[0].units.in_si and all(branch.view is view for branch in branches):
@@ -152,7 +152,9 @@ def _names(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[st
 
 
 def _label(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:
-    """Sets limits and labels of the axes. The lower limit is below 0, so that straight arms are visible."""
+    """Sets limits and labels of the axes. The lower limit is below 0, so that straight arms are visible.
+    labels: labels of the vertical axes. name: parameter on the horizontal axis.
+    """
     for axes, label in zip(panels, labels, strict=True):
         height = axes.dataLim.y1 if np.isfinite(axes.dataLim.y1) and axes.dataLim.y1 > 0 else 1.0
         axes.set_ylim(-0.04 * height, 1.1 * height)
@@ -164,8 +166,8 @@ def _label(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:
 
 
 def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str, Any]) -> set[str]:
-    """Draws a line in all panels, unstable cycles with open markers; returns words for points without an
-    amplitude.
+    """Draws a line in all panels, with open markers for unstable cycles; returns the statuses of points
+    without a known amplitude. look: keywords for matplotlib.
     """
     unstable = branch.words == "unstable"
     lost: set[str] = set()
@@ -178,7 +180,7 @@ def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str
 
 
 def _mark_unknown(axes: Axes, branch: AmplitudeBranch, colour: str) -> set[str]:
-    """Marks points without a known amplitude at the top of a panel; returns words for their statuses."""
+    """Marks points without a known amplitude at the top of a panel; returns the statuses of these points."""
     lost = ~np.isin(branch.words, (*CYCLE_WORDS, "straight", "missing"))
     for x in branch.x[lost]:
         axes.plot(x, 1.0, "x", color=colour, ms=5, clip_on=False, transform=axes.get_xaxis_transform())

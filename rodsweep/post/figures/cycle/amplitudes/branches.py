@@ -19,7 +19,8 @@ from .square_root import SquareRootLaw, square_root_laws
 class AmplitudeBranch:
     """Limit cycles at points that differ in one parameter x, in the order of the file.
 
-    All arrays have the shape (points,). Unknown amplitudes are NaN.
+    Arrays have the shape (points,). amplitude_x: (x_max - x_min)/2 of the tip. amplitude_y: largest y of the
+    tip. Unknown amplitudes are NaN.
     """
 
     view: View
@@ -51,8 +52,8 @@ class AmplitudeBranch:
         return square_root_laws(self.x, self.amplitude_y, self.hopf)
 
     def broken_at_onset(self, values: Array) -> tuple[Array, Array]:
-        """(x, values) with a gap between the last straight arm and the first cycle, where a line would
-        suggest a slope.
+        """Returns (x, values) with NaN inserted between neighbouring points of which one is straight and one
+        is not, because a line between these points would suggest a slope.
         """
         straight = self.words == "straight"
         change = np.flatnonzero(straight[1:] != straight[:-1]) + 1
@@ -60,8 +61,8 @@ class AmplitudeBranch:
 
 
 def abscissa(view: View) -> str:
-    """Name of the parameter on the horizontal axis: F, or if F is constant the parameter with most values.
-    Raises InputError for a file with one point.
+    """Name of the parameter on the horizontal axis: F, or the parameter with the most values if F is
+    constant. Raises InputError for a file with one point.
     """
     sizes = {name: len(np.unique(column)) for name, column in view.point_columns.items()}
     name = "F" if sizes["F"] > 1 else max(sizes, key=sizes.__getitem__)
@@ -71,7 +72,9 @@ def abscissa(view: View) -> str:
 
 
 def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeBranch]:
-    """Lines of a file over the parameter `name`, one for each combination of all other parameters."""
+    """Lines of a file over the parameter `name`, one line for each combination of the other parameters.
+    units: units of the drawn quantities.
+    """
     words = view.outcomes
     v = view.variables
     straight = words == "straight"

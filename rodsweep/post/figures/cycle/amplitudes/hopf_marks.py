@@ -1,4 +1,4 @@
-"""Hopf points in a figure over F: vertical lines, and square-root laws of the amplitudes near them."""
+"""Hopf points in a figure over F: vertical lines, and square-root laws of the amplitudes near Hopf points."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -18,23 +18,22 @@ HOPF_WORDS = {"hopf": f"${HOPF_SYMBOL}$", "restabilization": "restabilization"}
 HOPF_DIGITS = 6
 """Number of significant digits of a Hopf point in a legend."""
 HOPF_LINE_LOOK: dict[str, Any] = {"ls": ":", "lw": 1.1}
-"""Line style of a vertical line at a Hopf point."""
+"""Look of a vertical line at a Hopf point."""
 SHARED_GREY = "0.3"
-"""Colour of a Hopf point that several lines share."""
+"""Colour of a Hopf point that belongs to several lines."""
 LAW_GREY = "0.45"
 """Colour of a square-root law."""
 COEFFICIENT_DIGITS = 3
 """Largest number of significant digits of a coefficient in a legend."""
 MAX_COEFFICIENTS = 3
-"""Largest number of coefficients that one legend entry lists; of more coefficients it gives the range."""
+"""A legend entry lists up to this number of coefficients; for more coefficients the range is printed."""
 
 
 def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange, str]]) -> list[Line2D]:
-    """Draws a dotted vertical line at each Hopf point, in the given colour; returns legend entries. marks:
-    (Hopf point, colour).
+    """Draws a dotted vertical line at each Hopf point; returns legend entries. marks: (Hopf point, colour).
 
-    A Hopf point shared by several lines is drawn once, in grey. The legend gives its position if it is the
-    only Hopf point of its kind.
+    A Hopf point that belongs to several lines is drawn once, in grey. The legend gives the position of a Hopf
+    point that is the only Hopf point of its kind.
     """
     handles = []
     for kind, word in HOPF_WORDS.items():
@@ -60,8 +59,8 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange
 
 
 def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list[Line2D]:
-    """Draws square-root laws as dashed curves; returns legend entries with formula and coefficients. unit: of
-    the amplitude; empty for L.
+    """Draws square-root laws as dashed curves; returns legend entries with formula and coefficients. unit:
+    unit of the amplitude; empty for amplitudes in L.
     """
     handles = []
     for above in (True, False):
@@ -78,7 +77,7 @@ def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list
 
 
 def _coefficients(laws: Sequence[SquareRootLaw]) -> str:
-    """Distinct coefficients of the laws as text; of many coefficients the range."""
+    """Distinct coefficients of the laws as text; the range if there are more than MAX_COEFFICIENTS."""
     ordered = sorted(laws, key=lambda law: law.coefficient)
     each = {law: rounded(law.coefficient, law.error, COEFFICIENT_DIGITS) for law in laws}
     texts = list(dict.fromkeys(each.values()))

@@ -1,7 +1,7 @@
 """Square-root law of the amplitude near a Hopf point F**: y = a sqrt(|F - F**|/|F**|).
 
-The coefficient a is fitted to the cycles in a file; nothing is solved. No law is fitted if the amplitudes do
-not tend to zero at the Hopf point, such as those of large cycles beyond a fold.
+The coefficient a is fitted to the cycles in a file; nothing is solved. No law is fitted to amplitudes that do
+not tend to zero at the Hopf point, such as the amplitudes of large cycles beyond a fold.
 """
 
 from collections.abc import Sequence
@@ -14,14 +14,16 @@ from .....arrays import Array
 from ....hopf_points import LocatedChange
 
 MAX_FITTED_DISTANCE = 0.1
-"""Largest |F - F**|/|F**| of a cycle to which a law is fitted. Farther away higher-order terms matter."""
+"""Largest |F - F**|/|F**| of a cycle to which a law is fitted. At larger distances higher-order terms
+matter."""
 MAX_LAW_DEVIATION = 0.2
-"""Largest relative difference between the amplitudes and a law in the range in which the law is drawn."""
+"""A law is drawn over the range in which it differs from the amplitudes by at most this relative amount."""
 ERROR_SAFETY_FACTOR = 2.0
-"""Factor from the change of a coefficient by one more cycle to its error estimate."""
+"""The error estimate of a coefficient is this factor times the change of the coefficient by one more
+cycle."""
 MIN_ERRORS_AWAY = 100
-"""Least distance of a fitted cycle from F**, in units of the error of F**; the distance is then known to one
-percent."""
+"""Only cycles whose distance from F** exceeds this multiple of the error of F** are fitted. The distance of
+such cycles is known to one percent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,13 +37,13 @@ class SquareRootLaw:
     above: bool
     """Whether the law holds at F > F**; otherwise at F < F**."""
     end: float
-    """F farthest from F** at which the amplitude follows the law."""
+    """Force F farthest from F** up to which the amplitudes follow the law, see MAX_LAW_DEVIATION."""
     error: float
-    """Error estimate of a, in L: ERROR_SAFETY_FACTOR times the change of a by a third cycle; with two cycles,
-    times its change by extrapolation to F**."""
+    """Error estimate of a, in L: ERROR_SAFETY_FACTOR times the change of a if a third cycle is used; if only
+    two cycles exist, times the change of a by the extrapolation to F**."""
 
     def curve(self, points: int = 100) -> tuple[Array, Array]:
-        """(F, amplitude) of the law from F** to `end`, (points,) each; dense near F**."""
+        """Returns (F, amplitude) on the law from F** to `end`, (points,) each, dense near F**."""
         step = np.linspace(0, 1, points, dtype=np.float64) ** 2
         F = self.hopf + (self.end - self.hopf) * step
         return F, self.coefficient * np.sqrt(np.abs(F - self.hopf) / abs(self.hopf))
@@ -50,21 +52,21 @@ class SquareRootLaw:
 def square_root_laws(F: Array, amplitude: Array, points: Sequence[LocatedChange]) -> list[SquareRootLaw]:
     """Square-root laws that the amplitudes follow, at most one on each side of a Hopf point.
 
-    F, amplitude: of the cycles, (n,), in any order; amplitude is NaN or 0 where there is no cycle. points:
-    Hopf points.
+    F, amplitude: force and amplitude of n cycles, (n,) each, in any order; an amplitude is NaN or 0 if there
+    is no cycle. points: Hopf points.
     """
     laws = (_law(F, amplitude, point, side) for point in points for side in (1, -1) if point.position)
     return [law for law in laws if law]
 
 
 def _law(F: Array, amplitude: Array, point: LocatedChange, side: int) -> SquareRootLaw | None:
-    """Law above (side 1) or below (side -1) a Hopf point; None if the amplitudes do not follow it.
+    """Law above (side 1) or below (side -1) a Hopf point; None if the amplitudes do not follow a law.
 
-    To leading order amplitude^2/distance is linear in the distance from the Hopf point. The two nearest
-    cycles give its value at distance 0.
+    To leading order amplitude^2/distance is linear in the distance from the Hopf point. The value of this
+    ratio at distance 0 is extrapolated from the two nearest cycles.
     """
     distance = side * (F - point.position) / abs(point.position)
-    # If two cycles exist at one F, only the smaller one can shrink to zero at the Hopf point.
+    # If two cycles exist at one F, only the smaller cycle can shrink to zero at the Hopf point.
     order = np.lexsort((np.where(amplitude > 0, amplitude, np.inf), distance))
     distance, first = np.unique(distance[order], return_index=True)
     size = amplitude[order][first]
