@@ -38,7 +38,7 @@ QUANTITY_IN_SENTENCE = re.compile(rf"^({QUANTITY_NAMES})|(?<= and )({QUANTITY_NA
 
 
 def as_options(sentence: str) -> str:
-    """The sentence of an error with names of options, such as --tip-radius, instead of names of
+    """The error message `sentence`, with names of options such as --tip-radius in place of names of
     quantities.
     """
     named = QUANTITY_IN_SENTENCE.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)

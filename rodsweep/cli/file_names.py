@@ -28,9 +28,9 @@ def with_ending(file: Path, ending: str) -> Path:
 
 
 def link_target(path: Path) -> Path:
-    """Target of a symbolic link; any other path unchanged. The journal of a result is beside the target.
+    """Target of a symbolic link; a path that is not a link is returned unchanged.
 
-    Raises InputError for a link that leads to itself.
+    The journal of a result is in the folder of the target. Raises InputError for a link that leads to itself.
     """
     if not path.is_symlink():
         return path

@@ -24,8 +24,8 @@ from . import main
 from .launchers import prints_messages
 
 OUTCOME_COUNT = 4096
-"""Number of different random outcomes. The points use the outcomes in turn; the compression of the file
-detects no repetition at this distance."""
+"""Number of different random outcomes. The points use the outcomes in turn. A file's compression detects no
+repetition at this distance."""
 
 
 @dataclass(frozen=True, slots=True)
