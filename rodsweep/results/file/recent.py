@@ -29,7 +29,8 @@ Found = TypeVar("Found")
 
 
 def read_unfolded(path: Path, read: Callable[[], Found]) -> Found:
-    """Result of `read`, which reads a file and its journals; `read` is called again if the file was replaced.
+    """Result of the function `read`, which reads a file and its journals, and is called again if the file was
+    replaced meanwhile.
 
     A run that moves journalled points into the file replaces the file before it deletes the journals. No
     journal was deleted if the file is the same before and after the reading. Raises EnvironmentIncomplete if
@@ -61,7 +62,9 @@ def journalled_points(header: ResultHeader, status: np.ndarray) -> np.ndarray:
 
 
 def journalled_reasons(header: ResultHeader) -> dict[str, str]:
-    """The attribute FAILURE_REASONS, by name, including failed points in the journals; may be empty."""
+    """Dict with the attribute FAILURE_REASONS, including failed points in the journals; empty if no point
+    failed.
+    """
     directory = journal_directory(header.path)
     lines = read_reasons(directory, header.layout, header.fingerprint) if directory.is_dir() else ()
     return reasons_added(lines, header.attributes)
@@ -108,7 +111,9 @@ def _copied(path: Path, exchange: FileReplacement) -> tuple[int, int]:
 
 
 def _is_snapshot(path: Path) -> bool:
-    """Whether a file is a snapshot. A run that continues a snapshot makes it an ordinary result file."""
+    """Whether a file is a snapshot. A run that continues a snapshot turns the snapshot into an ordinary
+    result file.
+    """
     if not is_ours(path):
         return False
     with reading(path), h5py.File(path, "r") as file:

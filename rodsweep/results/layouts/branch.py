@@ -105,7 +105,7 @@ def special_variables(parameter: str) -> tuple[Variable, ...]:
         word("special_reason", "reason for the end of the branch", END_REASONS),
         integer(
             "special_meets",
-            "at a symmetry breaking: number of the other branch that begins or ends there; -1: none",
+            "at a symmetry breaking: number of the second branch that begins or ends there; -1: no branch",
         ),
         integer(
             "special_unstable_after",
@@ -115,9 +115,9 @@ def special_variables(parameter: str) -> tuple[Variable, ...]:
 
 
 def _has(name: str) -> IncreaseRule:
-    """Increase of the maximum length of a list whose number of items is the variable `name`.
+    """Rule for the maximum length of a list; the variable `name` is the number of its items.
 
-    A stored list that is not full has all items already.
+    A stored list that is not full already has all items.
     """
     return IncreaseRule(lambda records, before: records[name] < before)
 

@@ -1,4 +1,4 @@
-"""Properties of the rods of a resolved config that decide on the variables of its result file."""
+"""Properties of the rods of a resolved config on which the variables of its result file depend."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -27,7 +27,9 @@ def estimates_counts(config: Mapping[str, Any]) -> bool:
 
 
 def has_covering(config: Mapping[str, Any]) -> bool:
-    """Whether a covering proves the list of crossings: if all rods are uniform and of linear material."""
+    """Whether all rods are uniform and of linear material. Only then can a covering prove that the list of
+    crossings is complete.
+    """
     return is_linear(config) and not estimates_counts(config)
 
 

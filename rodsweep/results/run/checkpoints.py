@@ -1,4 +1,5 @@
-"""Checkpoints of unfinished work in the journal directory: solver states of chains, results of units.
+"""Checkpoints of unfinished work in the journal directory: solver states of chains, and results of units
+(work items for variables that depend on all points).
 
 Each checkpoint is a small file, replaced as a whole and recognised by fingerprint and checksum. A damaged
 file, or a file of another run, is ignored: the chain starts again, the unit is solved again.
@@ -39,7 +40,9 @@ class HasArrays(Protocol):
 
 
 class KeptArrays:
-    """Store of sets of named arrays, a file for each number, in the journal directory of a run."""
+    """Store of sets of named arrays in the journal directory of a run, with one file per set. A set is
+    identified by a number.
+    """
 
     pattern: ClassVar[str]
 
@@ -76,7 +79,7 @@ class KeptArrays:
 
 
 class Checkpoints(KeptArrays):
-    """Store of the last solved point, and the solver state after this point, of each unfinished chain."""
+    """Store with the last solved point of each unfinished chain, and the solver state after this point."""
 
     pattern = CHECKPOINTS
 
@@ -105,7 +108,7 @@ class Checkpoints(KeptArrays):
 
 
 class UnitResults(KeptArrays):
-    """Store of the results of finished units, in runs whose points are computed from all units together."""
+    """Store of the results of finished units, until the variables that depend on all units are computed."""
 
     pattern = UNIT_RESULTS
 
