@@ -183,8 +183,8 @@ class Arm(SlenderArm):
         if not self.si.height > self.si.width:
             return ""
         return (
-            "the arm moves in the plane of its height, but it flutters first in the plane of its width, at a "
-            "lower load; arm.turned moves in that plane"
+            "the arm moves in the plane of its height, but flutters first in the plane of its width, at a "
+            "lower load; arm.turned moves in the plane of the width"
         )
 
     @property

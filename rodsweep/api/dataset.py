@@ -132,7 +132,7 @@ def view_of_dataset(data: xr.Dataset, path: Path) -> View:
         flags = dict(zip(map(int, np.atleast_1d(status.attrs["flag_values"])), words, strict=True))
     except (LookupError, ValueError, TypeError):
         raise InputError(
-            "the data are not a complete rodsweep result: its variables and attributes are needed"
+            "the data are not a complete rodsweep result: all variables and attributes are needed"
         ) from None
     points = layout.dimensions(is_list="point" in data.dims)
     for variable in layout.variables:

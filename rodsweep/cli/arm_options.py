@@ -11,7 +11,7 @@ from ..model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAME
 
 HELP_REMARKS = {
     "length": ", by default the sum of the segments",
-    "young": ", and of segments without one",
+    "young": ", and of segments without a modulus",
     "radius": "; or give --width and --height, or --segment",
     "pressure": ", also '1.2 of flutter'; or --force; or no load",
     "fluid_density": ", for the Reynolds number; by default 1000 kg/m^3",

@@ -15,8 +15,8 @@ LINE_STYLES = {"headline": "bold", "warning": "yellow"}
 def describe_arm(given: dict[str, str | None], poisson: float, segments: tuple[str, ...]) -> None:
     """Prints the report on an arm.
 
-    given: values of the options by name of the quantity or law, None if not given. Raises InputError in terms
-    of the options.
+    given: values of the options by name of the quantity or law, None if not given. poisson, segments: as in
+    `SlenderArm`. Raises InputError, whose message names the options.
     """
     from ..model.arm.arm import SlenderArm
     from ..verdict.arm import arm_report

@@ -66,7 +66,7 @@ def _arm_lines(job: Job) -> list[str]:
         *plane_lines({variable.name: np.asarray(values) for variable, values in job.quantities}),
         f"the arm as a rod: {', '.join(made)} s",
         *_uncovered_lines(job.points),
-        f"{validity}; the run also judges inertia, from the frequency at which the arm moves",
+        f"{validity}; the run also tests inertia, by the frequency of the arm's motion",
     ]
 
 

@@ -21,7 +21,7 @@ def result_file(path: Path) -> Path:
 
 
 def with_ending(file: Path, ending: str) -> Path:
-    """Path of `file` with a different ending, in the same folder; InputError for a directory."""
+    """Path of `file` with its suffix replaced by `ending`; InputError for a directory."""
     if file.is_dir():
         raise InputError(f"{file} is a directory; name a file")
     return file.with_name(file.stem + ending)

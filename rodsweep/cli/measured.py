@@ -1,5 +1,5 @@
 """The command `rodsweep` as started by `rodsweep bench sweep`: records each rank's peak memory, and can
-replace all solves.
+replace all solves by stored random outcomes.
 
     python -m rodsweep.cli.measured DIRECTORY KIND WORDS...
 
@@ -80,8 +80,8 @@ def record_memory(directory: Path) -> None:
 def peak_memory() -> int:
     """Peak memory of this process in bytes.
 
-    `getrusage` would include the peak of the parent process, because the value survives exec. It is used only
-    if /proc is missing.
+    `getrusage` would include the peak of the parent process, because the value survives exec. `getrusage` is
+    used only if /proc is missing.
     """
     try:
         lines = Path("/proc/self/status").read_text().splitlines()

@@ -89,7 +89,7 @@ class Axes(LinearAxes):
 
     @property
     def over(self) -> tuple[str, ...]:
-        """Names of the axes of a grid over an arm's quantities; empty if the points are not such a grid."""
+        """Names of the axes of a grid over an arm's quantities; empty for a grid of parameters or a list."""
         if self.arm is None:
             return ()
         given = self.arm.given | self.given_axes

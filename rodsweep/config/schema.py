@@ -62,7 +62,7 @@ class Config(StrictSection):
 
     @property
     def stated_build(self) -> Build | None:
-        """Constitutive law and profile in the section `material`; None without such a section."""
+        """Constitutive law and profile in the section `material`; None if the section is not given."""
         return None if self.material is None else self.material.build
 
     @property

@@ -21,7 +21,7 @@ class StrictSection(BaseModel):
 
 
 def as_number(value: Any) -> float:
-    """Float from a YAML number or the words inf and -inf; ValueError, with a sentence, for other values."""
+    """Float from a YAML number or the texts inf and -inf; ValueError for other values."""
     if isinstance(value, str) and value.strip().lower() in ("inf", "+inf", "-inf"):
         return float(value)
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -89,7 +89,7 @@ Number = Annotated[
 ]
 """Type of a number in a config: a float. JSON stores infinite numbers as text."""
 NUMBER_SCHEMA: dict[str, Any] = {"anyOf": [{"type": "number"}, {"enum": ["inf", "+inf", "-inf"]}]}
-"""JSON schema of one value on an axis: a number or a word for infinity."""
+"""JSON schema of one value on an axis: a number, or a text for infinity."""
 AXIS_SCHEMA: dict[str, Any] = {
     "description": "a number, a list in increasing order, or a range",
     "anyOf": [

@@ -105,9 +105,9 @@ class FirstRankClaims:
         return sum(place.share or 0.0 for place in list(self.places.values()))
 
     def between_points(self) -> None:
-        """Answers requests of other ranks; the first rank calls it between two points.
+        """Answers requests of other ranks; called on the first rank between two points.
 
-        During a long point the thread answers. The thread alone would not be enough: a solve inside PETSc
+        During a long point the thread answers. The thread is not sufficient, because a solve inside PETSc
         holds Python's global interpreter lock, and the thread might rarely get the lock.
         """
         if self.thread is not None:
@@ -150,9 +150,10 @@ class FirstRankClaims:
             self.places[rank] = comm.recv(source=rank, tag=PROGRESS_TAG)
 
     def _hear(self, rank: int, report: RankReport) -> None:
-        """Handles the report of a rank: answers a request in advance at once, and queues any other request.
+        """Handles the report of a rank.
 
-        A rank whose request was answered in advance has its next chunk already, and is not queued.
+        A request made in advance (`report.ahead`) is answered immediately if enough units are left. Any other
+        request is queued, unless the rank already has its next chunk from a request made in advance.
         """
         if report.ahead:
             if (chunk := self.handout.take_ahead(rank)) is not None:

@@ -54,8 +54,8 @@ ARM_SEARCH_MS = 200.0
 half take 40 ms and a few soft arms 2000 ms."""
 CURVES_OF_ARMS_SECONDS = 4.5
 """Time of the stability boundaries in a phase diagram of arms that are not uniform, with about 100 boundary
-points in all: 3.3, 4.6 and 5.3 s for cones, rubber and rubber segments. The time hardly depends on the number
-of rows."""
+points, in s: 3.3, 4.6 and 5.3 were measured for cones, rubber and rubber segments. The time hardly depends on
+the number of rows."""
 CRITICALITY_OF_ARMS_SECONDS = 2.5
 """Time of the normal forms along the Hopf curves of a phase diagram of arms that are not uniform: 0.7 to 3.8
 s for about 50 points."""

@@ -70,9 +70,9 @@ class Handout:
         self.held: Counter[int] = Counter()
         """Number of chunks that a rank has received but not reported on, by rank."""
         self.points = 0
-        """Number of points that all ranks have reported as stored."""
+        """Total number of points that the ranks have reported as stored."""
         self.pace: dict[int, float] = {}
-        """Latest time per unit of work, in s, by rank."""
+        """Latest time per unit, in s, by rank."""
         self.stopped = False
         self.change = threading.Condition()
 

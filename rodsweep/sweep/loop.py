@@ -38,7 +38,7 @@ class ProgressSink(Protocol):
         """Shows `done`, the number of points that all ranks have finished."""
 
     def place(self, words: str, begun: float) -> None:
-        """Shows the progress of a long point in words.
+        """Shows the text `words` on the progress of a long point.
 
         begun: sum of the fractions done of all unfinished points.
         """

@@ -77,7 +77,7 @@ class ProgressReporter:
         self._show()
 
     def place(self, words: str, begun: float = 0.0) -> None:
-        """Shows the progress of a long point in words, if an update is due.
+        """Shows the text `words` on the progress of a long point, if an update is due.
 
         begun: sum of the fractions done of all unfinished points.
         """

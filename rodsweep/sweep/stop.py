@@ -104,11 +104,11 @@ class RankListener:
     """Receives the solvers' reports on a rank: polls messages, forwards progress, ends a solve on a stop
     request.
 
-    Every unit of work gets a new listener.
+    A new listener is created for every unit.
     """
 
     def __init__(self, claims: Claims, stop: StopRequest, name: Callable[[], str] = str):
-        """name: returns a description of the unit in words."""
+        """name: function that returns a description of the unit."""
         self.claims = claims
         self.stop = stop
         self.name = name

@@ -97,8 +97,8 @@ class Team:
         """Context in which an exception on any rank aborts all ranks, with the rank's message and exit
         status.
 
-        Without the abort all other ranks would wait forever. An exception propagates without abort if there
-        is a single rank, or if all ranks raise the same refusal.
+        Otherwise all other ranks would wait forever. An exception propagates without abort if there is a
+        single rank, or if all ranks raise the same refusal.
         """
         try:
             yield

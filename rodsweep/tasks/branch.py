@@ -42,7 +42,7 @@ class BranchTask(NonlinearTask):
             ("unstable cycles", True, "with all their Floquet multipliers"),
             ("branches without mirror symmetry", True, "from the symmetry breakings on those branches"),
             ("branches of twice the period, tori", False, "only the points where they begin are found"),
-            ("cycles on other branches", False, "task: limit_cycle finds stable ones from a motion"),
+            ("cycles on other branches", False, "task: limit_cycle finds stable cycles from a motion"),
         ]
 
     def searched(self) -> dict[str, np.ndarray]:

@@ -52,15 +52,15 @@ def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
         record = solver.record(0, solver.solve(0))
     except EnvironmentIncomplete as lack:
         raise InputError(
-            f"{view.path} holds no shapes of cycles, and none can be solved here: {lack}; run with "
+            f"{view.path} has no shapes of cycles, and the cycles cannot be solved here: {lack}; run with "
             "limit_cycle.shapes > 0, which stores them"
         ) from None
     stored, error = (float(view.variables[name].ravel()[number - 1]) for name in ("period", "period_error"))
     allowed = MAX_PERIOD_DIFFERENCE * stored * (error + float(record["period_error"]))
     if not abs(float(record["period"]) - stored) <= allowed:
         raise InputError(
-            f"{view.path} holds no shapes of cycles, and point {number}, solved without its neighbour, ends "
-            "in another state than the stored one; run with limit_cycle.shapes > 0 to store shapes"
+            f"{view.path} has no shapes of cycles, and point {number}, solved without its neighbour, ends "
+            "in a state that differs from the stored state; run with limit_cycle.shapes > 0 to store shapes"
         )
     return job, record
 

@@ -59,7 +59,9 @@ class LimitCycleTask(Task):
 
     @property
     def chains(self) -> Chains | None:
-        """Chains of points, each started from the cycle of the previous point; None without chains."""
+        """Chains of points, each started from the cycle of the previous point; None if there are no
+        chains.
+        """
         options = self.config.limit_cycle
         if options.start != "neighbour":
             return None
@@ -219,7 +221,9 @@ class LimitCycleTask(Task):
 
 
 class _StoredMultipliers(NamedTuple):
-    """The stored Floquet multipliers of a cycle, (STORED_MULTIPLIERS,), NaN if none were computed."""
+    """The stored Floquet multipliers of a cycle, (STORED_MULTIPLIERS,); NaN if no multipliers were
+    computed.
+    """
 
     multipliers: Complex
 

@@ -129,7 +129,7 @@ def crushing_clause(config: Config) -> str:
 
 
 def points_text(points: Points) -> str:
-    """The number of points and the shape of their grid in words: "50 points (5 x 10)"."""
+    """Text with the number of points and the shape of their grid: "50 points (5 x 10)"."""
     shape = " x ".join(str(n) for n in points.shape) if points.axes else "a list"
     if points.over:
         shape = f"{shape}: {' x '.join(points.over)}"
@@ -137,7 +137,9 @@ def points_text(points: Points) -> str:
 
 
 def points_clause(points: Points, clause: str) -> str:
-    """The number of points with a clause on each point: "50 points (a list), each searched from ..."."""
+    """Text with the number of points and a clause on each point: "50 points (a list), each searched from
+    ...".
+    """
     return f"{points_text(points)}, {'each ' * (points.count > 1)}{clause}"
 
 
@@ -187,11 +189,11 @@ def arms_line(
         return arms
     count = counted(mesh.elements, "element")
     several = any(len(np.unique(c)) > 1 for c in columns.values())
-    return f"{arms}; at first {count} of order {mesh.order}{', for the arm that needs most' * several}"
+    return f"{arms}; at first {count} of order {mesh.order}{', for the finest mesh' * several}"
 
 
 def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
-    """Tapers and profiles of the arms, in words; empty for uniform arms."""
+    """Texts on the tapers and the profile of the arms; empty for uniform arms."""
     tapers = columns.get("taper", np.ones(1))
     ratios = "a cone of radius ratio" if len(np.unique(tapers)) == 1 else "cones of radius ratios"
     ends = " to ".join(f"{end:g}" for end in np.unique([tapers.min(), tapers.max()]))
@@ -214,7 +216,7 @@ def _profile(config: Config, profile: Profile) -> str:
 
 
 def _law(config: Config) -> str:
-    """The constitutive law in words."""
+    """Text describing the constitutive law and the cross-section."""
     law = "linear material" if config.build.law == "linear" else "neo-Hookean rubber"
     return f"{law} with a swelling section" if config.build.section == "swelling" else law
 

@@ -60,8 +60,8 @@ class SpectrumTask(ProvedTask):
         return stretches_along_longest_axis(self.points.shape, self.points.moved)
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Material coordinates u of the nodes of eigenvectors, (nodes,), by dimension; empty without
-        vectors.
+        """Material coordinates u of the nodes of eigenvectors, (nodes,), by name of the dimension; empty if
+        no eigenvectors are requested.
         """
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 

@@ -113,7 +113,7 @@ class SolvedShapes:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A figure. Notebooks display it; `save` writes a file in any format of `rodsweep plot`.
+    """A figure. Notebooks display the figure; `save` writes a file in any format of `rodsweep plot`.
 
     `figure()` returns the matplotlib figure, for adding data to its panels.
     """

@@ -48,8 +48,8 @@ class JointWork:
         note: UnitNote,
         stop: StopRequest,
     ):
-        """together: computes the variables. output: the result file. note: function called with every
-        unforeseen exception; the half curve then stays empty.
+        """together: computes the variables. output: the result file. fingerprint: of config and points. note:
+        function called with every unforeseen exception; the half curve then stays empty.
         """
         self.team = team
         self.together = together

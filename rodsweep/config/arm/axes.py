@@ -1,8 +1,8 @@
 """Parameters of the rod that each quantity of an arm changes, and the axes of a sweep's grid.
 
 An axis of the load is an axis of F, an axis of Poisson's ratio is an axis of k2, and a grid of both is still
-a grid of parameters. Any other quantity changes several parameters at once, or none. With an axis of such a
-quantity, or with a load relative to flutter, the points form a grid over the arm's quantities, and the
+a grid of parameters. Any other quantity changes several parameters at once, or no parameter. With an axis of
+such a quantity, or with a load relative to flutter, the points form a grid over the arm's quantities, and the
 parameters are computed point by point. A phase diagram always needs a grid of parameters, in which the drag
 estimates are the values of an axis of gamma3.
 """

@@ -94,7 +94,7 @@ class ArmSection(StrictSection):
 
     @property
     def material(self) -> dict[str, Any]:
-        """Values of those of the keys segments, law and section that are given, by key."""
+        """Values of the given keys among segments, law and section, by key."""
         return {name: getattr(self, name) for name in OF_MATERIAL if getattr(self, name) is not None}
 
     @property
@@ -111,12 +111,12 @@ class ArmSection(StrictSection):
 
     @property
     def load_axis(self) -> str | None:
-        """Key of the load that is given, absolute or relative to flutter; None without a load."""
+        """Key of the given load, absolute or relative to flutter; None if no load is given."""
         return next((name for name in LOAD_AXES if getattr(self, name) is not None), None)
 
     @property
     def load(self) -> str | None:
-        """Name of the load, "pressure" or "force", whether absolute or relative; None without a load."""
+        """Name of the given load, "pressure" or "force", absolute or relative; None if no load is given."""
         return RELATIVE.get(str(self.load_axis), self.load_axis)
 
     @property
@@ -137,7 +137,7 @@ class ArmSection(StrictSection):
 
     @property
     def is_grid(self) -> bool:
-        """Whether every axis changes exactly one parameter: the points then form a grid of parameters."""
+        """Whether the points form a grid of parameters, that is, every axis changes exactly one parameter."""
         return all(name in AXIS_OF for name in self.several)
 
     @property

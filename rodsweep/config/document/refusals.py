@@ -93,7 +93,9 @@ def _slips(key: str, name: str) -> float | None:
 
 
 def _edits(a: str, b: str) -> int:
-    """Edit distance of two words: insertions, deletions, changes and exchanges of neighbouring letters."""
+    """Edit distance of the words a and b: number of inserted, deleted, changed and exchanged neighbouring
+    letters.
+    """
     rows = [list(range(len(b) + 1))]
     for i, letter in enumerate(a, 1):
         row = [i]

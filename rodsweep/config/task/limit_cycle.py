@@ -64,7 +64,8 @@ class LimitCycleConfig(Config):
     def along(self) -> str:
         """Parameter along which the cycle of a point is the initial guess for the next point.
 
-        By default the parameter with the most values, the first one of several.
+        By default the parameter with the most values; the first parameter if several have equally many
+        values.
         """
         sizes = self.parameters.alone
         given = self.limit_cycle.along

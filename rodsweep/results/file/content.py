@@ -37,7 +37,8 @@ BYTES_A_READ = 1 << 18
 XARRAY_FILL_ATTRIBUTE = ("_FillValue", "[nan]")
 """(name, value as text) of an attribute that xarray adds when it writes a file, and that has no effect."""
 Digests = dict[str, dict[str, str]]
-"""Digests by name of the attribute or variable, under the keys `attributes` and `variables`."""
+"""Digest of every attribute and variable by name, in one dict with the key `attributes` and one dict with the
+key `variables`."""
 
 
 def is_users(name: str) -> bool:

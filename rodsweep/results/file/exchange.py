@@ -19,7 +19,8 @@ LOCK_PATIENCE = 5.0
 """Seconds to wait for the lock before InputError is raised, because ranks of a killed launcher end a moment
 later."""
 Identity = tuple[int, ...]
-"""(device, inode, size, time of change): changes when a file is replaced or written; empty without a file."""
+"""(device, inode, size, time of change): changes when a file is replaced or written; empty if there is no
+file."""
 
 
 def identity(path: Path) -> Identity:

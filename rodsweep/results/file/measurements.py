@@ -15,7 +15,8 @@ UNITS = {"seconds": "s", "error": "1"}
 
 
 def write_measurements(path: Path, tables: Mapping[str, Table], attributes: Mapping[str, str]) -> None:
-    """Writes the table of every benchmark study to `path`, as /STUDY/COLUMN, (measurement,) each.
+    """Writes the table of every benchmark study to `path`, as /STUDY/COLUMN, (measurement,) each, and
+    `attributes` as attributes of the file.
 
     Raises EnvironmentIncomplete if writing fails.
     """

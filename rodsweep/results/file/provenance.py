@@ -31,7 +31,7 @@ NUMBER = re.compile(r"\d[\d.]*(?:e[+-]?\d+)?")
 """Matches a number in a message. Messages that differ only in numbers are treated as the same reason of
 failure."""
 MAX_FAILURE_REASONS = 20
-"""Maximum number of reasons of failure in a file; further reasons are dropped."""
+"""Maximum number of reasons of failure in a file; additional reasons are dropped."""
 KERNEL_NOT_RECORDED = "unknown"
 """Name of the BLAS kernel of points from an earlier version, which did not record kernels."""
 

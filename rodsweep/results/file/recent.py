@@ -32,9 +32,9 @@ def read_unfolded(path: Path, read: Callable[[], Found]) -> Found:
     """Result of the function `read`, which reads a file and its journals, and is called again if the file was
     replaced meanwhile.
 
-    A run that moves journalled points into the file replaces the file before it deletes the journals. No
-    journal was deleted if the file is the same before and after the reading. Raises EnvironmentIncomplete if
-    the file keeps changing.
+    A run that moves journalled points into the file replaces the file before the journals are deleted. If the
+    file is unchanged after the reading, no journal was deleted meanwhile. Raises EnvironmentIncomplete if the
+    file keeps changing.
     """
     for _ in range(MAX_REREADS):
         has_journals = journal_directory(path).is_dir()
@@ -71,7 +71,9 @@ def journalled_reasons(header: ResultHeader) -> dict[str, str]:
 
 
 def insert_records(values: np.ndarray, name: str, records: np.ndarray) -> None:
-    """Copies the variable `name` of records, (n,), into `values`, its array over all points, in place."""
+    """Copies the variable `name` of records, (n,), into `values`, the array of this variable at all points,
+    in place.
+    """
     values.reshape(-1, *records[name].shape[1:])[records["index"]] = records[name]
 
 

@@ -1,10 +1,9 @@
 """Result file of a run: created with all variables at the start, replaced as a whole when points are added.
 
 The file is netCDF-4-compatible HDF5, is only ever replaced by a rename, and can be opened at any time. Ranks
-write finished points to journals beside the file (`rodsweep.results.run.journal`). Journals are folded into
-the file, that is, their points are added to the file, at the end of a run, or at the start of the next run
-after a kill. A journal is recognised by its fingerprint, even without a file; journals of other points are
-moved away, never deleted.
+write finished points to journals beside the file (`rodsweep.results.run.journal`). The points of journals are
+folded into (added to) the file at the end of a run, or at the start of the next run after a kill. A journal
+is recognised by its fingerprint, even without a file; journals of other points are moved away, never deleted.
 """
 
 import json
@@ -68,7 +67,7 @@ class Store:
                 raise
 
     def _open(self, fresh: bool, extend: bool) -> None:
-        """Creates, continues or extends the file, or raises InputError; moves other points' journals away."""
+        """Creates, continues or extends the file; moves other journals away. May raise InputError."""
         if fresh or not self.path.exists():
             self._create(fresh)
         else:
@@ -130,7 +129,7 @@ class Store:
         return copy
 
     def _set_aside(self, paths: Sequence[Path], what: str) -> None:
-        """Moves files out of the journal directory, and notes for the user where the files, `what`, are."""
+        """Moves `paths` out of the journal directory, and notes the new place. what: noun for the files."""
         if paths:
             self.notes.append(f"{what} are kept in {set_aside(self.journals, paths)}")
 

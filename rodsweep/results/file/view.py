@@ -94,7 +94,7 @@ class View:
 
     @property
     def quantities(self) -> dict[str, np.ndarray]:
-        """Quantities of an arm in SI units by name; empty without an arm.
+        """Quantities of an arm in SI units by name; empty if the file has no arm.
 
         The shape of a quantity is (); (n,) along a parameter or the dimension `point`; or (...,) along axes
         of a grid over quantities.
@@ -127,17 +127,17 @@ class View:
 
     @property
     def outcomes(self) -> NDArray[np.str_]:
-        """Status word of every point, (points,)."""
+        """Name of the status of every point, (points,)."""
         return np.array([self.flags.get(int(s), "missing") for s in self.variables["status"].ravel()])
 
     def with_status(self, *words: str) -> NDArray[np.bool_]:
-        """Mask of the points whose status is one of `words`, of the shape of `status`."""
+        """Mask of the points whose status has one of the names `words`, with the shape of `status`."""
         values = [value for value, word in self.flags.items() if word in words]
         return np.isin(self.variables["status"], values)
 
     @property
     def sentences(self) -> dict[str, str]:
-        """Meaning of every status as a sentence, by status word."""
+        """Meaning of every status as a sentence, by name of the status."""
         return sentences_in(self.attributes)
 
     def by_point(self, name: str) -> np.ndarray:
@@ -165,7 +165,7 @@ class View:
 
 
 def sentences_in(attributes: Mapping[str, Any]) -> dict[str, str]:
-    """Meaning of every status as a sentence, by status word, from the attributes of a file."""
+    """Meaning of every status as a sentence, by name of the status, from the attributes of a file."""
     lines = str(attributes.get("status_sentences", "")).splitlines()
     return dict(line.split(": ", 1) for line in lines if ": " in line)
 

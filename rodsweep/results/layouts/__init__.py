@@ -48,7 +48,7 @@ def layout_of(config: dict[str, Any]) -> Layout:
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of a file that belong to all points together, for a resolved config.
 
-    is_grid: whether the points are a grid. `extra` of such a variable has all its dimensions.
+    is_grid: whether the points are a grid. `extra` of these variables has all their dimensions.
     """
     found = BESIDE_POINTS.get(config["task"])
     return found(config, is_grid) if found else ()

@@ -178,7 +178,7 @@ def over_of(config: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def quantities_of(parameters: Axes, points: Points) -> tuple[Filled, ...]:
-    """(variable, values) of each quantity and unit of a config's arm; empty without an arm.
+    """(variable, values) of each quantity and unit of a config's arm; empty if the config has no arm.
 
     For a grid over the arm's quantities the axes come first, and every parameter is included, along the grid.
     """
@@ -214,7 +214,7 @@ def _filled(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]
 
 
 def at_points(quantities: Iterable[Filled], points: Points) -> dict[str, NDArray[Any]]:
-    """Values of an arm's quantities by name; in a grid over quantities at every point, (points,)."""
+    """Values of an arm's quantities by name; for a grid over quantities, at every point, (points,)."""
     if not points.over:
         return {variable.name: values for variable, values in quantities}
     dimensions = tuple(points.over)

@@ -34,9 +34,10 @@ SPECIAL_MEANINGS = {
 }
 """Meaning of every kind of special point, by word; the file stores the position in this table."""
 SPECIAL_KINDS = tuple(SPECIAL_MEANINGS)
-"""Words for the kinds of special points, in the order of their stored numbers."""
+"""Names of the kinds of special points, in the order of their stored numbers."""
 END_REASONS = ("none", "range_end", "crushed", "no_cycle_found", "list_full")
-"""Words for the reasons why a branch ends, at a special point of the kind `end`, in the stored order."""
+"""Names of the reasons why a branch ends at a special point of the kind `end`, in the order of their stored
+numbers."""
 ERRORS = (
     ("period_error", "the relative error of period"),
     ("amplitude_error", "the relative error of tip_y_max"),

@@ -42,7 +42,8 @@ def is_linear(config: Mapping[str, Any]) -> bool:
 def with_certified_meaning(
     variables: tuple[Variable, ...], config: Mapping[str, Any], noun: str
 ) -> tuple[Variable, ...]:
-    """The variables; without a covering, `certified` gets a long name for lists confirmed by counts only.
+    """The variables. If the config has no covering, `certified` has a long name that describes confirmation
+    by counts only.
 
     noun: name of the listed items, such as "Hopf points".
     """
@@ -56,5 +57,5 @@ def with_certified_meaning(
 
 
 def with_meaning(variables: tuple[Variable, ...], name: str, meaning: str) -> tuple[Variable, ...]:
-    """The variables, with another long name for the variable `name`."""
+    """The variables, with the long name `meaning` for the variable `name`."""
     return tuple(replace(v, long_name=meaning) if v.name == name else v for v in variables)

@@ -62,8 +62,8 @@ class Variable:
     long_name: str
     extra: tuple[str, ...] = ()
     flags: tuple[tuple[int, str], ...] = ()
-    """(stored number, word) pairs of a variable that stands for words; those of `status` come from the
-    solver."""
+    """(stored number, name) pairs of a variable whose numbers stand for names; the pairs of `status` come
+    from the solver."""
     typed: str = ""
     """Unit in which the user typed the quantity, or empty; the stored values are in `units`."""
 
@@ -163,7 +163,7 @@ def _field(name: str, outcomes: Sequence[Any]) -> Any:
 def listed(
     variables: Iterable[Variable], rows: Sequence[Mapping[str, Any]], room: int | None = None
 ) -> dict[str, list[Any]]:
-    """List of the values of each variable, by name, from rows with the values of one item by name.
+    """List of the values of each variable, by name. rows: for each item, the values of all variables by name.
 
     room: length of the lists, which are cut or padded with fill values; None for the number of rows.
     """

@@ -36,7 +36,7 @@ class HasArrays(Protocol):
     """Solver state of a chain, which can be written as arrays."""
 
     def arrays(self) -> Arrays:
-        """The whole solver state as arrays of any shape, (...,), by name."""
+        """The complete solver state as arrays of any shape, (...,), by name."""
 
 
 class KeptArrays:
@@ -63,7 +63,7 @@ class KeptArrays:
         os.replace(copy, path)
 
     def get(self, number: int) -> Arrays | None:
-        """Arrays stored under `number`, by name; None without an intact file of this run."""
+        """Arrays stored under `number`, by name; None if there is no intact file of this run."""
         if not self._path(number).is_file():
             return None
         data = self._path(number).read_bytes()
@@ -94,7 +94,7 @@ class Checkpoints(KeptArrays):
         self.put(chain, {"index": np.array(index)} | {STATE + name: part for name, part in parts.items()})
 
     def read(self, chain: int) -> tuple[int, HasArrays | None] | None:
-        """(flat index, solver state) of a chain's last checkpoint; None without an intact checkpoint."""
+        """(flat index, solver state) of a chain's last checkpoint; None if there is no intact checkpoint."""
         arrays = self.get(chain)
         if arrays is None:
             return None

@@ -146,7 +146,9 @@ def other_journals(directory: Path, fingerprint: str) -> list[Path]:
 
 
 def set_aside(directory: Path, paths: Iterable[Path]) -> Path:
-    """Moves files from a journal directory into a new directory beside it; returns the new directory."""
+    """Moves the files `paths` from the journal directory into a new directory next to the journal directory;
+    returns the new directory.
+    """
     number = 1
     while os.path.lexists(kept := directory.with_name(f"{directory.name}-{number}")):
         number += 1
@@ -234,7 +236,9 @@ def _rows(path: Path, layout: Layout, fingerprint: str) -> Iterator[np.ndarray]:
 
 
 def _is_whole(rows: np.ndarray) -> np.ndarray:
-    """Whether each row of bytes, (records, bytes), has its own checksum, (records,)."""
+    """Whether the checksum at the end of each record is correct, (records,). rows: records as bytes,
+    (records, bytes).
+    """
     sums = np.ascontiguousarray(rows[:, -CHECKSUM_BYTES:]).view("<u4").ravel()
     own = np.array([zlib.crc32(row[:-CHECKSUM_BYTES].data) for row in rows], dtype=np.uint32)
     whole: np.ndarray = own == sums

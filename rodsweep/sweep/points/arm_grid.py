@@ -126,7 +126,8 @@ def _force_of(
 def _with_flutter(coverage: Array, flutter: Array) -> Array:
     """Status codes `coverage`, with NO_FLUTTER and FLUTTER_UNKNOWN where a relative load has no value.
 
-    flutter: F at flutter; inf without flutter, nan if unknown. The shapes broadcast to (arms, loads, n).
+    flutter: F at flutter; inf if the arm does not flutter, nan if unknown. The shapes broadcast to (arms,
+    loads, n).
     """
     found = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
     codes: Array = np.where(coverage == SLENDER, found, coverage)

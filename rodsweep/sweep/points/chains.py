@@ -1,8 +1,8 @@
 """Chains: points of a grid along an axis, where the solve of each point starts from the solver state of the
 previous point.
 
-A rank solves a whole chain, point after point. The start state of the next point is stored after each point.
-A killed chain therefore resumes after the last point and gives the same numbers.
+A rank solves a complete chain, point after point. The start state of the next point is stored after each
+point. A killed chain therefore resumes after the last point and gives the same numbers.
 """
 
 import math
@@ -72,7 +72,9 @@ class Chains:
         return indices_along(self.shape, self.axis, chain, along if self.upward else along[::-1])
 
     def todo(self, missing: IndexSet) -> list[IndexRange]:
-        """Ranges of the numbers of those chains that have missing points."""
+        """Ranges of the numbers of the chains with missing points. missing: flat indices of missing
+        points.
+        """
         return merged_ranges((n, n + 1) for n in range(self.count) if missing[self.indices(n)].any())
 
 

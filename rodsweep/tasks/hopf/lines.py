@@ -1,6 +1,6 @@
 """Hopf points of the straight rod on lines through the points of a file, for figures and for `show`.
 
-The Hopf points depend on the config alone and are stored before any point is solved. Hence the file has the
+The Hopf points depend only on the config and are stored before any point is solved. Hence the file has the
 Hopf points of all its lines after a run, an extension or a merge.
 """
 

@@ -64,7 +64,7 @@ class Job:
 
     @property
     def quantities(self) -> tuple[Filled, ...]:
-        """Quantities of the config's arm as coordinates of the points; empty without an arm."""
+        """Quantities of the config's arm as coordinates of the points; empty if the config has no arm."""
         return quantities_of(self.config.parameters, self.points)
 
     def solver(self) -> Solver:

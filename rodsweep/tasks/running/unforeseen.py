@@ -73,7 +73,9 @@ class _Guard:
     def _outcome(
         self, index: int, start: State, solve: Callable[[], tuple[Any, State]]
     ) -> tuple[RecordedOutcome, State]:
-        """(outcome, state for the next point) of a point whose solve or record may raise an exception."""
+        """Returns (outcome, initial state for the next point) of a point. An unforeseen exception of the
+        solve or the record gives a failed outcome and no state.
+        """
         began = time.perf_counter()
         try:
             found, state = solve()
@@ -86,7 +88,9 @@ class _Guard:
             return self._failed(error, time.perf_counter() - began), None
 
     def _failed(self, error: Exception, seconds: float) -> RecordedOutcome:
-        """Outcome of a failed point, with the fill value of every variable."""
+        """Outcome of a failed point, with the fill value of every variable. seconds: time spent on the
+        point.
+        """
         status = next(status for status in self.inner.statuses if status.name == FAILED_STATUS)
         values = {SECONDS.name: seconds, STATUS.name: int(status)}
         return RecordedOutcome(status, describe_unforeseen(error), self.layout.empty_point | values)
@@ -125,12 +129,14 @@ def describe_unforeseen(error: Exception) -> str:
 
 
 def log_file(output: Path) -> Path:
-    """Path of the log with the tracebacks of failed points, beside the result file `output`."""
+    """Path of the log with the tracebacks of failed points, in the folder of the result file `output`."""
     return output.with_name(output.name + ".log")
 
 
 class TracebackLog:
-    """Log of unforeseen exceptions: a file beside the result to which all ranks append tracebacks."""
+    """Log of unforeseen exceptions: a file in the folder of the result file, to which all ranks append
+    tracebacks.
+    """
 
     def __init__(self, output: Path, rank: int, where: Callable[[int], str], strict: bool = False):
         """output: the result file. where: function from the flat index of a point to a text with its

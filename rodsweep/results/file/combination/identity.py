@@ -1,4 +1,4 @@
-"""Comparison of configs: whether two configs request the same results, and their difference in words.
+"""Comparison of configs: whether two configs request the same results, and a text on their difference.
 
 Configs are compared by `Config.meaning`. The notation of an axis, the title, the name of a list of points,
 and unused options are not compared.

@@ -89,7 +89,8 @@ class JoinedFile:
     def _is_rounding(
         self, name: str, first: Any, second: Any, sources: tuple[ResultHeader, ResultHeader]
     ) -> bool:
-        """Whether two values of the variable `name` differ by rounding error only.
+        """Whether two values of the variable `name` differ only by rounding error. first, second: the values.
+        sources: headers of their files.
 
         Only results of different BLAS kernels, or of stretches solved with different points, may differ by
         rounding error.
