@@ -35,8 +35,8 @@ EXCLUSIVE_QUANTITIES = (
     (("segments",), (*SECTION_SIDES[0], *SECTION_SIDES[1])),
     (("inner_radius",), ("tip_radius",)),
 )
-"""Pairs of sets of quantities that exclude each other: `Arm.replace` with a quantity of one set removes all
-quantities of the other set."""
+"""Pairs of mutually exclusive sets of quantities. If `Arm.replace` is called with a quantity of one set, all
+quantities of the second set are removed."""
 
 
 @dataclass(frozen=True, kw_only=True, init=False, repr=False)
@@ -49,9 +49,9 @@ class Arm(SlenderArm):
     "linear" or "neo_hookean". section: "fixed" or "swelling". The load is pressure or force. `flutter` needs
     no load; "1.2 of flutter" is a load relative to the flutter threshold at the likeliest drag.
 
-    Every task of a rod is a method with the task's name and the options of the config as keywords. Its Answer
-    has SI units beside dimensionless ones. Calling a task starts PETSc; creating an arm does not. Raises
-    InputError if the quantities describe no slender arm.
+    Every task of a rod is a method with the task's name and the options of the config as keywords. The Answer
+    has variables in SI units and in dimensionless units. Calling a task starts PETSc; creating an arm does
+    not. Raises InputError if the quantities describe no slender arm.
     """
 
     __init__ = in_sentences(ARM_EXAMPLE)(SlenderArm.__init__)
@@ -75,8 +75,8 @@ class Arm(SlenderArm):
     def replace(self, **changed: Given | None) -> "Arm":
         """A copy of the arm with changed quantities.
 
-        A force replaces a pressure; width and height replace a radius; segments replace radius, width, height
-        and length.
+        A new force removes the pressure; width and height remove the radius; segments remove radius, width,
+        height and length.
         """
         gone: dict[str, None] = {}
         for one, other in EXCLUSIVE_QUANTITIES:
@@ -89,7 +89,8 @@ class Arm(SlenderArm):
 
     @property
     def turned(self) -> "Arm":
-        """The arm that moves in the second plane of its rectangular section: width and height are exchanged.
+        """The arm with width and height exchanged, which moves in the second plane of its rectangular
+        section.
 
         A round arm is returned unchanged.
         """
@@ -144,8 +145,9 @@ class Arm(SlenderArm):
         """All results for the arm up to `F_max`, in a picture and a paragraph, in SI units.
 
         Thresholds, criticality, branches of cycles, loads with two stable states, modes at the thresholds,
-        and three cycles. The arm needs no load: a load only decides between pressures and forces. F_max:
-        largest load without dimension, in units of the arm's `load_scale`.
+        and three cycles. The arm needs no load; the kind of a given load, pressure or force, is used for all
+        loads in the portrait. F_max: largest dimensionless load, that is, the load divided by the arm's
+        `load_scale`.
         """
         from ..post.rod_portrait.results import DescribedRod
         from ..tasks.rod_portrait import PortraitRequest
@@ -181,8 +183,8 @@ class Arm(SlenderArm):
         if not self.si.height > self.si.width:
             return ""
         return (
-            "the arm moves in the plane of its height, but it flutters first in the plane of its width, at a "
-            "lower load; arm.turned moves in that plane"
+            "the arm moves in the plane of its height, but flutters first in the plane of its width, at a "
+            "lower load; arm.turned moves in the plane of the width"
         )
 
     @property
@@ -191,7 +193,7 @@ class Arm(SlenderArm):
 
     @property
     def _given(self) -> dict[str, Any]:
-        """The quantities given by the user, by name."""
+        """The quantities of the arm that are not None, by name."""
         return {name: getattr(self, name) for name in self._names if getattr(self, name) is not None}
 
     def __repr__(self) -> str:

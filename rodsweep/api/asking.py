@@ -25,17 +25,18 @@ from ..tasks.running.job import Job, job_of, machine_memory
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)
 """Class of an arm."""
 DEFAULT_VALUES = {"drag": DRAGS[0], "law": STANDARD.law, "section": STANDARD.section}
-"""Default values of keys of an arm; a config tree omits keys with these values."""
+"""Default values of drag, law and section. A key of an arm with its default value is not written into the
+config tree."""
 ConfigTree = dict[str, Any]
 """Config tree: keys and values as read from a YAML config."""
 
 
 def config_tree(task: str, keywords: Mapping[str, Any]) -> ConfigTree:
-    """Config tree of a task from keyword arguments: every key is put into the section to which it belongs.
+    """Config tree of a task from keyword arguments: every key is put into its section of the config.
 
-    A misspelt key is put into the section with the most similar key, so that validation names that key. A
-    whole section may be given as a mapping. Raises InputError for a masked value, and for a key that
-    resembles none.
+    A misspelt key is put into the section with the most similar key, so that validation suggests this key. A
+    complete section may be given as a mapping. Raises InputError for a masked value, and for a key that is
+    not similar to any known key.
     """
     tree: ConfigTree = {"task": plain_keyword("task", task)}
     if not isinstance(task, str) or task not in CONFIGS:
@@ -55,7 +56,9 @@ def config_tree(task: str, keywords: Mapping[str, Any]) -> ConfigTree:
 
 
 def _write_out_arm(task: str, tree: ConfigTree) -> None:
-    """Replaces an `rs.Arm` in the tree by its quantities; the load only if the task takes a load."""
+    """Replaces an `rs.Arm` in the tree by its quantities, in place. The load is included only if the task
+    takes a load.
+    """
     parameters = tree.get("parameters", {})
     arm = parameters.get("arm")
     if isinstance(arm, SlenderArm):
@@ -69,7 +72,9 @@ def _write_out_arm(task: str, tree: ConfigTree) -> None:
 
 
 def with_load_in_si(arm: ArmKind) -> ArmKind:
-    """The arm with its load in SI units. For a load relative to flutter, the flutter threshold is solved."""
+    """The arm with its load in SI units. For a load relative to flutter, the flutter threshold is computed
+    first.
+    """
     if arm.share_of_flutter is None:
         return arm
     from ..verdict.planes import with_known_load
@@ -116,15 +121,15 @@ def _sections(task: str) -> dict[str, Collection[str]]:
 
 
 def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str | None:
-    """Name of the section that has the key `name`; None if no section has it."""
+    """Name of the first section with the key `name`; None if no section has this key."""
     return next((section for section, known in sections.items() if name in known), None)
 
 
 def _meant(name: str, sections: Mapping[str, Collection[str]]) -> str:
     """The allowed key that is most similar to the unknown key `name`.
 
-    For a quantity of an arm, which belongs into another section, any allowed key is returned: validation then
-    names the right section. Raises InputError with a list of all keys if no key is similar.
+    For a quantity of an arm, whose section is not in `sections`, the first allowed key may be returned:
+    validation then names the right section. Raises InputError with a list of all keys if no key is similar.
     """
     known = [key for keys in sections.values() for key in keys]
     close = nearest(name, known)
@@ -191,7 +196,9 @@ def plain_value(value: Any) -> Any:
 
 
 def plain_keyword(key: str, value: Any) -> Any:
-    """The value of the keyword `key` in the types of a YAML config; InputError for a masked value."""
+    """`value` in the types of a YAML config; InputError for a masked value. key: name of the keyword, for the
+    message.
+    """
     try:
         return plain_value(value)
     except ValueError as error:
@@ -199,7 +206,9 @@ def plain_keyword(key: str, value: Any) -> Any:
 
 
 def _with_unit(value: Any, unit: str) -> Any:
-    """Text of a number with a unit, or list of such texts for a list; the value itself if `unit` is empty."""
+    """Text of a number with a unit; for a list, the list of these texts; the unchanged number if `unit` is
+    empty.
+    """
     if isinstance(value, list):
         return [_with_unit(item, unit) for item in value]
     return f"{value!r} {unit}" if unit else value

@@ -29,7 +29,8 @@ ENGINE = "h5netcdf"
 @one_at_a_time
 @in_sentences('rs.open("RESULT.h5")')
 def open_result(path: str | Path) -> xr.Dataset:
-    """Reads a whole result file into memory, including the points that a running sweep has solved so far.
+    """The Dataset of a complete result file, read into memory, including the points that a running sweep has
+    already solved.
 
     Raises InputError if the file is no result file, is damaged, or was changed by another program.
     """
@@ -65,8 +66,8 @@ def _opened(path: Path) -> xr.Dataset:
 
 
 def with_arm_selection(data: xr.Dataset) -> xr.Dataset:
-    """The Dataset with an index for every quantity of an arm along an axis, so that `sel` accepts the
-    quantity.
+    """The Dataset with an index for every quantity of an arm that varies along an axis, so that `sel` accepts
+    this quantity.
     """
     for name in STORED_ALONG:
         if name in data.coords and data[name].dims == (STORED_ALONG[name],) and name not in data.xindexes:
@@ -88,7 +89,9 @@ def in_layout_order(data: xr.Dataset, layout: Layout, config: dict[str, Any]) ->
 
 
 def _loaded(path: Path, header: ResultHeader) -> xr.Dataset:
-    """A whole result file as read by xarray; InputError if values or dimensions differ from its checksums."""
+    """The Dataset that xarray reads from a result file; InputError if values or dimensions differ from the
+    checksums in the file. header: header of the file.
+    """
     digests = json.loads(header.attributes[SEAL_ATTRIBUTE])["variables"]
     with reading(path):
         try:
@@ -104,7 +107,9 @@ def _loaded(path: Path, header: ResultHeader) -> xr.Dataset:
 
 
 def with_checksums(data: xr.Dataset) -> xr.Dataset:
-    """The Dataset with checksums as an attribute. By these, readers recognise a complete file of xarray."""
+    """The Dataset with the checksums of its variables and attributes as an attribute, by which readers verify
+    a file written by xarray.
+    """
     variables = {
         str(name): variable_digest(
             v.dtype, v.shape, map(str, v.dims), v.attrs, [np.ascontiguousarray(v.values)]
@@ -116,7 +121,7 @@ def with_checksums(data: xr.Dataset) -> xr.Dataset:
 
 
 def view_of_dataset(data: xr.Dataset, path: Path) -> View:
-    """A Dataset as the view that `show` and `plot` read; InputError if the Dataset is no complete result.
+    """View of a Dataset, which `show` and `plot` read; InputError if the Dataset is not a complete result.
 
     path: name of the result for messages.
     """
@@ -127,7 +132,7 @@ def view_of_dataset(data: xr.Dataset, path: Path) -> View:
         flags = dict(zip(map(int, np.atleast_1d(status.attrs["flag_values"])), words, strict=True))
     except (LookupError, ValueError, TypeError):
         raise InputError(
-            "the data are not a complete rodsweep result: its variables and attributes are needed"
+            "the data are not a complete rodsweep result: all variables and attributes are needed"
         ) from None
     points = layout.dimensions(is_list="point" in data.dims)
     for variable in layout.variables:

@@ -42,11 +42,12 @@ ARM_EXAMPLE = 'rs.Rod(arm=rs.Arm(length="10 cm", radius="5 mm", young="100 kPa",
 class SoftRod:
     """A slender soft rod in a viscous fluid with a follower force at its tip, in units of its length and k3.
 
-    F: follower force, k3/L^2; not needed for thresholds, criticality and branch, which find it. k1: stretch
-    stiffness, k2: shear stiffness, both k3/L^2, inf for a rigid rod. gamma3: rotational drag, gamma2 L^2.
-    gamma1: axial drag, gamma2, by default 1. arm: an `rs.Arm`, source of all parameters not given.
-    taper: tip radius over base radius of a cone, by default 1. law: "linear" or "neo_hookean". section:
-    "fixed" or "swelling". profile: factors along the arm, a CSV file or a mapping of columns to lists.
+    F: follower force, k3/L^2; not needed for thresholds, criticality and branch, which solve for F or vary F.
+    k1: stretch stiffness, k2: shear stiffness, both k3/L^2, inf for a rigid rod. gamma3: rotational drag,
+    gamma2 L^2. gamma1: axial drag, gamma2, by default 1. arm: an `rs.Arm`, source of all parameters not
+    given. taper: tip radius over base radius of a cone, by default 1. law: "linear" or "neo_hookean".
+    section: "fixed" or "swelling". profile: factors along the arm, a CSV file or a mapping of columns to
+    lists.
 
     Every task is a method with the task's name. It takes the options of the config as keywords, with the same
     defaults, and returns an `Answer`. Raises InputError, with the command line's message, for values outside
@@ -158,7 +159,7 @@ class SoftRod:
     if not TYPE_CHECKING:  # hidden from type checkers, which should report a misspelt task
 
         def __getattr__(self, name: str) -> Callable[..., Answer]:
-            """Method of a task without a method of its own in this class; AttributeError if there is none."""
+            """Method for a task that this class does not define; AttributeError if `name` is not a task."""
             if name not in CONFIGS:
                 known = [task for task, config in CONFIGS.items() if not config.of_several_rods]
                 raise AttributeError(f"a rod has no {name!r}; its tasks are {', '.join(known)}")
@@ -202,7 +203,9 @@ class SoftRod:
 
 
 def _material(given: Mapping[str, Any]) -> MaterialSection | None:
-    """The validated section `material` of a rod, None if no key is given; InputError for bad values."""
+    """The validated section `material` of a rod; None if all values in `given` are None. Raises InputError
+    for invalid values.
+    """
     tree = {
         name: plain_keyword(f"material.{name}", value) for name, value in given.items() if value is not None
     }

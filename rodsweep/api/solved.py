@@ -50,7 +50,7 @@ class StoredResult:
 
 @dataclass(frozen=True, kw_only=True)
 class SolvedPoints:
-    """Results of all points of a job. A pickle or a deep copy is a `StoredResult` with the Dataset."""
+    """Results of all points of a job. Pickling or deep copying gives a `StoredResult` with the Dataset."""
 
     job: Job
     plan: Plan = field(repr=False)
@@ -61,9 +61,9 @@ class SolvedPoints:
     filled: Sequence[Filled] = field(repr=False)
     """Variables of the file that do not belong to single points."""
     history: Mapping[str, Any]
-    """Attributes that say when, where and with which options the points were solved."""
+    """Attributes with the times, the host and the PETSc options of the solve."""
     messages: Sequence[str]
-    """Message of each point; "" for points of stretches, which are solved together."""
+    """Message of each point; "" for points solved together in segments of the sweep."""
 
     @cached_property
     def dataset(self) -> xr.Dataset:

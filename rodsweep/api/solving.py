@@ -29,16 +29,17 @@ from .solved import SolvedPoints
 Display = ProgressReporter | SilentProgress
 """Progress display, or its silent substitute."""
 _warm: set[str] = set()
-"""Tasks that are already compiled in this process."""
+"""Names of the tasks whose solvers are already compiled in this process."""
 
 
 @solving
 def solve_here(job: Job, note: PointNote | None = None, progress: bool | None = None) -> SolvedPoints:
     """Solves all points of a job in this process.
 
-    note: called with every unforeseen exception, and the point then has the status `failed`; None to raise
-    the exception. progress: whether to display progress; None: only in a terminal or a notebook. Raises
-    InputError for another `progress`, and EnvironmentIncomplete if PETSc or SLEPc is missing.
+    note: function called with every unforeseen exception, after which the point has the status `failed`;
+    None: the exception is raised. progress: whether to display progress; None: only in a terminal or a
+    notebook. Raises InputError for any other value of `progress`, and EnvironmentIncomplete if PETSc or SLEPc
+    is missing.
     """
     shown = progress_display(progress, job.points.count, job.name)
     require_solvers()
@@ -76,7 +77,9 @@ def solve_here(job: Job, note: PointNote | None = None, progress: bool | None = 
 
 
 def _history(started: str, reasons: Sequence[str]) -> dict[str, Any]:
-    """Attributes of a result whose solve ends now; started: time of its start; reasons: why points failed."""
+    """Attributes of a result whose solve ends now. started: time at which the solve started. reasons: reasons
+    why points failed.
+    """
     from ..solve.backend import petsc
 
     return {
@@ -93,8 +96,8 @@ def _history(started: str, reasons: Sequence[str]) -> dict[str, Any]:
 def _solved(
     job: Job, solver: Solver, plan: Plan, shown: Display
 ) -> tuple[dict[str, np.ndarray], list[str], list[str]]:
-    """(variables of the layout by name, shape (points, own dimensions); message of each point; reasons why
-    points failed).
+    """Returns (variables, messages, reasons). variables: by name, with the dimensions of the points first.
+    messages: for each point. reasons: why points failed. shown: progress display.
     """
     reasons = FailureReasons(lambda index: parameters_in_words(job.points.values(index)))
     count = job.points.count
@@ -125,7 +128,9 @@ def _solved(
 
 
 def _joint(together: JointVariables, view: View, shown: Display) -> Sequence[Filled]:
-    """Variables that depend on all points, for example curves; view: the solved points."""
+    """Values of the variables that depend on all points, for example curves. view: the solved points. shown:
+    progress display.
+    """
     units = together.units(view)
     results = dict[int, NamedArrays]()
     while units is not None and (wanted := units.wanted(results)):
@@ -136,8 +141,8 @@ def _joint(together: JointVariables, view: View, shown: Display) -> Sequence[Fil
 
 
 def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int, Any]]:
-    """Solves and yields (index, outcome) of all points; along a chain each starts from the previous
-    solution.
+    """Solves all points; yields (flat index, outcome) of each point. Along a chain, each point starts from
+    the solution of the previous point.
     """
     done = 0
 
@@ -171,8 +176,8 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
 def progress_display(progress: bool | None, total: int | None, title: str) -> Display:
     """Progress display of a solve, which appears after a second.
 
-    progress: whether to display; None: only in a terminal or a notebook. total: number of points, None if
-    unknown. Raises InputError for another `progress`.
+    progress: whether to display progress; None: only in a terminal or a notebook. total: number of points,
+    None if unknown. title: text before the bar. Raises InputError for any other value of `progress`.
     """
     if not (progress is None or isinstance(progress, bool)):
         raise InputError(f"progress = {progress!r} is not allowed; it should be True, False or None")
@@ -181,7 +186,7 @@ def progress_display(progress: bool | None, total: int | None, title: str) -> Di
 
 
 def progress_listener(shown: Display, name: str) -> RankListener:
-    """Listener that shows the position of the solve `name` in the display. Ctrl-C raises
+    """Listener that shows the progress of the solve `name` in the display `shown`. Ctrl-C still raises
     KeyboardInterrupt.
     """
     return RankListener(

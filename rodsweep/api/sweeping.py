@@ -22,9 +22,9 @@ from .dataset import open_result
 from .solving import Display, progress_display, solve_here
 
 COMPLETE_STATUSES = (0, 1)
-"""Exit statuses of a complete run: 0 if all points succeeded, 1 if some failed."""
+"""Exit statuses of a complete run: 0 if all points succeeded, 1 if some points failed."""
 REFUSAL_OF_STATUS: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentIncomplete}
-"""Exception to be raised for each exit status of a refused run."""
+"""Class of the exception for each exit status of a run that was refused."""
 MAX_QUOTED_LENGTH = 2000
 """Maximum number of quoted characters of a run's standard error, enough for the last traceback."""
 
@@ -41,17 +41,18 @@ def sweep(
     """The Dataset of a task over its points, equal to the file of `rodsweep run`.
 
     keywords: the keys of a config, without sections. A parameter is a number, a list or array of increasing
-    values, `linspace(...)` or `logspace(...)`. `points` is the name of a CSV file with the parameters
-    instead. `arm` is an `Arm` or a mapping of its quantities; tasks that find the load ignore the arm's load.
-    `accuracy`, `title` and the options of the task may follow. Omitted keys have the config's defaults.
+    values, `linspace(...)` or `logspace(...)`. Instead of parameters, `points` may name a CSV file with the
+    parameters of all points. `arm` is an `Arm` or a mapping of its quantities; tasks that find the load
+    ignore the arm's load. `accuracy`, `title` and the options of the task may follow. Omitted keys have the
+    config's defaults.
 
     ranks: number of MPI ranks, which `rodsweep run` starts; by default the points are solved in this process.
     strict: whether an unforeseen exception, a bug of rodsweep, is raised. By default the point has the status
     `failed`, a RuntimeWarning has the traceback, and the other points are solved. progress: whether to
     display the progress of the sweep and of a long point; by default only in a terminal or a notebook.
 
-    Raises InputError for bad input, with the command line's message, and EnvironmentIncomplete if the machine
-    lacks something. A point that fails keeps its status.
+    Raises InputError for bad input, with the command line's message, and EnvironmentIncomplete if software is
+    missing. A point that fails has a status other than success.
     """
     if ranks is not None and (isinstance(ranks, bool) or not isinstance(ranks, int) or ranks < 1):
         raise InputError(f"ranks = {ranks!r} is not allowed; it should be a whole number, 1 or above")
@@ -63,8 +64,8 @@ def sweep(
 
 
 def _warn(indices: Sequence[int], error: Exception) -> None:
-    """Issues a RuntimeWarning with the traceback of an unforeseen exception; indices: of the failed
-    points.
+    """Issues a RuntimeWarning with the traceback of an unforeseen exception. indices: flat indices of the
+    failed points.
     """
     first = indices[0] + 1
     last = indices[-1] + 1
@@ -74,7 +75,9 @@ def _warn(indices: Sequence[int], error: Exception) -> None:
 
 
 def _on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Display) -> xr.Dataset:
-    """The Dataset made by `rodsweep run` on `ranks` ranks in a temporary directory."""
+    """The Dataset that `rodsweep run` computes on `ranks` MPI ranks in a temporary directory. tree: config
+    tree. strict: as in `sweep`. shown: progress display.
+    """
     points = tree["parameters"].get("points")
     if points is not None:
         tree = tree | {"parameters": tree["parameters"] | {"points": str(Path(points).absolute())}}
@@ -96,8 +99,8 @@ def _on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Disp
 
 
 def _run_shown(words: list[str], place: str, shown: Display) -> tuple[int, str]:
-    """Runs a command in the directory `place` and shows its progress; returns (exit status, standard
-    error).
+    """Runs the command `words` in the directory `place` and shows its progress; returns (exit status,
+    standard error).
     """
     # os.environ, as this process was started: a started MPI adds variables to the C environment only.
     run = subprocess.Popen(
@@ -120,9 +123,10 @@ def _run_shown(words: list[str], place: str, shown: Display) -> tuple[int, str]:
 
 
 def _failure(launcher: str, status: int, errors: str, begun: bool) -> Exception:
-    """Exception for a run that did not complete; begun: whether the ranks had created the result file.
+    """Exception for a run that did not complete.
 
-    status: exit status of the launcher. errors: standard error of the run.
+    begun: whether the ranks had created the result file. launcher: path of mpiexec. status: exit status of
+    the launcher. errors: standard error of the run.
     """
     lines = [line for line in errors.splitlines() if line.startswith("rodsweep: ")]
     if lines:
@@ -134,7 +138,9 @@ def _failure(launcher: str, status: int, errors: str, begun: bool) -> Exception:
 
 
 def _mpiexec() -> str:
-    """Path of mpiexec, beside this Python or on the search path; EnvironmentIncomplete if there is none."""
+    """Path of mpiexec in the folder of this Python, else on the search path; EnvironmentIncomplete if mpiexec
+    is not found.
+    """
     beside = shutil.which("mpiexec", path=str(Path(sys.executable).parent))
     found = beside or shutil.which("mpiexec")
     if found is None:

@@ -4,7 +4,7 @@ Commands: run, merge, snapshot, check, show, plot, report, portrait, explore, ex
 bench.
 
 Exit status: 0 if every point succeeded, 1 if the run is complete but some point failed, 2 for bad input, 3 if
-the machine lacks something, 70 for a bug, 75 if a run was asked to stop and can be continued.
+software or resources are missing, 70 for a bug, 75 if a run was asked to stop and can be continued.
 """
 
 import errno
@@ -37,7 +37,9 @@ LONGEST_MESSAGE = 350
 
 
 def _one_line(message: str) -> str:
-    """A message in one line of limited length, because quoted values may be arbitrarily long."""
+    """The message on one line, shortened to about LONGEST_MESSAGE characters, because quoted values may be
+    long.
+    """
     line = printable(" ".join(message.split()))
     return line if len(line) <= LONGEST_MESSAGE else f"{line[: LONGEST_MESSAGE - 100]} ... {line[-90:]}"
 
@@ -87,8 +89,8 @@ def main() -> None:
 def _prepare_streams() -> None:
     """Opens /dev/null for standard streams that were closed before the start, as by `>&-` in a shell.
 
-    Otherwise the next opened file would get the file descriptor of such a stream, and C libraries would write
-    their messages into this file.
+    Otherwise the next opened file would get the file descriptor of a closed stream, and C libraries would
+    write messages into this file.
     """
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:

@@ -11,13 +11,13 @@ from ..model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAME
 
 HELP_REMARKS = {
     "length": ", by default the sum of the segments",
-    "young": ", and of segments without one",
+    "young": ", and of segments without a modulus",
     "radius": "; or give --width and --height, or --segment",
     "pressure": ", also '1.2 of flutter'; or --force; or no load",
     "fluid_density": ", for the Reynolds number; by default 1000 kg/m^3",
     "density_difference": ", for its weight",
 }
-"""Remarks that follow the meaning of a quantity in the help text of its option."""
+"""Remark after the meaning of a quantity in the help text of its option, by name of the quantity."""
 MATERIAL_OPTIONS: dict[str, dict[str, Any]] = {
     "--segment": {
         "multiple": True,
@@ -30,15 +30,16 @@ MATERIAL_OPTIONS: dict[str, dict[str, Any]] = {
         "help": "Cross-section of a rubber arm: fixed, or swelling as the arm shortens; by default fixed.",
     },
 }
-"""Settings of `click.option` for the options of shape and material that are no quantities."""
+"""Arguments of `click.option` for the options of shape and material that are not quantities, by option."""
 Command = Callable[..., Any]
 """Function of a command."""
 
 
 def arm_options(left_out: Collection[str] = (), is_needed: bool = True) -> Callable[[Command], Command]:
-    """Decorator that adds an option for each quantity of an arm except `left_out`, and for its material.
+    """Decorator that adds the options of an arm's material, and an option for each quantity except the
+    quantities in `left_out`.
 
-    is_needed: whether the command requires the needed quantities of an arm.
+    is_needed: whether the options of indispensable quantities are required.
     """
 
     def add_options(command: Command) -> Command:

@@ -15,8 +15,8 @@ LINE_STYLES = {"headline": "bold", "warning": "yellow"}
 def describe_arm(given: dict[str, str | None], poisson: float, segments: tuple[str, ...]) -> None:
     """Prints the report on an arm.
 
-    given: values of the options by name of the quantity or law, None if not given. Raises InputError in terms
-    of the options.
+    given: values of the options by name of the quantity or law, None if not given. poisson, segments: as in
+    `SlenderArm`. Raises InputError, whose message names the options.
     """
     from ..model.arm.arm import SlenderArm
     from ..verdict.arm import arm_report
@@ -38,7 +38,7 @@ QUANTITY_IN_SENTENCE = re.compile(rf"^({QUANTITY_NAMES})|(?<= and )({QUANTITY_NA
 
 
 def as_options(sentence: str) -> str:
-    """The sentence of an error with names of options, such as --tip-radius, instead of names of
+    """The error message `sentence`, with names of options such as --tip-radius in place of names of
     quantities.
     """
     named = QUANTITY_IN_SENTENCE.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)

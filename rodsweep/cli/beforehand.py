@@ -1,5 +1,5 @@
-"""Computations shared by all ranks before the result file exists: flutter forces, variables without
-points.
+"""Computations shared by all ranks before the result file exists: flutter forces, and variables that do not
+depend on points.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,7 +20,7 @@ from ..tasks.protocol import Task
 
 @dataclass(slots=True)
 class _SharedWork:
-    """Computations divided among the ranks, which end early when any rank receives a stop signal."""
+    """Computations divided among the ranks. Each rank omits its remaining items after a stop signal."""
 
     team: Team
     stop: StopRequest
@@ -42,7 +42,8 @@ class _SharedWork:
 
 
 def with_shared_constants(plan: Plan, task: Task, team: Team, stop: StopRequest) -> Plan | None:
-    """The plan of a file with the variables that depend on no point, computed by all ranks together.
+    """The plan of a result file, with the variables that do not depend on points, computed by all ranks
+    together.
 
     None if a stop signal came before the computation ended.
     """
@@ -52,9 +53,9 @@ def with_shared_constants(plan: Plan, task: Task, team: Team, stop: StopRequest)
 
 
 def shared_flutter_forces(config: Config, team: Team, stop: StopRequest) -> FlutterForces | None:
-    """Flutter force of every rod whose load is relative to flutter, searched by all ranks together.
+    """Flutter force of every rod whose load is relative to flutter, by rod, computed by all ranks together.
 
-    None if a stop signal came before the search ended.
+    None if a stop signal came before the computation ended.
     """
     rods = team.on_first(lambda: flutter_rods(config))
     if not all(rod.standard for rod in rods):  # PETSc must start on all ranks together

@@ -13,7 +13,7 @@ from ..results.file.provenance import cpu_name, now, provenance
 from ..solve.backend import petsc
 
 MEASURED_COMMAND = (sys.executable, "-m", f"{__package__}.measured")
-"""Words that start `rodsweep` in the runs measured by the benchmark of the sweep."""
+"""Command that starts `rodsweep` in the runs measured by the benchmark of the sweep."""
 REPORT_HEADING = """# Performance
 
 Speed against error of rodsweep, measured on one machine in one run of `rodsweep bench`. The peers, which a
@@ -24,11 +24,11 @@ equal accuracy. An HDF5 file beside the text has every number with all settings.
 
 
 def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path | None) -> None:
-    """Runs benchmarks; writes `output` (Markdown), a file .h5 beside it and a figure _STUDY.png of each
-    study.
+    """Runs benchmarks; writes `output` (Markdown) and, in the same folder, a file .h5 and a figure _STUDY.png
+    for each study.
 
-    what: name of the study, None for all. directory: folder of the peers, None for the folder `benchmarks` of
-    the running checkout.
+    what: name of the study, None for all studies. quick: whether fewer rounds are run. directory: folder of
+    the peers, None for the folder `benchmarks` of the running checkout.
     """
     try:
         from ..bench.limit_cycle.study import limit_cycle_study

@@ -66,19 +66,19 @@ def _arm_lines(job: Job) -> list[str]:
         *plane_lines({variable.name: np.asarray(values) for variable, values in job.quantities}),
         f"the arm as a rod: {', '.join(made)} s",
         *_uncovered_lines(job.points),
-        f"{validity}; the run also judges inertia, from the frequency at which the arm moves",
+        f"{validity}; the run also tests inertia, by the frequency of the arm's motion",
     ]
 
 
 def _material_text(arm: ArmSection) -> str:
-    """Segments and law of an arm in words, appended to the list of its quantities."""
+    """Text with the segments, the law and the section of an arm, to be appended to the list of quantities."""
     segments = "".join(f"; segment {text}" for text in arm.segments or ())
     laws = [value.replace("_", "-") for value in (arm.law, arm.section and f"{arm.section} section") if value]
     return f"{segments}; {', '.join(laws)}" if laws else segments
 
 
 def _wall_lines(arm: ArmSection) -> list[str]:
-    """Warning for tubes with thin walls; empty if all walls are thick enough."""
+    """Warning for tubes with thin walls, in a list; empty if all walls are thick enough."""
     if arm.inner_radius is None:
         return []
     names = ("length", "radius", "inner_radius", "poisson")
@@ -94,7 +94,9 @@ def _wall_lines(arm: ArmSection) -> list[str]:
 
 
 def _uncovered_lines(points: Points) -> list[str]:
-    """Lines on the number of different rods, and on the points to which no rod corresponds, with reasons."""
+    """Lines with the number of different rods, and with the number of points to which the rod model does not
+    apply, by reason.
+    """
     lines = list[str]()
     rods = rod_numbers(points)
     if rods is not None:

@@ -140,16 +140,19 @@ def schema() -> None:
 @click.argument("what", type=click.Choice(["spectrum", "thresholds", "limit_cycle", "sweep"]), required=False)
 @click.option("--quick", is_flag=True, help="Fewer rounds, for a first impression.")
 @click.option(
-    "-o", "--output", type=FILE_TYPE, help="Markdown file; the numbers (.h5) and figures go beside it."
+    "-o",
+    "--output",
+    type=FILE_TYPE,
+    help="Markdown file; the numbers (.h5) and figures go into the same folder.",
 )
 @click.option(
     "--peers",
     "directory",
     type=FILE_TYPE,
-    help="Folder of the peers timed beside rodsweep; by default `benchmarks` of the running checkout.",
+    help="Folder of the peers timed with rodsweep; by default `benchmarks` of the running checkout.",
 )
 def bench(what: str | None, quick: bool, output: Path | None, directory: Path | None) -> None:
-    """Time WHAT (by default all) beside its available peers, and state the error of every result."""
+    """Time WHAT (by default all studies) and the available peers, and state the error of every result."""
     from .benching import run_benchmarks
 
     output = output or Path("bench.md")

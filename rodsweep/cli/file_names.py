@@ -21,16 +21,16 @@ def result_file(path: Path) -> Path:
 
 
 def with_ending(file: Path, ending: str) -> Path:
-    """Path of `file` with a different ending, in the same folder; InputError for a directory."""
+    """Path of `file` with its suffix replaced by `ending`; InputError for a directory."""
     if file.is_dir():
         raise InputError(f"{file} is a directory; name a file")
     return file.with_name(file.stem + ending)
 
 
 def link_target(path: Path) -> Path:
-    """Target of a symbolic link; any other path unchanged. The journal of a result is beside the target.
+    """Target of a symbolic link; a path that is not a link is returned unchanged.
 
-    Raises InputError for a link that leads to itself.
+    The journal of a result is in the folder of the target. Raises InputError for a link that leads to itself.
     """
     if not path.is_symlink():
         return path

@@ -4,7 +4,9 @@ import os
 
 
 def rank_variables() -> list[str]:
-    """Values of the launchers' rank variables in the environment; empty without a launcher."""
+    """Values of the environment variables in which launchers store the rank of a process; empty if the
+    process was started without a launcher.
+    """
     names = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")
     return [os.environ[name] for name in names if name in os.environ]
 

@@ -1,5 +1,5 @@
 """The command `rodsweep` as started by `rodsweep bench sweep`: records each rank's peak memory, and can
-replace all solves.
+replace all solves by stored random outcomes.
 
     python -m rodsweep.cli.measured DIRECTORY KIND WORDS...
 
@@ -24,8 +24,8 @@ from . import main
 from .launchers import prints_messages
 
 OUTCOME_COUNT = 4096
-"""Number of different random outcomes. The points use the outcomes in turn; the compression of the file
-detects no repetition at this distance."""
+"""Number of different random outcomes. The points use the outcomes in turn. A file's compression detects no
+repetition at this distance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,8 +80,8 @@ def record_memory(directory: Path) -> None:
 def peak_memory() -> int:
     """Peak memory of this process in bytes.
 
-    `getrusage` would include the peak of the parent process, because the value survives exec. It is used only
-    if /proc is missing.
+    `getrusage` would include the peak of the parent process, because the value survives exec. `getrusage` is
+    used only if /proc is missing.
     """
     try:
         lines = Path("/proc/self/status").read_text().splitlines()

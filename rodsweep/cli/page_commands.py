@@ -86,7 +86,7 @@ def plot(
 
 
 def _values(at: tuple[str, ...]) -> dict[str, str]:
-    """Values of `--at NAME=VALUE` by name; InputError for text of another form."""
+    """Values of the options `--at NAME=VALUE`, by name; InputError for a text without "="."""
     found = {}
     for text in at:
         name, equals, value = text.partition("=")

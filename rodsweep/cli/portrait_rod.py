@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from ..tasks.running.job import Job
 
 QUANTITIES_WITHOUT_OPTION = (*LOADS, "fluid_density", "density_difference")
-"""Quantities of an arm without an option: the portrait varies the load, and the model has no densities."""
+"""Quantities of an arm without an option: the portrait varies the load, and the model does not depend on
+densities."""
 
 
 def rod_of_options(
@@ -29,8 +30,8 @@ def rod_of_options(
     """The rod described by options; InputError for options that describe no rod.
 
     parameters: parameters of the rod. quantities: quantities of an arm, poisson and segments. material: law,
-    section and profile. Values of omitted options are None. A parameter given beside an arm replaces the
-    arm's parameter.
+    section and profile. Values of omitted options are None. A parameter given in addition to an arm replaces
+    the arm's parameter.
     """
     from ..config.axes import DEFAULTS, REQUIRED
     from ..model.arm.arm import SlenderArm
@@ -65,7 +66,7 @@ def _read(material: Mapping[str, Any]) -> Any:
 
 
 def _given(options: Mapping[str, Any]) -> dict[str, Any]:
-    """Options with a value that is not None."""
+    """The options whose value is not None, by name."""
     return {name: value for name, value in options.items() if value is not None}
 
 

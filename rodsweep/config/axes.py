@@ -12,15 +12,15 @@ from .arm.section import ArmSection
 from .values import Axis, Number, StrictSection, Text, Values
 
 BEYOND_LINEAR = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
-"""Names of the parameters on which only limit cycles depend, not the linear problem."""
+"""Names of the parameters on which limit cycles depend but the linear problem does not."""
 REQUIRED = tuple(p.name for p in PARAMETERS.values() if p.default is None and p.name != "F")
-"""Names of the parameters besides F that have no default."""
+"""Names of the parameters without a default, except F."""
 DEFAULTS = {p.name: p.default for p in PARAMETERS.values() if p.default is not None and not p.optional}
 """Default of each parameter that has one, by name, without the optional parameters."""
 
 
 def _section(base: type[StrictSection], names: tuple[str, ...], kind: Any) -> Any:
-    """Subclass of `base` with a further key of the type `kind`, which may be missing, for each name."""
+    """Subclass of `base` with an additional optional key of the type `kind` for each name in `names`."""
     fields: dict[str, Any] = dict.fromkeys(names, (kind | None, None))
     return create_model("Section", __base__=base, **fields)
 
@@ -37,19 +37,20 @@ class Axes(LinearAxes):
         list[Literal[OPTIONAL_PARAMETERS]] | None,  # type: ignore[valid-type]  # read at run time, from the table
         Field(description=f"a list of {' and '.join(OPTIONAL_PARAMETERS)}"),
     ] = None
-    """Optional parameters among the columns of `points`; by default those in the header of the file."""
+    """Optional parameters among the columns of `points`; by default the optional parameters in the header of
+    the file."""
     arm: Annotated[ArmSection | None, Field(description="a mapping of an arm's quantities to values")] = None
-    """An arm in SI units. A parameter given beside the arm replaces the arm's value."""
+    """An arm in SI units. A parameter given in addition to the arm replaces the arm's value."""
 
     of_arm: ClassVar[tuple[str, ...]] = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
-    """Names of the parameters that the task takes from an arm, or from axes given beside the arm."""
+    """Names of the parameters that the task takes from an arm, or from axes given in addition to the arm."""
     in_diagram: ClassVar[bool] = False
     """Whether the points are the rows of a phase diagram, which needs a grid of parameters."""
 
     @model_validator(mode="before")
     @classmethod
     def _with_defaults(cls, given: Any) -> Any:
-        """Adds the defaults of missing parameters to a grid; a file of points or an arm needs no defaults."""
+        """Adds the defaults of missing parameters, unless a file of points or an arm is given."""
         if not isinstance(given, dict) or given.get("points") is not None or given.get("arm") is not None:
             return given
         return {name: DEFAULTS[name] for name in cls.of_arm if name in DEFAULTS} | given
@@ -62,13 +63,15 @@ class Axes(LinearAxes):
 
     @property
     def optional(self) -> tuple[str, ...]:
-        """Names of the optional parameters that are given as an axis or as a column of a list."""
+        """Names of the optional parameters that are given as an axis or as a column of the file of points."""
         given = (*self.given_axes, *(self.columns or ()))
         return tuple(name for name in OPTIONAL_PARAMETERS if name in given)
 
     @property
     def axes(self) -> dict[str, Axis]:
-        """Axes of parameters by name: given axes and, for a grid of parameters, axes made from the arm."""
+        """Axes of the swept parameters, by name: the given axes and, for a grid of parameters, axes computed
+        from the arm's quantities.
+        """
         if self.arm is None or self.over:
             return self.given_axes
         axes = self.arm.grid_axes() | self.given_axes
@@ -76,7 +79,7 @@ class Axes(LinearAxes):
 
     @cached_property
     def given_axes(self) -> dict[str, Axis]:
-        """Axes of parameters that the config gives, by name of the parameter."""
+        """Axes of the parameters that the config names directly, by name of the parameter."""
         return {name: value for name, value in self._given.items() if isinstance(value, Axis)}
 
     @property
@@ -86,7 +89,7 @@ class Axes(LinearAxes):
 
     @property
     def over(self) -> tuple[str, ...]:
-        """Names of the axes of a grid over an arm's quantities; empty for other points."""
+        """Names of the axes of a grid over an arm's quantities; empty for a grid of parameters or a list."""
         if self.arm is None:
             return ()
         given = self.arm.given | self.given_axes
@@ -94,7 +97,7 @@ class Axes(LinearAxes):
 
     @property
     def alone(self) -> dict[str, int]:
-        """Number of values by parameter, for axes along which no other parameter changes."""
+        """Number of values on each axis along which a single parameter changes, by name of the parameter."""
         if self.arm is None or not self.over:
             return {name: axis.size for name, axis in self.axes.items()}
         given = self.arm.given | self.given_axes
@@ -102,7 +105,7 @@ class Axes(LinearAxes):
 
     @property
     def numbers(self) -> dict[str, float]:
-        """Values of the parameters that have a single number for the whole sweep, not an axis, by name."""
+        """Values of the parameters that are given as a number, not as an axis, by name."""
         return {name: value for name, value in self._given.items() if isinstance(value, float)}
 
     @property
@@ -110,7 +113,8 @@ class Axes(LinearAxes):
         return {name: getattr(self, name, None) for name in PARAMETERS}
 
     def require(self, names: tuple[str, ...], or_points: bool = True) -> None:
-        """Raises ValueError unless the section defines points: by axes of all `names`, an arm, or a file.
+        """Raises ValueError unless the section defines points in exactly one way: by axes of all `names`, by
+        an arm, or by a file of points.
 
         or_points: whether the message suggests a file of points.
         """
@@ -128,7 +132,7 @@ class Axes(LinearAxes):
             raise ValueError(f"parameters.{missing[0]} is missing; give {words(names, 'and')}{hint}")
 
     def _require_arm(self, arm: ArmSection, forced: bool) -> None:
-        """Raises ValueError unless the arm, with the parameters given beside it, defines points.
+        """Raises ValueError unless the arm, with the parameters given in addition to the arm, defines points.
 
         forced: whether F is a parameter of the task.
         """
@@ -169,5 +173,5 @@ class NonlinearParameters(AllAxes):
 
 
 def words(names: tuple[str, ...], last: str) -> str:
-    """Names joined for a sentence, like "a, b and c"; last: the word before the last name."""
+    """The names joined for a sentence, like "a, b and c". last: conjunction before the last name."""
     return f"{', '.join(names[:-1])} {last} {names[-1]}" if names[1:] else names[0]

@@ -1,9 +1,9 @@
 """JSON schema of a config, for editors that complete keys and mark mistakes.
 
 The schema is made from the models of the tasks, the docstrings of the keys, and conditions on combinations of
-keys: required keys, exclusive keys, ranges of values. A key that is null counts as not given, as in the
-command. Conditions on the whole config (F < k1, sorted lists) are not in the schema; `rodsweep check` tests
-them.
+keys: required keys, exclusive keys, ranges of values. A key with the value null is treated as not given, as
+by the command. Conditions on the whole config (F < k1, sorted lists) are not in the schema; `rodsweep check`
+tests them.
 """
 
 import ast
@@ -36,7 +36,7 @@ BOUNDS_OF_ARM: dict[str, Schema] = {
 DIALECT = "http://json-schema.org/draft-07/schema#"
 """Address of draft 7 of JSON schema, which most editors support."""
 BOUNDS = {"ge": "minimum", "le": "maximum", "gt": "exclusiveMinimum", "lt": "exclusiveMaximum"}
-"""JSON schema keyword by pydantic's name of a bound. pydantic leaves bounds unconverted for values that pass
+"""JSON schema keyword by pydantic's name of a bound. pydantic does not convert the bounds of values that pass
 through a validator function."""
 
 
@@ -97,7 +97,9 @@ def meanings_of(section: type[BaseModel]) -> dict[str, str]:
 
 
 def _describe_keys(schema: dict[str, Any], section: type[BaseModel]) -> None:
-    """Adds the keys' docstrings as descriptions to `schema`, in place; removes pydantic's titles."""
+    """Adds the docstrings of the keys of `section` as descriptions to `schema`, in place; removes pydantic's
+    titles.
+    """
     parameters = {name: f"{p.long_name}, in {p.unit}" for name, p in PARAMETERS.items()}
     meanings = parameters | meanings_of(section)
     for name, key in schema["properties"].items():
@@ -117,12 +119,16 @@ def none_of(names: Iterable[str]) -> Schema:
 
 
 def all_of(names: Iterable[str], *more: Schema) -> Schema:
-    """JSON schema of the condition that all keys in `names` are given, and the schemas `more` hold."""
+    """JSON schema of the condition that all keys in `names` are given and all schemas in `more` are
+    satisfied.
+    """
     return {"allOf": [*map(given, names), *more]}
 
 
 def bounded(schema: Schema, bound: Mapping[str, float], words: tuple[str, ...] = ()) -> Schema:
-    """Copy of the JSON schema of an axis, with bounds on every number; words: allowed spellings of inf."""
+    """Copy of the JSON schema of an axis, with bounds on every number. bound: JSON schema keywords of the
+    bounds. words: allowed spellings of inf.
+    """
     copy = deepcopy(schema)
     for node in nodes_of(copy):
         kinds = node.get("anyOf", [])
@@ -135,7 +141,7 @@ def bounded(schema: Schema, bound: Mapping[str, float], words: tuple[str, ...] =
 
 
 def with_bounds(properties: Schema, axis: Schema) -> None:
-    """Adds, in place, the bounds of parameters to the keys `properties` of a section.
+    """Adds the bounds of the parameters to the JSON schemas `properties` of a section's keys, in place.
 
     axis: JSON schema of an axis without bounds.
     """
@@ -147,10 +153,10 @@ def with_bounds(properties: Schema, axis: Schema) -> None:
 
 
 def restrict_arm(section: Schema, axis: Schema) -> None:
-    """Adds the conditions of an arm to its JSON schema `section`, in place.
+    """Adds the conditions of an arm to its JSON schema `section`, in place: unit and sign of every quantity,
+    exactly one kind of cross-section, and at most one load.
 
-    Quantities are positive and have a unit; there is one cross-section, and at most one load. axis: JSON
-    schema of an axis without bounds.
+    axis: JSON schema of an axis without bounds.
     """
     for name, key in section["properties"].items():
         bound = BOUNDS_OF_ARM.get(name, {})
@@ -179,7 +185,7 @@ def points_of(needed: Iterable[str], lists: bool) -> Schema:
     """JSON schema of the condition that `parameters` defines points: by axes, an arm, or a file of points.
 
     needed: names of the parameters of the task. lists: whether the task accepts a file of points. If F is
-    needed, the arm has a load or F is given too; otherwise neither may be given.
+    needed, either the arm has a load or F is given; otherwise both are forbidden.
     """
     axes = tuple(name for name in needed if PARAMETERS[name].default is None)
     loads = [all_of([name]) for name in LOAD_AXES]

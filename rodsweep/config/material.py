@@ -24,10 +24,13 @@ Column = Annotated[
 
 
 class ProfileTable(StrictSection):
-    """Factors along the arm: columns of equal length. An omitted column is 1 along the whole arm."""
+    """Table of factors that multiply stiffnesses and drags along the arm, in columns of equal length. An
+    omitted column is 1 along the whole arm.
+    """
 
     u: Annotated[list[Number], Field(max_length=MOST_ROWS, description="a list of numbers from 0 to 1")]
-    """Material coordinate, from 0 at the base to 1 at the tip, not decreasing; a value twice is a jump."""
+    """Material coordinate, from 0 at the base to 1 at the tip, not decreasing. Two equal values mark a jump
+    of the factors."""
     k1: Column = None
     """Factor of the stretch stiffness at each u."""
     k2: Column = None
@@ -58,7 +61,7 @@ class ProfileTable(StrictSection):
 
 
 def _or_file(schema: dict[str, Any]) -> None:
-    """Allows, in the JSON schema of a profile, the name of a CSV file instead of a table of columns."""
+    """Adds the name of a CSV file as an allowed value to the JSON schema of a profile, in place."""
     schema["anyOf"] = [{"type": "string"}, *schema["anyOf"]]
 
 
@@ -75,11 +78,12 @@ class MaterialSection(StrictSection):
             description="the name of a CSV file, or a mapping of columns to lists", json_schema_extra=_or_file
         ),
     ] = None
-    """CSV file, or a mapping of columns, of u and the factors of k1, k2, k3, gamma1, gamma2 and gamma3."""
+    """Name of a CSV file, or mapping, with the columns u, k1, k2, k3, gamma1, gamma2 and gamma3: factors
+    along the arm."""
 
     @cached_property
     def build(self) -> Build:
-        """Constitutive law and profile; ValueError for a section that the law does not have."""
+        """Constitutive law and profile; ValueError if the law does not allow the cross-section."""
         return Build(self.law, self.section, self.profile.profile if self.profile else None)
 
     @model_validator(mode="after")
@@ -93,7 +97,7 @@ class MaterialSection(StrictSection):
 def with_profile_read(tree: Any, directory: Path) -> Any:
     """A parsed config with the file name in `material.profile` replaced by the columns of the file.
 
-    directory: folder of a relative file name. Raises InputError for a file that is no table of numbers.
+    directory: folder of a relative file name. Raises InputError if the file is not a table of numbers.
     """
     if not isinstance(tree, dict) or not isinstance(tree.get("material"), dict):
         return tree

@@ -1,6 +1,7 @@
 """Config keys common to all tasks, and types of options that several tasks share.
 
-Only the form is checked here. Physical ranges (F < k1, positive stiffness) are checked when points are made.
+Only types and keys are checked here. Physical ranges (F < k1, positive stiffness) are checked when the points
+are computed.
 """
 
 from collections.abc import Mapping
@@ -33,21 +34,23 @@ class Config(StrictSection):
     material: Annotated[
         MaterialSection | None, Field(description="a mapping of law, section and profile")
     ] = None
-    """Constitutive law and profile of the arm; by default linear and the same all along the arm."""
+    """Constitutive law and profile of the arm; by default a linear law and a uniform arm."""
 
     of_cycles: ClassVar[bool] = False
     """Whether the task solves the nonlinear motion of the rods."""
     into_crushed: ClassVar[bool] = False
-    """Whether a grid may contain crushed rods, because the task has a state `crushed`."""
+    """Whether a grid may contain crushed rods: True for tasks with the state `crushed`."""
 
     others_may_be_needed: ClassVar[bool] = False
-    """Whether the parameters that the task needs depend on its options."""
+    """Whether the names of the needed parameters depend on the task's options."""
     of_several_rods: ClassVar[bool] = False
     """Whether the task needs a grid of several rods, so that a list of points is refused."""
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the parameters of a point: those that the task needs, and optional parameters."""
+        """Names of the parameters of a point: the parameters that the task needs, and the optional parameters
+        in the config.
+        """
         return (*self.taken_of_a_rod({}), *self.added)
 
     @property
@@ -59,12 +62,14 @@ class Config(StrictSection):
 
     @property
     def stated_build(self) -> Build | None:
-        """Constitutive law and profile in the section `material`; None without such a section."""
+        """Constitutive law and profile in the section `material`; None if the section is not given."""
         return None if self.material is None else self.material.build
 
     @property
     def build(self) -> Build:
-        """Constitutive law and profile of the rods: of the section `material`, or of the arm."""
+        """Constitutive law and profile of the rods, from the section `material`, else from the arm, else the
+        default.
+        """
         if self.stated_build is not None:
             return self.stated_build
         return STANDARD if self.parameters.arm is None else self.parameters.arm.build
@@ -81,12 +86,14 @@ class Config(StrictSection):
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        """Names of the parameters of a rod that the task uses with these options."""
+        """Names of the parameters of a rod that the task uses. options: options of the task, by name."""
         return NONLINEAR_PARAMETERS
 
     @property
     def unused(self) -> dict[str, str]:
-        """Options without effect in this config: by name, the setting that would give them an effect."""
+        """Options without effect in this config, by name; the value is the setting with which the option
+        would have an effect.
+        """
         return {}
 
     def refuse_unused(self) -> None:
@@ -118,8 +125,8 @@ class Config(StrictSection):
         return meant | {"arm": self.parameters.arm.meaning}
 
     def refuse_found(self, name: str, why: str) -> None:
-        """Raises ValueError, with the reason `why`, if the parameter `name`, which the task solves for, is
-        given.
+        """Raises ValueError, with the reason `why`, if the config gives the parameter `name`, for which the
+        task solves.
         """
         if name in self.parameters.given_axes:
             raise ValueError(f"parameters.{name} is given but the task {self.task} {why}")
@@ -145,7 +152,7 @@ class LinearConfig(Config):
     parameters: LinearParameters
 
     beyond: ClassVar[tuple[str, ...]] = ()
-    """Names of the parameters of the nonlinear rod only that the task can use with some options."""
+    """Names of the parameters that only the nonlinear problem has but that some options of the task use."""
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:

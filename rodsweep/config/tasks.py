@@ -1,4 +1,5 @@
-"""Config class of every task by name. The section with the task's options has the same name."""
+"""Config class of every task, by name of the task, which is also the name of the section with the task's
+options."""
 
 from typing import Any
 

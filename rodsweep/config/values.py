@@ -1,4 +1,4 @@
-"""Values in a config: numbers, text, and axes of parameters. Knows no keys and no physics."""
+"""Values in a config: numbers, text, and axes of parameters, without keys and physics."""
 
 from math import inf, isinf, isnan
 from typing import Annotated, Any, Literal
@@ -13,13 +13,15 @@ MOST_VALUES = 1_000_000_000
 
 
 class StrictSection(BaseModel):
-    """Section of the config: unknown keys are refused, types are not converted, values are frozen."""
+    """Base class of a config's sections: unknown keys are refused, types are not converted, values are
+    frozen.
+    """
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
 
 def as_number(value: Any) -> float:
-    """Float from a YAML number or the words inf and -inf; ValueError, with a sentence, for other values."""
+    """Float from a YAML number or the texts inf and -inf; ValueError for other values."""
     if isinstance(value, str) and value.strip().lower() in ("inf", "+inf", "-inf"):
         return float(value)
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -58,7 +60,9 @@ def short(value: Any) -> str:
 
 
 def named(name: object, most: int = 200) -> str:
-    """A name for a message: `repr` if not printable, shortened in the middle beyond `most` characters."""
+    """A name for a message: `repr` of a name that is not printable, shortened in the middle to at most `most`
+    characters.
+    """
     text = str(name)
     if not text.isprintable():
         text = repr(text)
@@ -66,7 +70,7 @@ def named(name: object, most: int = 200) -> str:
 
 
 def printable(text: str) -> str:
-    """The text with control characters, which a terminal would obey, escaped, for example as `\\x1b`."""
+    """The text with every control character escaped, for example as `\\x1b`; line breaks stay."""
     return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
 
 
@@ -85,7 +89,7 @@ Number = Annotated[
 ]
 """Type of a number in a config: a float. JSON stores infinite numbers as text."""
 NUMBER_SCHEMA: dict[str, Any] = {"anyOf": [{"type": "number"}, {"enum": ["inf", "+inf", "-inf"]}]}
-"""JSON schema of one value on an axis: a number or a word for infinity."""
+"""JSON schema of one value on an axis: a number, or a text for infinity."""
 AXIS_SCHEMA: dict[str, Any] = {
     "description": "a number, a list in increasing order, or a range",
     "anyOf": [
@@ -115,7 +119,7 @@ class Axis(StrictSection):
 
     @classmethod
     def __get_pydantic_json_schema__(cls, *_: Any) -> dict[str, Any]:
-        """JSON schema of the user's forms, not of this class."""
+        """JSON schema of the values that a user writes (a number, a list or a range), not of this class."""
         return AXIS_SCHEMA
 
     values: tuple[Number, ...] | None = None
@@ -124,8 +128,7 @@ class Axis(StrictSection):
     num: int = 0
     spacing: Literal["linear", "log"] = "linear"
     factor: Annotated[float, Field(exclude=True)] = 1.0
-    """Factor that multiplies all values of a range, such as the ratio of the parameter F to a pressure in
-    Pa."""
+    """Factor by which all values of a range are multiplied, such as F divided by the pressure in Pa."""
     written: Annotated[Any, Field(exclude=True)] = None
     """The values as the user wrote them, for values with units; otherwise None."""
 
@@ -149,7 +152,7 @@ class Axis(StrictSection):
         return tree | {name: self.factor * value for name, value in ends.items()}
 
     def scaled(self, scale: float) -> "Axis":
-        """The axis with all values multiplied by `scale`."""
+        """A copy of the axis with all values multiplied by `scale`."""
         if self.values is not None:
             return Axis(values=tuple(scale * value for value in self.values))
         # The ends stay unscaled, so that a longer range contains exactly the same values.

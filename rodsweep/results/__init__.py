@@ -1,4 +1,4 @@
-"""Result files: the table of their variables, a store that survives kills, and provenance.
+"""Result files: the table of their variables, storage that survives a kill of the run, and provenance.
 
-This package is the only importer of h5py. Solvers are unknown here.
+Only this package imports h5py. The package does not use the solvers.
 """

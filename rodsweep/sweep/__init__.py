@@ -1,12 +1,12 @@
 """Sweeps over many points: parameter values, distribution over MPI ranks, and the loop that solves the
 points.
 
-This package is the only sender of MPI messages. HDF5 is unknown here: the caller passes a function that
-stores finished points.
+Only this package sends MPI messages. The package does not use HDF5: the caller passes a function that stores
+finished points.
 
-`rs.sweep`, after `import rodsweep as rs`, is a function. Python binds the name of a package to the package,
-and the package itself is therefore callable: a call goes on to `rodsweep.api.sweeping.sweep`, which describes
-the arguments.
+`rs.sweep`, after `import rodsweep as rs`, is a function. Because Python binds the name `sweep` to this
+package, the package itself is callable: a call is forwarded to `rodsweep.api.sweeping.sweep`, whose docstring
+describes the arguments.
 """
 
 import sys

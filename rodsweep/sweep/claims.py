@@ -1,9 +1,11 @@
-"""How each rank claims its next chunk of units: the first rank from the `Handout`, other ranks by messages.
+"""Distribution of chunks of work items: the first rank takes chunks from the `Handout`, other ranks request
+chunks by messages.
 
-The first rank computes like every rank. A thread of the first rank answers requests meanwhile, so that no
-rank waits for the end of a solve on the first rank. A solve may still delay the thread. Every rank therefore
-requests the next chunk when the rank begins a chunk, and gets it early while plenty of units are left. A rank
-with a stop signal notifies the first rank, which notifies all ranks; each rank stops after the current point.
+The first rank solves points too. A thread of the first rank answers requests meanwhile, so that no rank waits
+for the end of a solve on the first rank. A solve may still delay the thread. Every rank therefore requests
+the next chunk at the beginning of a chunk, and is answered in advance while enough work items are left. A
+rank with a stop signal notifies the first rank, which notifies all ranks; each rank stops after the current
+point.
 """
 
 import threading
@@ -29,16 +31,16 @@ POLL_SECONDS = 2e-3
 """Seconds between two polls for messages by the thread of the first rank. Each poll takes 20 microseconds or
 more from the solve on that rank."""
 RELIEVED_POLL_SECONDS = 5e-3
-"""Seconds between two polls for messages by the thread while the first rank also answers between its
-points."""
+"""Seconds between two polls for messages by the thread of the first rank, if the first rank has recently
+answered requests between two points."""
 FIRST_CHUNK_POLL_SECONDS = 1e-4
 """First pause, in seconds, between two polls of a rank that waits for a chunk."""
 LONGEST_CHUNK_POLL_SECONDS = 1e-2
 """Longest pause, in seconds, between two polls of a rank that waits for a chunk: an idle rank must not take
 processor time from solving ranks."""
 CHUNK_POLL_GROWTH = 1.1
-"""Ratio of a waiting rank's pause to the previous pause. Slow growth hardly prolongs a wait of a
-millisecond."""
+"""Ratio of two successive pauses of a waiting rank. The ratio is near 1, so that a wait of a millisecond is
+hardly prolonged."""
 WAIT_SECONDS = 0.05
 """Seconds for which an idle first rank waits for the handout to change before it polls for MPI messages."""
 
@@ -47,14 +49,16 @@ class FirstRankClaims:
     """Claims chunks for the first rank, and answers the requests of all other ranks, also from a thread."""
 
     def __init__(self, team: Team, handout: Handout, stop: StopRequest, show: Callable[[str, float], None]):
-        """show: displays (progress of a long point in words, work done of unfinished points in points)."""
+        """show: function (text on the progress of a long point, fractions of all unfinished points done,
+        summed) that displays the progress.
+        """
         self.team = team
         self.handout = handout
         self.stop = stop
         self.show = show
         self.waiting: deque[int] = deque()
         self.ahead: set[int] = set()
-        """Ranks that already have the answer to their next request."""
+        """Ranks whose next request has been answered in advance."""
         self.working = set(range(1, team.size))
         self.status = team.MPI.Status()
         self.places: dict[int, SolvePosition] = {}
@@ -97,13 +101,13 @@ class FirstRankClaims:
         self.show(place.words, self._begun())
 
     def _begun(self) -> float:
-        """Work done of all unfinished long points on all ranks, in points."""
+        """Sum of the fractions done of all unfinished points on all ranks."""
         return sum(place.share or 0.0 for place in list(self.places.values()))
 
     def between_points(self) -> None:
-        """Answers requests of other ranks; the first rank calls it between two points.
+        """Answers requests of other ranks; called on the first rank between two points.
 
-        During a long point the thread answers. The thread alone would not be enough: a solve inside PETSc
+        During a long point the thread answers. The thread is not sufficient, because a solve inside PETSc
         holds Python's global interpreter lock, and the thread might rarely get the lock.
         """
         if self.thread is not None:
@@ -146,9 +150,10 @@ class FirstRankClaims:
             self.places[rank] = comm.recv(source=rank, tag=PROGRESS_TAG)
 
     def _hear(self, rank: int, report: RankReport) -> None:
-        """Handles the report of a rank: answers a request in advance at once, and queues any other request.
+        """Handles the report of a rank.
 
-        A rank whose request was answered in advance has its next chunk already, and is not queued.
+        A request made in advance (`report.ahead`) is answered immediately if enough units are left. Any other
+        request is queued, unless the rank already has its next chunk from a request made in advance.
         """
         if report.ahead:
             if (chunk := self.handout.take_ahead(rank)) is not None:
@@ -200,11 +205,13 @@ class OtherRankClaims:
         return chunk
 
     def report_place(self, place: SolvePosition) -> None:
-        """Sends the first rank a report of how far this rank has come within a long point."""
+        """Reports the progress of this rank within a long point to the first rank."""
         self.comm.send(place, dest=0, tag=PROGRESS_TAG)
 
     def between_points(self) -> None:
-        """Exchanges at most one stop request with the first rank: sends this rank's, or receives one."""
+        """Exchanges at most one stop request with the first rank: sends the request of this rank, or receives
+        the request of the first rank.
+        """
         if not self.stop_exchanged and self.comm.Iprobe(source=0, tag=STOP_TAG):
             self.stop.take(self.comm.recv(source=0, tag=STOP_TAG))
             self.stop_exchanged = True

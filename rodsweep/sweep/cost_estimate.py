@@ -20,8 +20,8 @@ from .points.stretches import Stretches
 MAX_SAMPLE = 200
 """Largest number of points whose meshes are computed for an estimate."""
 COSTLIER_IF_LARGER = frozenset({"k1", "F"})
-"""Parameters whose large values make branches of cycles expensive. For all other parameters, small values
-do."""
+"""Parameters for which large values make branches of cycles expensive. For all other parameters, small values
+are expensive."""
 FIXED_MS = 0.03
 """Measured time of the solve of a spectrum that does not depend on the number of unknowns, in ms."""
 LINEAR_MS = 2.2e-3
@@ -38,12 +38,12 @@ ARM_SPECTRUM_MS = 4.0
 """Time to evaluate D and certify one spectrum of an arm that is not uniform, in ms: median over 40 random
 arms."""
 FIRST_POINT_COST = 2.0
-"""Time of the first point of a stretch, divided by the time of a point that is solved alone."""
+"""Time of the first point of a segment of the sweep, divided by the time of a point that is solved alone."""
 FOLLOWED_MS = 0.006
-"""Time per point of a stretch, whose eigenvalues are continued from a neighbouring point, in ms."""
+"""Time per point of a segment, in which eigenvalues are continued from a neighbouring point, in ms."""
 FOLLOWED_ARM_MS = 0.4
-"""Time per point of a stretch of arms that are not uniform, in ms: median over 24 random arms, the first
-point included."""
+"""Time per point, including the first point, of a segment of arms that are not uniform, in ms: median over 24
+random arms."""
 SEARCH_MS = 24.0
 """Time to search one rod for crossings along one parameter, in ms: mean over 72 rods, of which a few take
 four times as long."""
@@ -54,8 +54,8 @@ ARM_SEARCH_MS = 200.0
 half take 40 ms and a few soft arms 2000 ms."""
 CURVES_OF_ARMS_SECONDS = 4.5
 """Time of the stability boundaries in a phase diagram of arms that are not uniform, with about 100 boundary
-points in all: 3.3, 4.6 and 5.3 s for cones, rubber and rubber segments. The time hardly depends on the number
-of rows."""
+points, in s: 3.3, 4.6 and 5.3 were measured for cones, rubber and rubber segments. The time hardly depends on
+the number of rows."""
 CRITICALITY_OF_ARMS_SECONDS = 2.5
 """Time of the normal forms along the Hopf curves of a phase diagram of arms that are not uniform: 0.7 to 3.8
 s for about 50 points."""
@@ -68,18 +68,19 @@ HOPF_POINTS_MS = 18.0
 COST_OF_TWO_MESHES = 8.0
 """Time of a spectrum by Krylov-Schur on two meshes, divided by the time by roots of D: mean over 800 rods."""
 FINER_MESH = 4 / 3
-"""Number of unknowns of the second mesh divided by that of the first, in a spectrum by Krylov-Schur."""
+"""Number of unknowns of the second mesh divided by the number of unknowns of the first mesh, in a spectrum by
+Krylov-Schur."""
 MODES_MS = 1.5
-"""Time of the eigenvectors at one point, in ms per squared number of modes, because the mesh grows with the
-number of modes: mean over 24 rods."""
+"""Time of the eigenvectors at one point divided by the square of the number of modes, in ms: mean over 24
+rods. The time is quadratic because the mesh grows with the number of modes."""
 GROWTH_MS = 20.0
 """Time of the transient growth of one rod, in ms: mean over the 24 rods."""
 CYCLE_SECONDS = 0.1
-"""Time of a limit cycle computed from the leading mode, about as in the benchmark."""
+"""Time of a limit cycle computed from the leading mode, in s, similar to the benchmark."""
 CHAINED_CYCLE_SECONDS = 0.01
-"""Time of a limit cycle computed from the cycle of a neighbouring point, about as in the benchmark."""
+"""Time of a limit cycle computed from the cycle of a neighbouring point, in s, similar to the benchmark."""
 MARCHED_CYCLE_SECONDS = 0.25
-"""Time of a limit cycle by time integration alone to a relative accuracy of 1e-5: mean over 40 rods."""
+"""Time of a limit cycle by time integration to a relative accuracy of 1e-5, in s: mean over 40 rods."""
 BRANCH_SECONDS = 0.004
 """All branches of a rod take BRANCH_SECONDS F (accuracy/1e-7)^BRANCH_ACCURACY (1 + F/k2)^BRANCH_BENDING, in
 seconds, where F is the largest force of the range, or k1. Fourteen random rods (F up to 60 to 200, k2 from 12
@@ -110,19 +111,19 @@ class Estimate:
 
 
 def estimate_lines(lines: int, certify: bool, of_arms: bool) -> Estimate:
-    """Cost of searching `lines` rods for crossings, each along one parameter.
+    """Estimated cost of `lines` searches for crossings, each of one rod along one parameter.
 
-    certify: whether each search is certified. of_arms: whether some arms are not uniform.
+    certify: whether each search is certified. of_arms: whether any arm is not uniform.
     """
     uniform = SEARCH_MS + (SEARCH_CERTIFICATE_MS if certify else 0)
     return Estimate(lines * 1e-3 * (ARM_SEARCH_MS if of_arms else uniform))
 
 
 def estimate_diagram(rows: int, certify: bool, of_arms: bool, curves: bool, criticality: bool) -> Estimate:
-    """Cost of a phase diagram of `rows` rows, without its limit cycles.
+    """Estimated cost of a phase diagram of `rows` rows, without limit cycles.
 
-    Boundary curves and criticality count for non-uniform arms (`of_arms`) only: for uniform rods they are
-    cheap.
+    certify: whether each row is certified. of_arms: whether any arm is not uniform. curves, criticality:
+    whether boundary curves and their criticality are computed; the cost for uniform rods is neglected.
     """
     lines = estimate_lines(rows, certify, of_arms)
     more = CURVES_OF_ARMS_SECONDS * curves + CRITICALITY_OF_ARMS_SECONDS * criticality
@@ -130,14 +131,16 @@ def estimate_diagram(rows: int, certify: bool, of_arms: bool, curves: bool, crit
 
 
 def estimate_criticality(rods: int, certify: bool, of_arms: bool) -> Estimate:
-    """Cost of the Hopf points, with normal forms, of `rods` rods; of_arms: some rods are not uniform."""
+    """Estimated cost of the Hopf points and normal forms of `rods` rods. certify: whether each search is
+    certified. of_arms: whether any rod is not uniform.
+    """
     search = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
     each = HOPF_POINTS_MS + (ARM_SEARCH_MS if of_arms else search)
     return Estimate(rods * 1e-3 * each)
 
 
 def estimate_branches(points: Points, along: str, reach: tuple[float, float], accuracy: float) -> Estimate:
-    """Cost of the branches of limit cycles of all rods in `points`, along the parameter `along`.
+    """Estimated cost of the branches of limit cycles of all rods in `points`, along the parameter `along`.
 
     reach: smallest and largest value of the parameter. accuracy: relative accuracy of the cycles.
     """
@@ -159,7 +162,8 @@ def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> E
 
 
 def estimate_followed(alone: Estimate, stretches: Stretches, standard: bool) -> Estimate:
-    """Cost of spectra followed along stretches, from the cost `alone` of solving every point alone.
+    """Estimated cost of spectra followed along segments of the sweep, from the cost `alone` of solving every
+    point alone.
 
     standard: whether all rods are uniform and of linear material.
     """
@@ -170,14 +174,18 @@ def estimate_followed(alone: Estimate, stretches: Stretches, standard: bool) -> 
 
 
 def estimate_two_meshes(points: Points, modes: int, accuracy: float) -> Estimate:
-    """Cost of the spectra of `points` by Krylov-Schur on two meshes; accuracy: relative."""
+    """Estimated cost of the spectra of `points` by Krylov-Schur on two meshes. modes: number of eigenvalues.
+    accuracy: relative accuracy.
+    """
     alone = estimate_spectra(points, modes, accuracy, certify=False)
     unknowns = alone.unknowns and (alone.unknowns[0], math.ceil(FINER_MESH * alone.unknowns[1]))
     return replace(alone, seconds=COST_OF_TWO_MESHES * alone.seconds, unknowns=unknowns)
 
 
 def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:
-    """Cost of the spectra of `points`, extrapolated from points spread evenly over the sweep."""
+    """Estimated cost of the spectra of `points`, extrapolated from evenly spaced points of the sweep. modes:
+    number of eigenvalues. accuracy: relative accuracy. certify: whether spectra are certified.
+    """
     rods = [points.rod(int(index)) for index in sampled(points)]
     sizes = [_unknowns(rod, modes, accuracy) for rod in rods]
     if not sizes:  # no rod covers any point of the sample
@@ -201,8 +209,8 @@ def _unknowns(rod: Rod, modes: int, accuracy: float) -> int:
 
 
 def sampled(points: Points) -> NDArray[np.int64]:
-    """Flat indices, (n,), of at most MAX_SAMPLE evenly spread points of a sweep; points without rod are left
-    out.
+    """Flat indices, (n,), of at most MAX_SAMPLE evenly spaced points of a sweep, without points to which the
+    rod model does not apply.
     """
     indices = np.unique(np.linspace(0, points.count - 1, min(MAX_SAMPLE, points.count)).astype(np.int64))
     return indices[[points.has_rod(int(index)) for index in indices]]

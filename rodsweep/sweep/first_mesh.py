@@ -28,10 +28,11 @@ def spectrum_mesh(rod: Rod, modes: int, accuracy: float) -> Elements:
 def largest_first_mesh(
     points: Points, mesh_of: Callable[[Rod], Elements], ends: Mapping[str, Array] | None = None
 ) -> Elements | None:
-    """The finest initial mesh among sampled points of a sweep and the corners of its grid; None without rods.
+    """The finest initial mesh among sampled points of a sweep and the corners of its grid; None if the rod
+    model applies to no point.
 
-    mesh_of: initial mesh of a rod. ends: values, (n,), of further parameters at which meshes are compared, by
-    name: the ends of the range over which every rod is searched.
+    mesh_of: function from a rod to its initial mesh. ends: ends, (n,), of the range in which each rod is
+    searched, by name of the parameter; meshes are compared at these values.
     """
     indices = {*sampled(points).tolist(), *_corners(points)}
     rods = (rod for index in sorted(indices) for rod in _moved(points.rod(index), ends or {}))
@@ -41,7 +42,8 @@ def largest_first_mesh(
 def _moved(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod]:
     """Yields the rod with every combination of the parameter values in `ends`, by name, (n,) each.
 
-    A force is lowered to just below the crushing force. Combinations outside the model are left out.
+    A force is lowered to just below the crushing force. Combinations outside the range of the model are
+    omitted.
     """
     for values in product(*(column.tolist() for column in ends.values())):
         named = dict(zip(ends, values, strict=True))
@@ -57,7 +59,9 @@ def _moved(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod]:
 
 
 def _corners(points: Points) -> Iterator[int]:
-    """Yields the flat indices of those corners of a grid that have a rod; nothing for a list of points."""
+    """Yields the flat indices of the corners of a grid at which the rod model applies; nothing for a list of
+    points.
+    """
     ends = [sorted({0, size - 1}) for size in points.shape] if points.axes else []
     for corner in product(*ends):
         index = int(np.ravel_multi_index(corner, points.shape))

@@ -1,8 +1,9 @@
-"""Distribution of units of work over ranks, in small chunks, sized by the time per unit of each rank.
+"""Distribution of work items over ranks, in small chunks whose size follows from each rank's time per item.
 
-A unit is a point, a chain or a stretch of points. A rank with a slow chunk gives back the unsolved units of
-the chunk with the next request. No rank is dismissed while another rank may still give units back, and all
-ranks finish within about one unit of each other. `rodsweep.sweep.claims` sends the messages.
+A work item, in the code a unit, is a point, a chain of points or a segment of the sweep. A rank with a slow
+chunk returns the unsolved units of the chunk with the next request. No rank ends while another rank may still
+return units, and all ranks finish within about the time of one unit. `rodsweep.sweep.claims` sends the
+messages.
 """
 
 import threading
@@ -14,19 +15,20 @@ from typing import Any, Protocol
 from .points.ranges import IndexRange, index_count
 
 CHUNK_SECONDS = 0.1
-"""Planned solve time of a chunk, in s: long compared with a message, short compared with a run."""
+"""Planned solve time of a chunk, in s: long compared with the time of a message, short compared with a
+run."""
 CHUNK_SECONDS_A_RANK = 1e-3
 """Planned time of a chunk in a run with many ranks, in s per rank. The first rank answers a request in 50
 microseconds and so spends a twentieth of its time on answers."""
 GIVE_BACK_AFTER = 3.0
-"""Time after which a rank gives back the unsolved units of a chunk, divided by the planned time of the
-chunk."""
+"""Time after which a rank returns the unsolved units of a chunk to the queue, divided by the planned time of
+the chunk."""
 LARGEST_CHUNK = 1 << 16
 """Maximum number of units in a chunk."""
 MIN_UNITS_AHEAD = 4
-"""Minimum number of units not yet handed out, per rank, for a rank to get its next chunk in advance."""
+"""A rank gets its next chunk in advance only if the queue has at least this number of units per rank."""
 NO_WORK_LEFT: IndexRange = (0, 0)
-"""Empty range of units, the answer to a request for a chunk once all units are solved or dropped."""
+"""Empty range of units: the answer to a request for a chunk if no unit is left to solve."""
 
 
 def chunk_seconds(ranks: int) -> float:
@@ -49,30 +51,33 @@ class RankReport:
     ahead: bool = False
     """Whether the rank requests the next chunk in advance, at the start of the present chunk."""
     stop: str = ""
-    """Name of the stop signal that the rank received, or empty. Units given back after a stop are left for
-    another run."""
+    """Name of the stop signal that the rank received, or empty. Units returned after a stop signal are left
+    for another run."""
     results: dict[int, Any] = field(default_factory=dict)
-    """Results of finished units, by number of the unit; empty unless later units depend on results."""
+    """Results of finished units, by number of the unit; empty if no unit depends on the results of other
+    units."""
 
 
 class Handout:
-    """Queue of the units still to solve, on the first rank; safe to use from two threads."""
+    """Queue of the unsolved units, on the first rank; safe to use from two threads. todo: ranges of units.
+    ranks: number of ranks.
+    """
 
     def __init__(self, todo: list[IndexRange], ranks: int):
         self.todo = deque(todo)
         self.left = index_count(todo)
         self.ranks = ranks
         self.held: Counter[int] = Counter()
-        """Number of chunks that a rank has and has not reported on, by rank."""
+        """Number of chunks that a rank has received but not reported on, by rank."""
         self.points = 0
-        """Number of points that all ranks have reported as stored."""
+        """Total number of points that the ranks have reported as stored."""
         self.pace: dict[int, float] = {}
-        """Latest time per unit of work, in s, by rank."""
+        """Latest time per unit, in s, by rank."""
         self.stopped = False
         self.change = threading.Condition()
 
     def settle(self, rank: int, report: RankReport) -> None:
-        """Updates the queue from a rank's report: finished units, and units given back."""
+        """Updates the queue from a rank's report on finished and returned units."""
         with self.change:
             if self.held[rank]:
                 self.held[rank] -= 1
@@ -87,7 +92,7 @@ class Handout:
             self.change.notify_all()
 
     def take(self, rank: int) -> IndexRange | None:
-        """The next chunk for a rank; NO_WORK_LEFT if no work is left, None if the rank has to wait."""
+        """The next chunk for a rank; NO_WORK_LEFT if no unit is left, None if the rank has to wait."""
         with self.change:
             if self.todo:
                 return self._take(rank)
@@ -138,7 +143,7 @@ class Pool(Handout):
         self.work = work
         self.results = results
         self.taken: dict[int, IndexRange] = {}
-        """Unit that a rank is solving, as a range, by rank."""
+        """Range of the unit that a rank is solving, by rank."""
         self._wanted: list[int] | None = None
 
     @property
@@ -159,7 +164,9 @@ class Pool(Handout):
             self.change.notify_all()
 
     def take(self, rank: int) -> IndexRange | None:
-        """The next unit for a rank, as a range; NO_WORK_LEFT if none is left, None if the rank must wait."""
+        """The next unit for a rank, as a range; NO_WORK_LEFT if no unit is left, None if the rank has to
+        wait.
+        """
         with self.change:
             if self.stopped:
                 return NO_WORK_LEFT
@@ -170,5 +177,5 @@ class Pool(Handout):
             return None if self.taken else NO_WORK_LEFT
 
     def take_ahead(self, rank: int) -> IndexRange | None:
-        """Always None: the choice of a rank's next unit depends on the unit that it is solving."""
+        """Always None, because the choice of a rank's next unit depends on the result of the present unit."""
         return None

@@ -1,4 +1,4 @@
-"""The loop of every rank: claim a chunk, solve its units, store the points, give back unsolved units."""
+"""The loop of every rank: claim a chunk, solve its units, store the points, return unsolved units."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -22,9 +22,10 @@ Indices = int | NDArray[np.int64]
 
 
 class UnitSolver(Protocol):
-    """Function that solves a unit of work; yields (flat index, result) of each point, or of a whole stretch.
+    """Function that solves a unit, that is, a point, a chain of points or a segment of the sweep.
 
-    A unit is a point, a chain of points yielded individually, or a stretch of points yielded at once.
+    Yields (flat index, result) of each point of a chain, or once (flat indices, results) of all points of a
+    segment.
     """
 
     def __call__(self, unit: int, /) -> Iterable[tuple[Indices, Any]]: ...
@@ -37,9 +38,9 @@ class ProgressSink(Protocol):
         """Shows `done`, the number of points that all ranks have finished."""
 
     def place(self, words: str, begun: float) -> None:
-        """Shows the progress of a long point in words.
+        """Shows the text `words` on the progress of a long point.
 
-        begun: work done of all unfinished points, in points.
+        begun: sum of the fractions done of all unfinished points.
         """
 
 
@@ -48,7 +49,7 @@ class RankWork:
     """Statistics of a rank after the sweep.
 
     points: number of solved points. busy, idle: time spent on solving and on waiting, in s. ended: whether a
-    stop request ended an unfinished solve; a later run solves the unit again.
+    stop request interrupted a solve; a later run repeats this solve.
     """
 
     points: int
@@ -68,17 +69,18 @@ class Loop:
     prepare: Callable[[], object] = lambda: None
     """Called once, before the first unit."""
     results: Callable[[], dict[int, Any]] = dict
-    """Returns the results of the units stored since the last call, by number of the unit; empty unless later
-    units depend on results."""
+    """Returns the results of the units stored since the last call, by number of the unit; empty if no unit
+    depends on the results of other units."""
     name: Callable[[int], str] = lambda unit: ""
-    """Describes a unit in words, for the progress display."""
+    """Returns a description of a unit for the progress display."""
 
 
 def sweep(team: Team, todo: Handout, loop: Loop, shown: ProgressSink, stop: StopRequest) -> RankWork:
-    """Solves every unit in `todo`, which only the first rank has; returns when all ranks have finished.
+    """Solves every unit in `todo`, which is used on the first rank only; returns when all ranks have
+    finished.
 
     An exception on any rank ends all ranks. After a stop request to any rank, each rank ends after the
-    current point, or within the point if more than `stop.GRACE_SECONDS` seconds are needed.
+    current point, or abandons the point after GRACE_SECONDS (see `stop`).
     """
     claims = FirstRankClaims(team, todo, stop, shown.place) if team.first else OtherRankClaims(team, stop)
     with suppress(SolveStopped), reporting_to(RankListener(claims, stop)):
@@ -132,7 +134,7 @@ class _RankLoop:
         return RankWork(self.points, busy, time.monotonic() - started - busy, self.ended)
 
     def _solved_up_to(self, chunk: IndexRange) -> int:
-        """Solves the units of a chunk in order; returns the first unit that is not solved.
+        """Solves the units of a chunk in order; returns the number of the first unsolved unit.
 
         Later units stay unsolved after a stop request, or if the chunk takes too long.
         """

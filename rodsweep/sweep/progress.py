@@ -20,7 +20,9 @@ BAR_SECONDS = 0.1
 
 
 def on_terminal() -> bool:
-    """Whether standard error is a terminal; under an MPI launcher, standard error of the launcher decides."""
+    """Whether standard error is a terminal; under an MPI launcher, standard error of the launcher is tested
+    as well.
+    """
     if sys.stderr.isatty():
         return True
     launcher = f"/proc/{os.getppid()}/fd/2"
@@ -47,8 +49,8 @@ class SilentProgress:
 class ProgressReporter:
     """Shows the number of finished points, the rate, the remaining time and the progress of a long point.
 
-    total: number of all points; None if unknown, because later units depend on results. title: text before
-    the bar. noun: name of the counted objects in a line.
+    total: number of all points; None if unknown. title: text before the bar. noun: name of the counted
+    objects in a line.
     """
 
     def __init__(self, total: int | None, title: str, noun: str = "points", live: bool | None = None):
@@ -75,9 +77,9 @@ class ProgressReporter:
         self._show()
 
     def place(self, words: str, begun: float = 0.0) -> None:
-        """Shows the progress of a long point in words, if an update is due.
+        """Shows the text `words` on the progress of a long point, if an update is due.
 
-        begun: work done of all unfinished points, in points.
+        begun: sum of the fractions done of all unfinished points.
         """
         self.begun = begun
         self.where = words

@@ -3,19 +3,19 @@
 Points differ in cost: the first point of a chain has no initial guess, later points start from a neighbour, a
 few points are hard. The time per point is therefore measured over the latest half of the finished points, and
 never includes the first points. The reported remaining time follows the estimate slowly, with a time constant
-proportional to the elapsed time, and faster toward the end. With long points the work done of unfinished
-points counts as well. The module reads no clock: the caller passes all times.
+proportional to the elapsed time, and faster toward the end. The fractions done of unfinished points are
+included. The module reads no clock: the caller passes all times.
 """
 
 from math import exp
 
 PACE_FROM = 0.5
-"""The time per point is measured over the finished points after this fraction of them."""
+"""The time per point is measured after this fraction of the points that are finished now."""
 MIN_POINTS = 2
 """Minimum number of points finished after the first record; with fewer points there is no time per point."""
 MIN_BEGUN = 0.1
-"""Minimum work done of unfinished points, in points, for an estimate without finished points. Below, the cost
-of starting up dominates."""
+"""Minimum sum of the fractions done of unfinished points, for an estimate without finished points. For
+smaller sums, the time of starting up dominates."""
 TIME_CONSTANT = 0.25
 """Time constant of the reported remaining time, divided by the smaller of elapsed and remaining time."""
 RECORD_RATIO = 1.02
@@ -35,7 +35,8 @@ class Pace:
     def remaining(self, done: int, now: float, begun: float = 0.0) -> float | None:
         """Remaining time, in s, when `done` points are finished at the time `now`.
 
-        begun: work done of unfinished points, in points. None if too little is done for an estimate.
+        begun: sum of the fractions done of unfinished points. None if too little work is done for an
+        estimate.
         """
         if done == self.total:
             return 0.0
@@ -63,10 +64,11 @@ class Pace:
         self.records.append((done, now))
 
     def _seconds_per_point(self, done: int, now: float, begun: float) -> float | None:
-        """Time per point over the latest finished points, or since the latest record if that is longer.
+        """Time per point in s: the larger of the time over the latest finished points and the time that
+        includes the wait since the latest record.
 
-        Before MIN_POINTS points are finished the time follows from the work done of unfinished points, or is
-        None for work below MIN_BEGUN.
+        Before MIN_POINTS points are finished, the time follows from the fractions done of unfinished points;
+        None if their sum is below MIN_BEGUN.
         """
         if not self.records or done < self.records[0][0] + MIN_POINTS:
             return now / (done + begun) if begun >= MIN_BEGUN else None
@@ -77,7 +79,7 @@ class Pace:
 
 
 def in_words(seconds: float) -> str:
-    """A duration as text with two significant digits: 8 s, 1.5 min, 3.2 h, 12 d."""
+    """Text of a duration with two significant digits: 8 s, 1.5 min, 3.2 h, 12 d."""
     for unit, length in (("d", 86400.0), ("h", 3600.0), ("min", 60.0)):
         if seconds >= 1.45 * length:
             return f"{float(f'{seconds / length:.2g}'):g} {unit}"
@@ -85,7 +87,8 @@ def in_words(seconds: float) -> str:
 
 
 def rate_in_words(done: int, seconds: float) -> str:
-    """Rate of `done` points in `seconds` as text: points per second, or the time per point above one second.
+    """Text of the rate of `done` points in `seconds`: points per second, or the time per point if it exceeds
+    one second.
 
     Empty before the first point.
     """

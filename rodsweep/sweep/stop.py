@@ -1,6 +1,6 @@
 """Early stop of a run, requested by a scheduler's warning, a user's kill or Ctrl-C.
 
-A run stops between two points, or within a point that takes longer than `GRACE_SECONDS` after the request. A
+A run stops between two points; a point that is not finished GRACE_SECONDS after the request is abandoned. A
 `RankListener` exchanges messages during long solves, reports progress, and ends a solve after a stop request.
 """
 
@@ -19,7 +19,8 @@ POLL_SECONDS = 0.05
 PLACE_SECONDS = 0.5
 """Seconds from the start of a solve to the first report of its progress, and between two reports."""
 STOP_SIGNALS = (signal.SIGTERM, signal.SIGUSR1, signal.SIGINT)
-"""Signals that request a stop: from `kill` or a scheduler's end, from a scheduler's warning, from Ctrl-C."""
+"""Signals that request a stop: from `kill` or a scheduler at the time limit, from a scheduler's warning, from
+Ctrl-C."""
 GRACE_SECONDS = 0.3
 """Time, in seconds, to finish the current point after a stop request. A longer point is abandoned and solved
 again on resuming: a run has to end within two seconds, and Open MPI's launcher kills after one."""
@@ -28,8 +29,8 @@ STOPPING_MESSAGE = b"\nstopping: all points that are done are kept (Ctrl-\\ ends
 
 
 class StopRequest:
-    """Whether this process was requested to stop: true once `name`, the name of the stop signal, is not
-    empty.
+    """Stop request to this process; true after a stop signal. `name` is the name of the signal, empty before
+    a signal.
 
     acknowledges: whether Ctrl-C is acknowledged on standard error. Under a launcher no rank acknowledges,
     because all ranks would.
@@ -52,13 +53,15 @@ class StopRequest:
         return time.monotonic() - self._since >= GRACE_SECONDS
 
     def listen(self) -> None:
-        """Lets stop signals set this request instead of ending the process; only for the main thread."""
+        """Installs handlers, so that stop signals set this request instead of ending the process; only for
+        the main thread.
+        """
         for number in STOP_SIGNALS:
             signal.signal(number, self._note)
 
     @staticmethod
     def ignore() -> None:
-        """Lets the process ignore stop signals, also while Python and MPI shut down; only for the main
+        """Makes the process ignore stop signals, even while Python and MPI shut down; only for the main
         thread.
         """
         for number in STOP_SIGNALS:
@@ -101,11 +104,11 @@ class RankListener:
     """Receives the solvers' reports on a rank: polls messages, forwards progress, ends a solve on a stop
     request.
 
-    Every unit of work gets a new listener.
+    A new listener is created for every unit.
     """
 
     def __init__(self, claims: Claims, stop: StopRequest, name: Callable[[], str] = str):
-        """name: returns a description of the unit in words."""
+        """name: function that returns a description of the unit."""
         self.claims = claims
         self.stop = stop
         self.name = name

@@ -41,7 +41,9 @@ class Team:
         return self.rank == 0
 
     def on_first(self, work: Callable[[], T]) -> T:
-        """Calls `work` on the first rank only; returns its result, or raises its `Refusal`, on every rank."""
+        """Calls `work` on the first rank only. Every rank returns the result, or raises the `Refusal` that
+        `work` raised.
+        """
         outcome: Any = None
         if self.first:
             try:
@@ -63,7 +65,9 @@ class Team:
             pause = min(2 * pause, LONGEST_PAUSE)
 
     def require_on_all_ranks(self, work: Callable[[], object]) -> None:
-        """Calls `work` on every rank; if it raises a `Refusal` on any rank, all ranks raise that refusal."""
+        """Calls `work` on every rank. If `work` raises a `Refusal` on any rank, all ranks raise this
+        refusal.
+        """
         refusal: Refusal | None = None
         try:
             work()
@@ -93,8 +97,8 @@ class Team:
         """Context in which an exception on any rank aborts all ranks, with the rank's message and exit
         status.
 
-        Without the abort all other ranks would wait forever. An exception propagates without abort if there
-        is a single rank, or if all ranks raise the same refusal.
+        Otherwise all other ranks would wait forever. An exception propagates without abort if there is a
+        single rank, or if all ranks raise the same refusal.
         """
         try:
             yield

@@ -42,7 +42,7 @@ class BranchTask(NonlinearTask):
             ("unstable cycles", True, "with all their Floquet multipliers"),
             ("branches without mirror symmetry", True, "from the symmetry breakings on those branches"),
             ("branches of twice the period, tori", False, "only the points where they begin are found"),
-            ("cycles on other branches", False, "task: limit_cycle finds stable ones from a motion"),
+            ("cycles on other branches", False, "task: limit_cycle finds stable cycles from a motion"),
         ]
 
     def searched(self) -> dict[str, np.ndarray]:
@@ -102,10 +102,9 @@ def branch_values(result: "BranchesOfRod", along: str, points: int, special: int
 
 
 def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
-    """For every symmetry breaking, the second branch that begins or ends there.
+    """For every symmetry breaking on a branch, the number of the second branch that begins or ends there.
 
-    Keys: (number of a branch from 1, index of the symmetry breaking among its special points). Values: number
-    of the second branch.
+    Keys: (number of the branch, from 1; index of the symmetry breaking among the branch's special points).
     """
     numbers = {}
     for number, curve in enumerate(curves, 1):
@@ -138,7 +137,7 @@ def _special(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict
     """Variables of the file for one special point.
 
     start: index, among all cycles of the rod, of the first cycle of the point's branch. hopf: crossing of the
-    straight rod at the point, None if the point is no Hopf point.
+    straight rod at the point, None if the point is not a Hopf point.
     """
     beside = {
         "special_point": start + point.after + 1 if point.after >= 0 else 0,

@@ -32,7 +32,7 @@ class CriticalityTask(NonlinearTask):
         return [
             self.AXIAL_DRAG_ROW,
             ("Hopf points and their normal forms", True, f"at most {most} are stored for each rod"),
-            ("cycles", False, "to third order in their amplitude only; task: limit_cycle computes them"),
+            ("cycles", False, "only to third order in the amplitude; task: limit_cycle computes cycles"),
         ]
 
     def searched(self) -> dict[str, np.ndarray]:

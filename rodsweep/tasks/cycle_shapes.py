@@ -1,4 +1,4 @@
-"""Shapes and samples of cycles for a figure of a file that stores none: the cycles are solved again."""
+"""Shapes and samples of cycles, for figures of files without shapes: the cycles are solved again."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -18,16 +18,16 @@ SHAPE_COUNT = 48
 SAMPLE_COUNT = 256
 """Number of samples of the tip and of the energy per period."""
 MAX_PERIOD_DIFFERENCE = 100
-"""Maximum difference between the stored period and the period solved again, in units of their estimated
-errors. Beyond it the two cycles count as different."""
+"""Two cycles are treated as different if the difference of the stored and the new period exceeds this
+multiple of the sum of their estimated errors."""
 
 
 def with_shapes(view: View, numbers: Sequence[int]) -> View:
     """A copy of the file's view with shapes and samples of the cycles at some points; NaN at all other
     points.
 
-    numbers: of the points, from 1. Raises InputError if a point solved again has a cycle different from the
-    stored one, as is possible from a different start.
+    numbers: numbers of the points, from 1. Raises InputError if the new cycle of a point differs from the
+    stored cycle, which is possible because the initial guess may differ.
     """
     shape = view.variables["status"].shape
     added: dict[str, np.ndarray] = {}
@@ -42,7 +42,9 @@ def with_shapes(view: View, numbers: Sequence[int]) -> View:
 
 
 def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
-    """(job of a point, variables of the point's cycle solved again); number: of the point, from 1."""
+    """Solves a point of the file again; returns (job of the point, variables of its cycle). number: number of
+    the point, from 1.
+    """
     job = _job(view, number)
     try:
         solver = job.solver()
@@ -50,21 +52,23 @@ def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
         record = solver.record(0, solver.solve(0))
     except EnvironmentIncomplete as lack:
         raise InputError(
-            f"{view.path} holds no shapes of cycles, and none can be solved here: {lack}; run with "
+            f"{view.path} has no shapes of cycles, and the cycles cannot be solved here: {lack}; run with "
             "limit_cycle.shapes > 0, which stores them"
         ) from None
     stored, error = (float(view.variables[name].ravel()[number - 1]) for name in ("period", "period_error"))
     allowed = MAX_PERIOD_DIFFERENCE * stored * (error + float(record["period_error"]))
     if not abs(float(record["period"]) - stored) <= allowed:
         raise InputError(
-            f"{view.path} holds no shapes of cycles, and point {number}, solved without its neighbour, ends "
-            "in another state than the stored one; run with limit_cycle.shapes > 0 to store shapes"
+            f"{view.path} has no shapes of cycles, and point {number}, solved without its neighbour, ends "
+            "in a state that differs from the stored state; run with limit_cycle.shapes > 0 to store shapes"
         )
     return job, record
 
 
 def _job(view: View, number: int) -> Job:
-    """Job that solves one point of the file with the file's config, without starting from a neighbour."""
+    """Job that solves one point of the file, with the config of the file but without a neighbour's cycle as
+    initial guess. number: number of the point, from 1.
+    """
     stored = view.config["limit_cycle"]
     options = {
         "shapes": SHAPE_COUNT,

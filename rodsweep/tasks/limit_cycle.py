@@ -35,7 +35,8 @@ if TYPE_CHECKING:
     from ..solve.cycle.limit_cycle import Cycle, CycleRequest
 
 SWEEP_OPTIONS = ("method", "along", "direction", "time")
-"""Options of the task that concern the sweep or the file; all others belong to the request for a cycle."""
+"""Options of the task that concern the sweep or the file; all other options are passed to the solver of a
+cycle."""
 MULTIPLIER_FIELDS = {f"multiplier_{part}": f"multipliers_{part}" for part in ("real", "imag")}
 """Field of `_StoredMultipliers` by name of the variable, where the two names differ."""
 FINITE_STIFFNESS = Range(isfinite, "a finite number")
@@ -58,7 +59,9 @@ class LimitCycleTask(Task):
 
     @property
     def chains(self) -> Chains | None:
-        """Chains of points, each started from the cycle of the previous point; None without chains."""
+        """Chains of points, each started from the cycle of the previous point; None if there are no
+        chains.
+        """
         options = self.config.limit_cycle
         if options.start != "neighbour":
             return None
@@ -66,8 +69,8 @@ class LimitCycleTask(Task):
         return Chains(self.points.shape, axis, options.direction == "up")
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Times of samples, shapes and transients, and material coordinates of shapes, by dimension; all
-        (n,).
+        """Times of samples, shapes and transients, and material coordinates of shapes, (n,) each, by name of
+        the dimension.
         """
         options = self.config.limit_cycle
         extents = {"sample": options.samples, "shape": options.shapes}
@@ -88,7 +91,7 @@ class LimitCycleTask(Task):
         chains = self.chains
         start = f"the leading mode with tip deflection {options.amplitude:g} L"
         if options.start == "hopf":
-            start = "the Hopf point below its force"
+            start = "the nearest Hopf point below its force"
         if chains is None:
             return points_clause(self.points, f"started from {start}")
         chained = f"{counted(chains.count, 'chain')} of {chains.length}"
@@ -102,8 +105,8 @@ class LimitCycleTask(Task):
         return arms_line(self.config, self.points.of_rods, self._first_mesh)
 
     def _first_mesh(self) -> Elements | None:
-        """The largest of the first meshes of all points: of motions in time, or of branches from Hopf
-        points.
+        """The finest of the initial meshes of all points: meshes of motions in time or, with start: hopf, of
+        branches from Hopf points.
         """
         from ..solve.cycle.transient.motion_mesh import MOTION_MESH, coarse_mesh, motion_mesh
 
@@ -134,9 +137,11 @@ class LimitCycleTask(Task):
         ]
 
     def _stored(self, what: str, option: str, variables: tuple[Variable, ...]) -> CheckRow:
-        """Row of `check` on variables stored only on request, with their number and memory.
+        """Row of `check` on variables that are stored only on request, with number and size of the stored
+        values.
 
-        what: description of the variables. option: option of limit_cycle with their number per point.
+        what: description of the variables. option: name of the option of limit_cycle with the number of
+        values per point.
         """
         options = self.config.limit_cycle
         each: int = getattr(options, option)
@@ -190,7 +195,7 @@ class LimitCycleTask(Task):
         )
 
     def request(self) -> "CycleRequest":
-        """The request, the same at every point, from which `solve_cycle` solves a cycle."""
+        """The settings with which `solve_cycle` solves the cycle at every point."""
         from ..solve.cycle.limit_cycle import CycleRequest
 
         options = self.config.limit_cycle.model_dump(exclude=set(SWEEP_OPTIONS))
@@ -216,12 +221,16 @@ class LimitCycleTask(Task):
 
 
 class _StoredMultipliers(NamedTuple):
-    """The stored Floquet multipliers of a cycle, (STORED_MULTIPLIERS,), NaN if none were computed."""
+    """The stored Floquet multipliers of a cycle, (STORED_MULTIPLIERS,); NaN if no multipliers were
+    computed.
+    """
 
     multipliers: Complex
 
 
 def _along(variables: tuple[Variable, ...], arrays: np.ndarray | None) -> dict[str, Any]:
-    """Values of variables by name, from arrays in the same order; NaN for every variable without arrays."""
+    """Values of variables by name, from arrays in the order of the variables; NaN for all variables if
+    `arrays` is None.
+    """
     names = [variable.name for variable in variables]
     return dict.fromkeys(names, np.nan) if arrays is None else dict(zip(names, arrays, strict=True))

@@ -38,7 +38,9 @@ class ModesTask(ProvedTask):
         return {"u": lobatto_points(self.config.modes.nodes)}
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Forces at which the rods change stability; empty for arms that are not uniform or of rubber."""
+        """Forces at which the rods change stability; empty if any arm is not uniform or not of linear
+        material.
+        """
         return force_changes(self.points, values) if self.config.standard else ()
 
     def headline(self) -> str:

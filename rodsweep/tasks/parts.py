@@ -22,12 +22,15 @@ from .protocol import CheckRow, Task
 
 @dataclass(frozen=True, slots=True)
 class ProvedTask(Task):
-    """Base class of tasks whose list of modes or crossings a certificate can prove complete."""
+    """Base class of tasks with a certificate, which proves that the list of modes or crossings is
+    complete.
+    """
 
     uncertified_risk: ClassVar[str]
     """Consequence of a missing certificate, as `check` prints it."""
     count_location: ClassVar[str] = ""
-    """Where the certificate counts modes: "point", at every point, or "line", at some rods of each line."""
+    """Rods at which the certificate counts modes: "point" for every point, "line" for some rods on each
+    line."""
     never_modelled: ClassVar[tuple[str, str]] = (
         "gravity, inertia, nonlinear motion",
         "not part of the linear overdamped problem",
@@ -36,13 +39,12 @@ class ProvedTask(Task):
 
     @abstractmethod
     def option_rows(self) -> list[CheckRow]:
-        """Rows of `check` on what the task's options request."""
+        """Rows of `check` on the results that the task's options request."""
 
     @property
     def moved(self) -> dict[str, np.ndarray]:
-        """All values of each parameter that occur in the task, by name: of points, searches and lines.
-
-        Arrays of any shape.
+        """All values of each parameter at points, in searches and on lines, by name of the parameter, in
+        arrays of any shape.
         """
         return self.points.of_rods | self.searched() | self.coordinates()
 
@@ -50,9 +52,9 @@ class ProvedTask(Task):
         return arms_line(self.config, self.moved, self.first_mesh)
 
     def first_mesh(self) -> Elements | None:
-        """The largest of the meshes on which the solves of all points begin; None without a rod.
+        """The finest of the initial meshes of all points; None if the rod model applies to no point.
 
-        By default the mesh of a search along the parameter in `searched` for eigenvalues on the imaginary
+        By default the mesh of a search, along the parameter in `searched`, for eigenvalues on the imaginary
         axis.
         """
         accuracy = mesh_accuracy(ANCHORS.place_accuracy, vectors=False)
@@ -63,11 +65,15 @@ class ProvedTask(Task):
         return largest_first_mesh(self.points, mesh_of, self.searched())
 
     def searched(self) -> dict[str, np.ndarray]:
-        """Limits of the searched range, (1,) or (2,), by name of the parameter; empty without a search."""
+        """Ends of the searched range, (1,) or (2,), by name of the parameter; empty for tasks without a
+        search.
+        """
         return {}
 
     def certificate(self) -> tuple[bool, str]:
-        """(whether the run proves completeness, method of the proof or reason for its absence)."""
+        """Returns (whether the run proves completeness, method of the proof or reason why there is no
+        proof).
+        """
         task = self.config.task
         if not getattr(self.config, task).certify:
             return False, f"{task}.certify: false; {self.uncertified_risk}"
@@ -80,8 +86,8 @@ class ProvedTask(Task):
 
     @property
     def _varies(self) -> bool:
-        """Whether the characteristic determinant D has no closed form, because an arm varies along its
-        length.
+        """Whether the material or the cross-section of some arm varies along its length. The characteristic
+        determinant D then has no closed form.
         """
         tapers = self.points.by_name.get("taper", np.ones(1))
         return self.config.build.profile is not None or bool((tapers != 1).any())
@@ -113,8 +119,8 @@ class NonlinearTask(ProvedTask):
 
 
 def crushing_clause(config: Config) -> str:
-    """Clause that states that a search over F ends below the crushing force; empty if no force crushes the
-    arm.
+    """Clause stating that a search over F ends below the force that crushes the arm; empty if no force
+    crushes the arm.
     """
     if config.standard:
         return ", or to just below k1"
@@ -123,7 +129,7 @@ def crushing_clause(config: Config) -> str:
 
 
 def points_text(points: Points) -> str:
-    """The number of points and the shape of their grid in words: "50 points (5 x 10)"."""
+    """Text with the number of points and the shape of their grid: "50 points (5 x 10)"."""
     shape = " x ".join(str(n) for n in points.shape) if points.axes else "a list"
     if points.over:
         shape = f"{shape}: {' x '.join(points.over)}"
@@ -131,7 +137,9 @@ def points_text(points: Points) -> str:
 
 
 def points_clause(points: Points, clause: str) -> str:
-    """The number of points with a clause on each point: "50 points (a list), each searched from ..."."""
+    """Text with the number of points and a clause on each point: "50 points (a list), each searched from
+    ...".
+    """
     return f"{points_text(points)}, {'each ' * (points.count > 1)}{clause}"
 
 
@@ -165,7 +173,8 @@ def material_check_rows(config: Config, columns: Mapping[str, np.ndarray]) -> li
 def arms_line(
     config: Config, columns: Mapping[str, np.ndarray], first_mesh: Callable[[], Elements | None]
 ) -> str:
-    """Line of `check` on the shape, the law and the first mesh of arms that are not uniform or of rubber.
+    """Line of `check` on the shape, the law and the initial mesh of arms that are not uniform or not of
+    linear material.
 
     Empty for all other arms. columns: values of the rods' parameters by name, arrays of any shape.
     """
@@ -180,11 +189,11 @@ def arms_line(
         return arms
     count = counted(mesh.elements, "element")
     several = any(len(np.unique(c)) > 1 for c in columns.values())
-    return f"{arms}; at first {count} of order {mesh.order}{', for the arm that needs most' * several}"
+    return f"{arms}; at first {count} of order {mesh.order}{', for the finest mesh' * several}"
 
 
 def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
-    """Tapers and profiles of the arms, in words; empty for uniform arms."""
+    """Texts on the tapers and the profile of the arms; empty for uniform arms."""
     tapers = columns.get("taper", np.ones(1))
     ratios = "a cone of radius ratio" if len(np.unique(tapers)) == 1 else "cones of radius ratios"
     ends = " to ".join(f"{end:g}" for end in np.unique([tapers.min(), tapers.max()]))
@@ -196,7 +205,7 @@ def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def _profile(config: Config, profile: Profile) -> str:
-    """A profile in words. For a cone in SI units, rodsweep itself makes a profile of the drag at each
+    """Text describing a profile. The profile of a cone in SI units is computed by rodsweep: the drag at each
     radius.
     """
     if config.stated_build is None and config.parameters.arm is not None and config.parameters.arm.tapering:
@@ -207,7 +216,7 @@ def _profile(config: Config, profile: Profile) -> str:
 
 
 def _law(config: Config) -> str:
-    """The constitutive law in words."""
+    """Text describing the constitutive law and the cross-section."""
     law = "linear material" if config.build.law == "linear" else "neo-Hookean rubber"
     return f"{law} with a swelling section" if config.build.section == "swelling" else law
 

@@ -73,7 +73,9 @@ class PhaseDiagramTask(ProvedTask):
         return {self.config.plane[0]: self.line[[0, -1]]}
 
     def check_rows(self) -> list[CheckRow]:
-        """Rows of `check`: those of a linear task, and the nonlinear motion if cycles are requested."""
+        """Rows of `check`: the rows of a linear task and, if cycles are requested, a row on the nonlinear
+        motion.
+        """
         linear = ProvedTask.check_rows(self)
         if not self.config.phase_diagram.cycles:
             return linear
@@ -127,11 +129,13 @@ class PhaseDiagramTask(ProvedTask):
         )
 
     def rod(self, index: int) -> Rod:
-        """The rod of a row, without effect of the parameter that varies along the row: F = 0, or k1 = inf."""
+        """The rod of a row, with the neutral value, such as F = 0 or k1 = inf, of the parameter that varies
+        along the row.
+        """
         return self.points.rod(index, gamma1=self.config.gamma1)
 
     def row_request(self) -> "RowRequest":
-        """The request, the same for every row, from which a row is solved."""
+        """The settings with which every row is solved."""
         from ..solve.changes.diagram.rows import RowRequest
 
         options = self.config.phase_diagram

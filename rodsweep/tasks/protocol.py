@@ -1,4 +1,4 @@
-"""Interfaces of a task and its solver, through which `check` and `run` use all tasks alike."""
+"""Interfaces of a task and its solver, by which `check` and `run` handle all tasks in the same way."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
@@ -16,17 +16,20 @@ from ..sweep.points.points import Points
 from ..sweep.points.stretches import SolveStretch, Stretches
 
 NamedArrays = dict[str, np.ndarray]
-"""Arrays by name: the result of a unit of joint work."""
+"""Arrays by name: the result of a unit, that is, of a work item for variables that depend on all points."""
 OrderedMap = Callable[[Sequence[Any], Callable[[Any], Any]], list[Any]]
 """Function (items, function) -> results in the order of the items; the work may be shared among ranks."""
 SolveWrapper = Callable[[int, State, Callable[[], tuple[Any, State]]], tuple[Any, State]]
-"""Wrapper of the solve of a point: (index, starting state, solve) -> (outcome, state for the next point)."""
+"""Wrapper of the solve of a point: (flat index, initial state, solve) -> (outcome, initial state of the next
+point)."""
 CheckRow = tuple[str, bool, str]
 """Row of the table printed by `check`: (effect or result, whether it is modelled, reason)."""
 
 
 class Units(Protocol):
-    """Units of work of joint variables, numbered from 0. The object is sent to all ranks."""
+    """Work items (units), numbered from 0, for variables that depend on all points. The object is sent to all
+    ranks.
+    """
 
     def wanted(self, results: Mapping[int, NamedArrays]) -> list[int]:
         """Numbers of the units still to be solved, most urgent first; empty if no unit is left.
@@ -35,29 +38,31 @@ class Units(Protocol):
         """
 
     def where(self, unit: int) -> str:
-        """Description of a unit in words, for the progress display and the log."""
+        """Text describing a unit, for the progress display and the log."""
 
 
 class JointVariables(Protocol):
-    """Computes variables that depend on all points, for example curves. Every rank has such an object."""
+    """Computes variables that depend on all points, for example curves. Every rank has its own object."""
 
     def units(self, view: View) -> Any:
-        """The units of work; None if no work is divided into units. view: the file with all points."""
+        """The units to be divided among the ranks; None if there are no units. view: the file with all
+        points.
+        """
 
     def starts(self, units: Any, wanted: Sequence[int]) -> dict[int, Any]:
-        """Starting data that this rank has for the wanted units, to be sent to all ranks."""
+        """Initial data that this rank has cached for the units `wanted`, to be sent to all ranks."""
 
     def take(self, starts: Mapping[int, Any]) -> None:
-        """Keeps starting data received from a different rank."""
+        """Caches initial data received from a different rank."""
 
     def solve(self, units: Any, unit: int) -> NamedArrays:
-        """Solves a unit of work; returns its result."""
+        """Solves a unit and returns its result."""
 
     def empty_result(self) -> NamedArrays:
-        """Empty result, for a unit of work whose solver raised an unforeseen exception."""
+        """Empty result, for a unit whose solver raised an unforeseen exception."""
 
     def variables(self, view: View, units: Any, results: Mapping[int, NamedArrays]) -> Sequence[Filled]:
-        """The joint variables for the result file; called on the first rank only.
+        """The variables that depend on all points, for the result file; called on the first rank only.
 
         view: the file with all points. results: results of all units, by number.
         """
@@ -72,21 +77,23 @@ class Solver:
     warm_up: Callable[[], object]
     """Triggers compilation and fills caches before any point is timed."""
     solve: Callable[[int], Any]
-    """Solves the point with an index; returns an outcome with the attributes `status` and `message`."""
+    """Solves the point at a flat index; returns an outcome with the attributes `status` and `message`."""
     record: Callable[[int, Any], dict[str, Any]]
-    """Converts the index and the outcome of a point into values of the file's variables by name."""
+    """Function from (flat index, outcome) of a point to the values of the file's variables, by name."""
     together: JointVariables | None = None
     """Computes the variables that depend on all points; None for tasks without such variables."""
     chained: ChainedWork | None = None
-    """Chains of points that start from their neighbours' solutions; replaces `solve`. None without chains."""
+    """Chains of points, each started from the solution of the previous point; used instead of `solve`. None
+    if there are no chains."""
     stretched: tuple[Stretches, SolveStretch] | None = None
-    """(stretches of neighbouring points, function that solves the points of a stretch by their flat indices);
-    replaces `solve`. None without stretches."""
+    """(segments of the sweep, function that solves the points of a segment at their flat indices), used
+    instead of `solve`. None if every point is solved alone."""
 
     def within(self, around: SolveWrapper, together: SolveStretch | None = None, **changed: Any) -> "Solver":
-        """A copy whose solve of every point is wrapped by `around`, with changed fields.
+        """A copy of the solver with the solve of every point wrapped by `around`, and with the fields in
+        `changed`.
 
-        together: function that solves a stretch instead of the present function, if the solver has stretches.
+        together: new function that solves a segment of the sweep, if the solver has segments.
         """
         chained = self.chained
         stretched = self.stretched
@@ -105,7 +112,7 @@ class Solver:
 
 
 def on_this_rank(items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
-    """Results of `work` for all items, computed on this rank alone."""
+    """Results of `work` for all items, in order, computed on this rank only."""
     return [work(item) for item in items]
 
 
@@ -119,24 +126,28 @@ class Task(ABC):
 
     @property
     def chains(self) -> Chains | None:
-        """Chains of points, each started from the solution of the previous point; None without chains."""
+        """Chains of points, each started from the solution of the previous point; None if there are no
+        chains.
+        """
         return None
 
     @property
     def stretches(self) -> Stretches | None:
-        """Stretches of neighbours solved together; None without stretches."""
+        """Segments of neighbouring points that are solved together; None if every point is solved alone."""
         return None
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Coordinates, (extent,), of the layout's dimensions beside the points, by dimension."""
+        """Coordinates, (extent,), of the dimensions other than the points, by name of the dimension."""
         return {}
 
     def constants(self, in_order: OrderedMap = on_this_rank) -> tuple[Filled, ...]:
-        """Variables of the file that depend on the config alone. in_order: shares slow work among ranks."""
+        """Variables of the file that depend only on the config. in_order: maps a function over items, shared
+        among the ranks.
+        """
         return ()
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Variables of the file computed from the results of all points, on the first rank alone.
+        """Variables of the file computed from the results of all points; called on the first rank only.
 
         values: variables of the points by name, shape (points, own dimensions), readable by slices.
         """
@@ -144,10 +155,11 @@ class Task(ABC):
 
     @abstractmethod
     def headline(self) -> str:
-        """Line of `check` with the number of points and the request for each point."""
+        """Line of `check` with the number of points and the computation at each point."""
 
     def arms(self) -> str:
-        """Line of `check` on the shape, the law and the first mesh of arms that are not uniform or of rubber.
+        """Line of `check` on the shape, the law and the initial mesh of arms that are not uniform or not of
+        linear material.
 
         Empty for all other arms.
         """

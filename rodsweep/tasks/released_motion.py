@@ -1,4 +1,4 @@
-"""A rod whose tip is moved aside and released: shape before the release, and motion after it."""
+"""A rod whose tip is displaced and released: shape before the release, and motion after the release."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -16,15 +16,17 @@ from .running.job import Job
 NODE_COUNT = 33
 """Number of Lobatto nodes of each shape."""
 FRAMES_PER_RETURN = 32
-"""Number of shapes per return of the tip; an animation interpolates between the shapes."""
+"""Number of shapes per return of the tip to its section; an animation interpolates between the shapes."""
 MOTION_ACCURACY = 1e-5
-"""Relative accuracy of the mesh on which the bent shape is computed, as of motions of the task
-limit_cycle."""
+"""Relative accuracy of the mesh on which the bent shape is computed, equal to the accuracy of motions in the
+task limit_cycle."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReleasedMotion:
-    """Motion of a rod after its tip is released, and the limit cycle or rest at which the motion ends."""
+    """Motion of a rod after its tip is released, and the limit cycle or state of rest that the motion
+    reaches.
+    """
 
     status: str
     """Status of the task limit_cycle."""
@@ -41,7 +43,7 @@ class ReleasedMotion:
     y: Array
     """Coordinates y of the shapes in L, (frames, nodes)."""
     is_whole: bool
-    """Whether the shapes cover the whole motion up to the cycle or to rest."""
+    """Whether the shapes cover the complete motion up to the cycle or to rest."""
 
 
 @solving

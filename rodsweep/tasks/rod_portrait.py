@@ -23,20 +23,21 @@ CYCLE_FRACTIONS = (0.1, 0.5, 0.9)
 SHAPE_COUNT = 12
 """Number of shapes per period of each cycle; a small panel has no room for more."""
 LARGE_DEFLECTION = 0.5
-"""Tip deflection in L of a start that leads to a stable cycle even if the straight rod is stable too."""
+"""Initial tip deflection in L, large enough to reach a stable cycle even if the straight rod is also
+stable."""
 MODE_THRESHOLD_KINDS = ("onset", "hopf")
 """Kinds of thresholds; the leading mode is solved at the first threshold of each kind."""
 F_MAX = 200.0
-"""Default of the largest force, the same as of the task thresholds."""
+"""Default of the largest force, equal to the default of the task thresholds."""
 Solve = Callable[[Job], View]
 """Function that solves the only point of a job."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PortraitRequest:
-    """Request for a portrait: the rod, the largest force, and the relative accuracy.
+    """Request for a portrait.
 
-    accuracy: None for the default of each task.
+    rod: the rod. F_max: largest force. accuracy: relative accuracy; None for the default of each task.
     """
 
     rod: DescribedRod
@@ -44,7 +45,9 @@ class PortraitRequest:
     accuracy: float | None = None
 
     def job(self, task: str, options: Mapping[str, Any], F: float | None = None) -> Job:
-        """Job of a task for this rod; options: of the task; F: force, None for tasks that vary the force."""
+        """Job of a task for this rod. options: options of the task, by name. F: force, None for tasks that
+        vary the force.
+        """
         names = (*CONFIGS[task].taken_of_a_rod(options), *OPTIONAL_PARAMETERS)
         own = self.rod.parameters
         values: dict[str, Any] = {name: own[name] for name in names if name in own and name != "F"}
@@ -57,10 +60,10 @@ class PortraitRequest:
 
 
 def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResults:
-    """Solves all results of a portrait; solve: function that solves the only point of a job.
+    """Solves all results of a portrait.
 
-    A result that cannot be solved is missing, and `RodResults.missing` has the reason. Raises InputError if
-    the parameters describe no rod.
+    solve: function that solves the only point of a job. If a result cannot be solved, `RodResults.missing`
+    has the reason. Raises InputError if the parameters describe no rod.
     """
     F_max = {"F_max": request.F_max}
     views = {"thresholds": solve(request.job("thresholds", F_max))}
@@ -99,9 +102,9 @@ def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResu
 
 
 def _cycle(solved: Callable[[str, Mapping[str, Any], float], View | None], F: float) -> View | None:
-    """The limit cycle at a force, started from the Hopf point; if this fails, from a large deflection.
+    """The limit cycle at the force F, started from the Hopf point or, if this fails, from a large deflection.
 
-    solved: function (task, options, F) that solves a task, None for a refusal.
+    solved: function (task, options, F) that solves a task, and returns None for invalid input.
     """
     found = None
     for start in ({"start": "hopf"}, {"start": "mode", "amplitude": LARGE_DEFLECTION}):
@@ -128,7 +131,7 @@ def mode_forces(thresholds: View) -> dict[str, float]:
 def cycle_forces(ranges: Sequence[Range]) -> list[float]:
     """Forces of the three cycles, increasing: at CYCLE_FRACTIONS of the ranges of F with a stable cycle.
 
-    A force is rounded to three digits if the rounded force lies in its range. Empty without a range.
+    A force is rounded to three digits if the rounded force is in the same range. Empty if `ranges` is empty.
     """
     if not ranges:
         return []

@@ -52,14 +52,16 @@ class SpectrumTask(ProvedTask):
 
     @property
     def stretches(self) -> Stretches | None:
-        """Stretches of neighbouring points along which eigenvalues are followed; None if they are not."""
+        """Segments of neighbouring points along which eigenvalues are followed; None if eigenvalues are not
+        followed.
+        """
         if not self.config.follows:
             return None
         return stretches_along_longest_axis(self.points.shape, self.points.moved)
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Material coordinates u of the nodes of eigenvectors, (nodes,), by dimension; empty without
-        vectors.
+        """Material coordinates u of the nodes of eigenvectors, (nodes,), by name of the dimension; empty if
+        no eigenvectors are requested.
         """
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
@@ -97,7 +99,9 @@ class SpectrumTask(ProvedTask):
         return tuple(names), grid[0].shape, dict(zip(names, (each.ravel() for each in grid), strict=True))
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Forces at which the rods change stability; empty for arms that are not uniform or of rubber."""
+        """Forces at which the rods change stability; empty if any arm is not uniform or not of linear
+        material.
+        """
         return force_changes(self.points, values) if self.config.standard else ()
 
     def headline(self) -> str:
@@ -160,7 +164,9 @@ class SpectrumTask(ProvedTask):
         )
 
     def _together(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> StretchResult:
-        """Results for the points of a stretch, (indices,), whose eigenvalues are followed."""
+        """Results for the points of a segment of the sweep, along which eigenvalues are followed. indices:
+        flat indices, (n,).
+        """
         from ..determinant.parameter_path import Path
         from ..solve.spectrum.path.stretch import Stretch, solve_stretch
         from ..solve.spectrum.status import SpectrumStatus

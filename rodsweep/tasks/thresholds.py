@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from ..solve.hopf.criticality import Criticality
 
 FIRST_CROSSINGS = {"onset": "growth_rate", "hopf": "frequency", "restabilization": "frequency"}
-"""Kinds of crossings of which the first is stored as a threshold, each with the variable stored beside F."""
+"""Kinds of crossings whose first crossing is stored as a threshold; the value is the quantity stored in
+addition to F."""
 
 
 @dataclass(frozen=True, slots=True)

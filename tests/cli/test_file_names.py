@@ -42,7 +42,7 @@ def results(loaded, tmp_path_factory):
             ("export", "c.yaml"),
             "c.yaml is a config, not a result file; `rodsweep run` makes a result file from it",
         ),
-        (("check", "c.h5"), "c.h5 is a result file and no config; `rodsweep show` says what it holds"),
+        (("check", "c.h5"), "c.h5 is a result file, not a config; `rodsweep show` prints its content"),
         (("export", "."), ". is a directory; name a file"),
         (("plot", "."), ". is a directory; name a file"),
         (("plot", ".."), ".. is a directory; name a file"),

@@ -152,7 +152,7 @@ def test_show_and_files_say_what_rests_on_an_estimate(command):
             said[name, task] = command("show", f"{name}.h5").stdout + meaning
     assert "at most 2, counted by an estimate at 2 of 2 points" in said["cone", "spectrum"]
     assert "not located between the forces of the file" in said["cone", "spectrum"]
-    assert "it is estimated in part" in said["cone", "spectrum"]
+    assert "the proof is partly an estimate" in said["cone", "spectrum"]
     for name in ("rubber", "plain"):
         assert "proved at 2 of 2 points" in said[name, "spectrum"]
         assert "estimated" not in said[name, "spectrum"]
@@ -245,7 +245,7 @@ def test_check_states_the_largest_mesh_of_a_grid(tmp_path):
         (tmp_path / "a.yaml").write_text(text)
         said.append(make_job(tmp_path / "a.yaml", ()).task.arms())
     assert said[0].startswith("cones of radius ratios 0.1 to 1.1 of linear material; ")
-    assert said[0].split("; ")[1] == f"{said[1].split('; ')[1]}, for the arm that needs most"
+    assert said[0].split("; ")[1] == f"{said[1].split('; ')[1]}, for the finest mesh"
 
 
 def test_check_states_no_mesh_of_uniform_arms_of_linear_material(tmp_path):

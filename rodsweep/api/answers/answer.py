@@ -26,9 +26,11 @@ UNPRINTED_VARIABLES = ("status", "seconds")
 SI_UNITS = ("Pa", "N", "Hz", "s", "1/s", "m", "J", "W")
 """SI units of the variables of an arm. Variables with other units are in units of the rod."""
 TOTAL_VARIABLES = {"crossings": "crossing_count", "special_points": "special_count", "cycles": "point_count"}
-"""Variable with the number of items found of a list, stored or not, by the name of the list."""
+"""Name of the variable that counts all items found of a list, including items that are not stored, by name of
+the list."""
 LISTS_PRINTED_IN_FULL = ("modes", "crossings", "special_points", "harmonics", "multipliers")
-"""Names of the lists that `Answer.table` prints in full. Of other lists it prints the number of rows only."""
+"""Names of the lists that `Answer.table` prints in full. Of all other lists `Answer.table` prints only the
+number of rows."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -48,9 +50,9 @@ class WholeTable:
 class Answer:
     """Result of a task for one rod: the variables of the task, and its lists.
 
-    Every variable is an attribute. A variable of the rod is a number, a word, True or False; an unknown count
-    is None. A variable of a list is an array with one entry per item found. A whole list, such as `modes`,
-    `crossings` or `cycles`, is a pandas DataFrame with one row per item, numbered from 1.
+    Every variable is an attribute. A variable of the rod is a number, a text, True or False; an unknown count
+    is None. A variable of a list is an array with one entry per item. A list, such as `modes`, `crossings` or
+    `cycles`, is a pandas DataFrame with one row per item, numbered from 1.
 
     `data` is the xarray.Dataset of the rod, with lists of a fixed length, as in the result file. `whole` also
     has the rod's parameters as dimensions of length 1, as in the file of a sweep.
@@ -74,7 +76,7 @@ class Answer:
 
     @cached_property
     def config(self) -> dict[str, Any]:
-        """The config from which this answer was solved, as a tree of keys with all defaults."""
+        """The config of this answer, as nested dicts of keys and values with all defaults."""
         return self._tables.view.config
 
     @cached_property
@@ -83,9 +85,7 @@ class Answer:
 
     @property
     def status(self) -> StrEnum:
-        """Status of the solve as a word. The word is a member of an enumeration of all statuses of the
-        task.
-        """
+        """Name of the status of the solve, a member of the enumeration of all statuses of the task."""
         view = self._tables.view
         words = _statuses(view.task, tuple(view.flags.values()))
         return words(view.flags[int(view.variables["status"].item())])
@@ -134,7 +134,7 @@ class Answer:
     def _along(self, table: str, name: str) -> np.ndarray:
         """Values of a variable or a coordinate of a list, with one entry per item of the list.
 
-        table: name of the list. name: of the variable or coordinate.
+        table: name of the list. name: name of the variable or coordinate.
         """
         dimensions = self._tables.contents.dimensions(table)
         (column,) = (column for column in self._tables.items(table) if column.name == name)
@@ -156,7 +156,8 @@ class Answer:
         return sorted({*super().__dir__(), *map(str, self.data.variables), *self._names()})
 
     def table(self) -> "WholeTable":
-        """All numbers with units and meanings, and the lists. Terminals print a text, notebooks show a table.
+        """All numbers with units and meanings, and the lists, as a text in a terminal and as a table in a
+        notebook.
 
         `rs.table(answer, NAME)` returns the list NAME, with the parameters of the rod, as a DataFrame.
         """
@@ -202,7 +203,7 @@ class Answer:
 
 @cache
 def _statuses(task: str, words: tuple[str, ...]) -> type[StrEnum]:
-    """Enumeration of all statuses of a task; words: the statuses."""
+    """Enumeration of all statuses of a task. words: names of the statuses."""
     made: Any = StrEnum  # Any: mypy knows no StrEnum whose members come from data
     found = made("Status", {word: word for word in words})
     found.__name__ = "".join(part.title() for part in task.split("_")) + "Status"
@@ -210,12 +211,14 @@ def _statuses(task: str, words: tuple[str, ...]) -> type[StrEnum]:
 
 
 def _is_dimensionless(column: Column) -> bool:
-    """Whether a column has no SI unit, but a unit of the rod. Columns in SI units are printed first."""
+    """Whether a column is in dimensionless units of the rod. Columns in SI units are printed first."""
     return column.unit not in SI_UNITS
 
 
 def _scalar(column: Column) -> float | int | bool | str | None:
-    """The value of a column with one row. A missing word or count is None, a missing real number is NaN."""
+    """The value of a column with one row. None stands for a missing text or count, NaN for a missing real
+    number.
+    """
     if column.absent[0] and column.values.dtype.kind != "f":
         return None
     value = series_of(column)[0]

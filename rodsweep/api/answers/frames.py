@@ -1,4 +1,4 @@
-"""Tables of a result as pandas DataFrames, with words instead of codes and missing values instead of fill
+"""Tables of a result as pandas DataFrames. Names replace stored codes, and missing values replace fill
 values.
 """
 
@@ -14,7 +14,8 @@ from ...post.tables.columns import Column
 def frame_of(columns: Iterable[Column], index: str | None = None) -> pd.DataFrame:
     """A DataFrame with a column per `Column`; `frame.attrs` has `units` and `meanings` by name.
 
-    index: name of a column with row numbers from 1, or None to number rows from 0 as pandas does.
+    index: name of the column with row numbers from 1, which becomes the index; None: rows are numbered from
+    0.
     """
     columns = tuple(columns)
     frame = pd.DataFrame({column.name: series_of(column) for column in columns})
@@ -24,7 +25,7 @@ def frame_of(columns: Iterable[Column], index: str | None = None) -> pd.DataFram
 
 
 def series_of(column: Column) -> Any:
-    """Values of a column for pandas: words or None, booleans, numbers, integers or <NA>."""
+    """Values of a column for pandas: texts or None, booleans, real numbers or NaN, integers or <NA>."""
     if column.is_boolean:
         return column.values.astype(bool)
     if column.words:
@@ -37,5 +38,5 @@ def series_of(column: Column) -> Any:
 
 
 def words_of(column: Column) -> list[str | None]:
-    """Values of a column in words, None where a value is missing."""
+    """Values of a column as texts; None stands for a missing value."""
     return [text or None for text in column.text()]

@@ -51,13 +51,17 @@ def as_python_arguments(sentence: str) -> str:
 
 
 def _place(match: re.Match[str]) -> str:
-    """The argument `at` as Python code, from a match of AT_OPTION; values other than numbers are quoted."""
+    """The argument `at` of `rs.plot` as Python code, from a match of AT_OPTION. Only values that are not
+    numbers are quoted.
+    """
     name, value = (match[1], match[2]) if match[1] else (match[3], match[4])
     return f'at={{"{name}": {value}}}' if NUMBER_TEXT.fullmatch(value) else f'at={{"{name}": "{value}"}}'
 
 
 def refusing_in_python(function: Callable[P, R]) -> Callable[P, R]:
-    """Decorator: an InputError of the function names arguments of `rs.plot` instead of options."""
+    """Decorator: an InputError of the function names the arguments of `rs.plot` instead of command-line
+    options.
+    """
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
@@ -84,7 +88,7 @@ class FigureOptions(TypedDict, total=False):
 def _refuse_other_than(**choices: tuple[str | None, Iterable[str]]) -> None:
     """Raises InputError for the first argument whose value is not allowed.
 
-    choices: (value or None, allowed values) by name of the argument.
+    choices: (value, allowed values) by name of the argument; the value None is always allowed.
     """
     for name, (given, known) in choices.items():
         if given is not None and given not in known:
@@ -93,11 +97,11 @@ def _refuse_other_than(**choices: tuple[str | None, Iterable[str]]) -> None:
 
 @dataclass(frozen=True, slots=True)
 class SolvedShapes:
-    """Function that adds the shapes of cycles to a view. It solves each set of cycles once and keeps them."""
+    """Function that adds the shapes of cycles to a view. Each set of cycles is solved once and cached."""
 
     solve: Shapes = with_shapes
     solved: dict[tuple[int, ...], View] = field(default_factory=dict)
-    """Views with shapes, by the numbers of the points whose cycles were solved."""
+    """Views with shapes, by the numbers of the solved points, which are counted from 1."""
 
     def __call__(self, view: View, numbers: Sequence[int]) -> View:
         """A copy of the view with the shapes of the cycles at the points `numbers`, counted from 1."""
@@ -109,7 +113,7 @@ class SolvedShapes:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A figure. Notebooks display it; `save` writes a file in any format of `rodsweep plot`.
+    """A figure. Notebooks display the figure; `save` writes a file in any format of `rodsweep plot`.
 
     `figure()` returns the matplotlib figure, for adding data to its panels.
     """
@@ -129,7 +133,9 @@ class Picture:
 
     @one_at_a_time
     def figure(self) -> Drawing:
-        """A new `matplotlib.figure.Figure` with the panels row by row; InputError for an animation."""
+        """A new `matplotlib.figure.Figure`, whose axes are ordered row by row; InputError for an
+        animation.
+        """
         drawn: list[Drawing] = []
         name = Path("figure.gif" if self.is_film else "figure.png")
         draw(self.views, name, keep=drawn.append, **self.choices)

@@ -1,7 +1,7 @@
-"""Text and HTML of an answer: about ten lines, or on request all numbers and lists.
+"""Text and HTML of an answer: a short form of about ten lines, and a long form with all numbers and lists.
 
-Both forms begin with the result in a sentence, the rod, and the meaning of the status. No line of text is
-longer than 80 characters. Numbers have as many digits as their errors allow.
+The short and the long form begin with the result in a sentence, the rod, and the meaning of the status. No
+line of text is longer than 80 characters. Numbers have as many digits as their errors allow.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,11 +15,11 @@ from ...post.tables.columns import Column
 from ...wording import counted
 
 MAX_BRIEF_LINES = 11
-"""Maximum number of lines of the short text of an answer, unless the sentences of the heading need more."""
+"""Maximum number of lines of the short text of an answer. A long heading may exceed the maximum."""
 MIN_ROWS = 3
 """Minimum number of printed numbers, or printed rows of a list, whatever the length of the heading."""
 PROOF_WORDS = ("not certified", "certified")
-"""Words for the values 0 and 1 of the variable certified."""
+"""Texts for the values 0 and 1 of the variable certified."""
 ERROR_SIGN = "+-"
 """Sign between a number and its error."""
 
@@ -42,7 +42,8 @@ class PrintedAnswer:
     row_counts: Mapping[str, int]
     """Number of rows of each list that is not printed in full, by name of the list."""
     totals: Mapping[str, int]
-    """Number of items found of each list, stored or not, by its name; of modes the number requested."""
+    """Number of items found, including items that are not stored, by name of the list; for modes, the number
+    of requested modes."""
 
     @property
     def closing_lines(self) -> Iterator[str]:
@@ -58,8 +59,8 @@ class PrintedAnswer:
 def heading_lines(rod: OneRod, name: str, status: str, sentence: str, message: str) -> tuple[str, ...]:
     """Lines of the heading: the result in a sentence, the rod with its status, and the status's meaning.
 
-    name: text of the rod. sentence: meaning of the status. message: of the solve. Without a result in a
-    sentence, the meaning of the status comes first.
+    name: text of the rod. sentence: meaning of the status. message: message of the solve. If the result has
+    no sentence, the meaning of the status comes first.
     """
     task = rod.view.task
     meaning = "; ".join(filter(None, (sentence, message)))
@@ -126,7 +127,9 @@ def _heads(printed: PrintedAnswer) -> list[str]:
 
 
 def _title(name: str, columns: Sequence[Column], total: int) -> str:
-    """Title of a list: its name and number of rows; total: number of items found, printed if it is larger."""
+    """Title of a list: name and number of rows. total: number of items found, printed if larger than the
+    number of rows.
+    """
     count = len(columns[0].values)
     return f"{name}: {count or 'none'}{f' of {total}' if total > count else ''}" + (
         f", {columns[0].meaning}" if count > 1 else ""
@@ -134,7 +137,7 @@ def _title(name: str, columns: Sequence[Column], total: int) -> str:
 
 
 def _number_pairs(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
-    """(name, value, error with sign, unit), as text, of each main number that has a value."""
+    """(name, value, error with sign, unit), as texts, for each main number of the task that has a value."""
     pairs = []
     for name in printed.headline.numbers:
         column = printed.rod.column(name)
@@ -145,7 +148,9 @@ def _number_pairs(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
 
 
 def _number_lines(printed: PrintedAnswer) -> list[str]:
-    """Aligned lines of the main numbers, after an empty line; no line without numbers."""
+    """Aligned lines of the main numbers of the task, after an empty line; empty if no main number has a
+    value.
+    """
     room = MAX_BRIEF_LINES - len(_heads(printed)) - 2  # beside the empty line and the last line
     pairs = _number_pairs(printed)[: max(room, MIN_ROWS)]
     if not pairs:
@@ -156,10 +161,10 @@ def _number_lines(printed: PrintedAnswer) -> list[str]:
 
 
 def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], int]:
-    """(columns of the main list, number of rows of the whole list); room: maximum number of rows in a column.
+    """Returns (columns of the main list, number of rows of the complete list).
 
-    A column consists of the cells name, unit, and values; errors have a column of their own. Columns that
-    would make a line longer than WIDTH are omitted.
+    room: maximum number of rows in a column. A column consists of the cells name, unit, and values; errors
+    form a separate column. Columns that would make a line longer than WIDTH are omitted.
     """
     digits = printed.rod.lists.get(printed.headline.table)
     if digits is None:
@@ -182,7 +187,7 @@ def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], in
 
 
 def _brief_list(printed: PrintedAnswer, room: int) -> list[str]:
-    """Lines of the main list, after an empty line; room: number of lines that may be used."""
+    """Lines of the main list, after an empty line. room: maximum number of lines."""
     rows = max(room - 3, MIN_ROWS)  # below an empty line, the names and the units
     columns, count = _brief_cells(printed, rows)
     if count == rows + 1:  # the line "and 1 more" has room for the row

@@ -27,11 +27,12 @@ SAVE_EXAMPLE = 'rod.portrait().save("portrait.png")'
 
 @dataclass(frozen=True)
 class RodPortrait:
-    """All results for one rod. Notebooks display the picture; `save` writes it, and `paragraph` is a text.
+    """All results for one rod. Notebooks display the picture, `save` writes the picture into a file, and
+    `paragraph` describes the rod.
 
     Every result behind the picture is an `Answer`: `thresholds`; `criticality` and `branch`, None for a rod
-    without Hopf points or branches; `modes` by kind of threshold; `cycles` by force. `missing` has, by task,
-    the reason for every result that could not be solved.
+    without Hopf points or branches; `modes` by kind of threshold; `cycles` by force. `missing` has the reason
+    why a result could not be solved, by task.
     """
 
     rod: str
@@ -63,13 +64,13 @@ class RodPortrait:
 
     @property
     def modes(self) -> dict[str, Answer]:
-        """Leading modes at the first thresholds, by the kind of the threshold: onset, hopf."""
+        """Leading modes at the first threshold of each kind, by kind: onset, hopf."""
         return {kind: self._of(view) for kind, (_, view) in self.results.modes.items()}
 
     @property
     def cycles(self) -> dict[float, Answer]:
-        """Limit cycles at three forces, by force. If no cycle was found, the status of the answer says
-        why.
+        """Limit cycles at three forces, by force. If no cycle was found at a force, the status of its answer
+        gives the reason.
         """
         return {F: self._of(view) for F, view in self.results.cycles}
 
@@ -108,7 +109,9 @@ class RodPortrait:
 
 
 def portrait_of(rod: str, request: PortraitRequest, progress: bool | None) -> RodPortrait:
-    """Solves the portrait of a rod in this process; rod: text of the rod. InputError for a bad request."""
+    """Solves all results of a portrait in this process. rod: text of the rod. progress: as in `rod.portrait`.
+    Raises InputError for an invalid request.
+    """
     answers: dict[str, Answer] = {}
 
     def solve(job: Job) -> View:

@@ -41,8 +41,8 @@ def table(data: Result, name: str | None = None, *, columns: Sequence[str] = ())
 
 
 def view_of_result(data: Any, example: str) -> View:
-    """A result as the view that figures and tables read; InputError, with `example`, if `data` is no
-    result.
+    """View of a result, which figures and tables read. Raises InputError, with the example call `example`, if
+    `data` is not a result.
     """
     if isinstance(data, str | os.PathLike):
         return read_view(named_file_path(data, example))

@@ -20,7 +20,7 @@ MAX_FAILURES_PRINTED = 3
 class RunContribution:
     """Report of a rank to the first rank at the end of a run.
 
-    host: name of the machine. failures: one failed point in words for each distinct reason. share: statistics
+    host: name of the machine. failures: text on one failed point for each distinct reason. share: statistics
     of the rank's work.
     """
 
@@ -70,9 +70,9 @@ class RunEnd:
     interrupted: int
     """Number of points interrupted by a stop."""
     followed_halves: int | None
-    """Number of halves of curves followed in this run, None if no curves were due."""
+    """Number of half curves followed in this run; None if no curves were to be computed."""
     stored_halves: int | None
-    """Number of halves of curves kept for the next run while the curves are incomplete, else None."""
+    """Number of half curves stored for the next run if the curves are incomplete, else None."""
 
     def times(self) -> list[str]:
         """Sentences on the times of points and curves; empty if there was nothing to do."""
@@ -91,7 +91,7 @@ class RunEnd:
         return sentences
 
     def kept_words(self) -> str:
-        """Clause on the points and curves that the file and the journal of a stopped run keep."""
+        """Clause with the numbers of points and half curves that a stopped run has stored."""
         points = f"{counted(self.stored, 'point')} kept"
         if self.stored_halves is not None:
             return f"{points}, the curves are missing, {self.stored_halves} of their halves kept"

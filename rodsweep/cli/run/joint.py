@@ -21,19 +21,23 @@ from ...tasks.running.unforeseen import RUN_ENDING_EXCEPTIONS, UnitNote
 from ...watch import SolveStopped, reporting_to
 
 UNIT_NOUN = "halves of curves"
-"""Name of the units of work in the progress display: a curve is followed in two directions from its start."""
+"""Name of the work items in the progress display: a curve is followed in two directions from its start."""
 
 
 @dataclass(frozen=True, slots=True)
 class JointDue:
-    """Whether the file lacks variables that depend on all points (`due`), and the units of work, or None."""
+    """Variables that depend on all points. due: whether the file lacks these variables. units: the half
+    curves to be followed; None if nothing is divided among the ranks.
+    """
 
     due: bool
     units: Any = None
 
 
 class JointWork:
-    """Computes the variables of a run that depend on all points, in units of work shared among the ranks."""
+    """Computes the variables of a run that depend on all points, in work items (half curves) shared among the
+    ranks.
+    """
 
     def __init__(
         self,
@@ -44,7 +48,9 @@ class JointWork:
         note: UnitNote,
         stop: StopRequest,
     ):
-        """note: called with every unforeseen exception; the unit of work then contributes no curve."""
+        """together: computes the variables. output: the result file. fingerprint: of config and points. note:
+        function called with every unforeseen exception; the half curve then stays empty.
+        """
         self.team = team
         self.together = together
         self.output = output
@@ -52,11 +58,11 @@ class JointWork:
         self.stop = stop
         self.kept = UnitResults(journal_directory(output), fingerprint)
         self.results: dict[int, NamedArrays] = {}
-        """Results of all finished units, on the first rank only."""
+        """Results of all finished half curves, by number, on the first rank only."""
 
     def solve(self, units: Any, prepare: Callable[[], object], title: str | None) -> RankWork:
-        """Solves all units still wanted, on all ranks. title: of the progress display; None for no
-        display.
+        """Follows all half curves that are still missing, on all ranks. prepare: function called before the
+        first solve. title: text of the progress display; None for no display.
         """
         found: dict[int, NamedArrays] = {}
 
@@ -92,8 +98,8 @@ class JointWork:
             shown.close()
 
     def _exchange_starts(self, units: Any) -> None:
-        """Sends the starting data of the first wanted units to every rank, so that no rank computes them
-        again.
+        """Sends the special points at which missing half curves start to all ranks, so that no rank solves
+        these points again.
         """
         wanted = self.team.on_first(lambda: units.wanted(self.results))
         for starts in self.team.exchange(self.together.starts(units, wanted)):
@@ -110,8 +116,8 @@ class JointWork:
             yield unit, self.together.empty_result()
 
     def variables(self, units: Any) -> Sequence[Filled] | None:
-        """The variables for the file, on the first rank; None if the run was stopped before all units were
-        solved.
+        """The variables that depend on all points; called on the first rank. None if the run was stopped
+        before all half curves were followed.
         """
         if units is not None and units.wanted(self.results):
             return None

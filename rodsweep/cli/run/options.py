@@ -10,11 +10,11 @@ class RunOptions:
     """Options of the command `rodsweep run`, as given on the command line."""
 
     overrides: tuple[str, ...] = ()
-    """Texts KEY=VALUE that override keys of the config."""
+    """Texts KEY=VALUE of the options --set, which override keys of the config."""
     fresh: bool = False
-    """Whether an existing file is replaced."""
+    """Whether an existing result file is replaced."""
     extend: bool = False
-    """Whether an existing file of a smaller config is extended."""
+    """Whether an existing result file with fewer points is extended to the config."""
     shard: Shard
     strict: bool = False
     """Whether the run ends at the first exception that is a bug."""

@@ -1,4 +1,5 @@
-"""Solution of the points of a run in units of work; every rank writes its results into a journal."""
+"""Solution of the points of a run, in work items shared among the ranks; every rank writes its results into a
+journal. A work item is a point, a chain of points or a segment of the sweep."""
 
 import socket
 from collections.abc import Callable, Iterable
@@ -29,7 +30,9 @@ from .contribution import RunContribution
 
 @dataclass(frozen=True, kw_only=True)
 class PointWork:
-    """Solves the points of a shard of a job and writes their results into journals beside `output`."""
+    """Solves the points of a shard of a job, and writes the results into journals next to the result file
+    `output`.
+    """
 
     team: Team
     job: Job
@@ -41,12 +44,13 @@ class PointWork:
     quiet: bool
     """Whether to hide the progress."""
     where: Callable[[int], str]
-    """Function from the index of a point to its parameters in words."""
+    """Function from the flat index of a point to a text with the point's parameters."""
 
     def units(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
-        """(units of work of this shard with missing points, number of the missing points of these units).
+        """Returns (ranges of the numbers of this shard's work items with missing points, number of missing
+        points in these work items).
 
-        missing: ranges of the indices of all missing points.
+        missing: ranges of the flat indices of all missing points.
         """
         if self.solver.stretched is not None:
             stretches = self.solver.stretched[0]
@@ -64,9 +68,10 @@ class PointWork:
     def solve(
         self, units: list[IndexRange], missing: list[IndexRange], count: int, prepare: Callable[[], object]
     ) -> RunContribution:
-        """Solves units of work together with all other ranks; writes this rank's results into its journal.
+        """Solves work items together with all other ranks; writes this rank's results into its journal.
 
-        units, count: from `units`. prepare: called before the first solve.
+        units, count: returned by `units`. missing: ranges of the flat indices of all missing points. prepare:
+        function called before the first solve.
         """
         reasons = FailureReasons(self.where)
         solver = self.solver
@@ -102,7 +107,9 @@ class PointWork:
     def _solve_unit(
         self, missing: IndexSet, directory: Path
     ) -> Callable[[int], Iterable[tuple[Indices, Any]]]:
-        """Function that solves a unit of work, which is a point, a chain or a stretch, by its number."""
+        """Function from the number of a work item (a point, a chain or a segment of the sweep) to its
+        results. missing: flat indices of all missing points. directory: journal directory.
+        """
         solver = self.solver
         if solver.stretched:
             return StretchSolver(*solver.stretched, missing)
@@ -112,7 +119,7 @@ class PointWork:
         return lambda index: ((index, solver.solve(index)),)
 
     def _unit_name(self, unit: int) -> str:
-        """Name of a unit of work, a point or a chain, for the progress display."""
+        """Name of a work item, a point or a chain, for the progress display."""
         if self.solver.chained:
             return f"chain {unit + 1} of {self.solver.chained.chains.count}"
         return f"point {unit + 1} of {self.job.points.count}"

@@ -53,7 +53,7 @@ def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest)
 
 
 class _RankRun:
-    """Run of a job as this rank takes part in it."""
+    """The part of a run that this rank executes."""
 
     store: Store
     """The result file, on the first rank, after `_open`."""
@@ -92,7 +92,7 @@ class _RankRun:
         )
 
     def run(self) -> int:
-        """Solves missing points and writes them into the file; returns the exit status."""
+        """Solves the missing points, writes the results into the file, and returns the exit status."""
         replaces = self.options.fresh or self.options.extend
         if self.team.on_first(lambda: replaces or not self.output.exists()):
             plan = with_shared_constants(self.plan, self.job.task, self.team, self.stop)
@@ -122,16 +122,17 @@ class _RankRun:
         return self.team.on_first(lambda: self._finish(count, contributions, joint, shares, exceptions))
 
     def _lacks_curves(self, missing: int) -> bool:
-        """Whether the file lacks only the variables that depend on all points; on the first rank.
+        """Whether the file lacks only the variables that depend on all points; called on the first rank.
 
         missing: number of missing points.
         """
         return not missing and "finished" not in self.store.attributes()
 
     def _fold(self, count: int, contributions: list[RunContribution]) -> JointDue:
-        """Writes the points of all journals into the file; returns the joint work that is still due.
+        """Writes the points of all journals into the file; returns whether variables that depend on all
+        points are still missing, with their work items.
 
-        count: number of points to be solved in this run.
+        count: number of points to be solved in this run. contributions: reports of all ranks.
         """
         self.seconds = time.monotonic() - self.began
         if count:
@@ -147,12 +148,12 @@ class _RankRun:
         return JointDue(True, self.joint.together.units(read_view(self.output)))
 
     def _say(self, text: str, amiss: bool = False) -> None:
-        """Prints a text; in quiet mode only if the text reports a problem (`amiss`)."""
+        """Prints a text; in quiet mode only if `amiss`. amiss: whether the text reports a problem."""
         if amiss or not self.options.quiet:
             click.echo(text)
 
     def _open(self) -> list[IndexRange]:
-        """Opens the result file; returns the ranges of the missing points' indices."""
+        """Opens or creates the result file; returns the ranges of the flat indices of missing points."""
         self.store = Store(self.output, self.plan, self.options.fresh, self.options.extend)
         if self.joint and (self.options.fresh or not self._lacks_curves(0)):
             self.joint.kept.drop()
@@ -166,7 +167,7 @@ class _RankRun:
         self.store.notes.clear()
 
     def _note_kernels(self) -> None:
-        """Stores the BLAS kernels that compute the points, and prints a warning if there are several."""
+        """Stores the names of the BLAS kernels of all ranks, and prints a warning if the kernels differ."""
         before = self.store.attributes()
         kernels = provenance.united_kernels(provenance.kernels_of(before), self.kernels.splitlines())
         if kernels != before.get(provenance.KERNELS_ATTRIBUTE):
@@ -178,7 +179,7 @@ class _RankRun:
         return parameters_in_words(self.job.points.values(index))
 
     def _finish_file(self, joint: JointDue) -> bool:
-        """Writes the joint variables into the file; returns whether joint variables are still missing."""
+        """Writes the variables of all points into the file; returns whether these are still missing."""
         if not joint.due:
             return False
         variables = self.joint.variables(joint.units) if self.joint else ()
@@ -200,8 +201,8 @@ class _RankRun:
             click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
 
     def _outcomes(self, counts: Mapping[str, int], left: int) -> str:
-        """Number of points of each status in words; left: number of points of this run that are not
-        solved.
+        """Text with the number of points of each status. counts: numbers by status. left: number of points of
+        this run that are not solved.
         """
         words = {"missing": "of other shards"} if self.shard and not left else {}
         return ", ".join(f"{n} {words.get(name, name)}" for name, n in counts.items())

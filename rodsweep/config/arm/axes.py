@@ -1,10 +1,10 @@
 """Parameters of the rod that each quantity of an arm changes, and the axes of a sweep's grid.
 
 An axis of the load is an axis of F, an axis of Poisson's ratio is an axis of k2, and a grid of both is still
-a grid of parameters. Any other quantity changes several parameters at once, or none. With an axis of such a
-quantity, or with a load relative to flutter, the points form a grid over the arm's quantities, and every
-parameter has its own value at every point. A phase diagram always needs a grid of parameters, in which the
-values of drag are an axis of gamma3.
+a grid of parameters. Any other quantity changes several parameters at once, or no parameter. With an axis of
+such a quantity, or with a load relative to flutter, the points form a grid over the arm's quantities, and the
+parameters are computed point by point. A phase diagram always needs a grid of parameters, in which the drag
+estimates are the values of an axis of gamma3.
 """
 
 from collections.abc import Mapping
@@ -18,8 +18,8 @@ from ...model.parameters import PARAMETERS
 LOAD_AXES = (*LOADS, *RELATIVE)
 """Names of the config keys for the load, absolute or relative to flutter. An arm has at most one load."""
 AXIS_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
-"""Name of the parameter that changes with a quantity of the arm, by name of the quantity, for quantities that
-change exactly one parameter."""
+"""Name of the only parameter that depends on a quantity of the arm, by name of the quantity. Quantities on
+which several parameters depend are not included."""
 CHANGED_PARAMETER = AXIS_OF | dict.fromkeys(RELATIVE, "F")
 """Name of the parameter that changes along an axis of a grid over an arm's quantities, by name of the
 axis."""
@@ -27,7 +27,7 @@ STORED_ALONG = AXIS_OF | {"drag": "gamma3", "tau2": "gamma3"}
 """Name of the parameter along whose axis a result file stores a quantity or unit that has several values."""
 FLUID = ("viscosity", "fluid_density", "density_difference")
 """Names of the quantities of the fluid, which change no parameter of the rod: times are proportional to the
-viscosity, and the densities decide whether the model applies."""
+viscosity, and the densities are used only to test whether the model applies."""
 ALL_BUT_LOAD = (
     "length",
     "young",
@@ -42,13 +42,13 @@ ALL_BUT_LOAD = (
 )
 """Names of all quantities of an arm except the load."""
 SLENDER, NOT_SLENDER, CRUSHED, NO_WALL, NO_FLUTTER, FLUTTER_UNKNOWN = 0, 100, 101, 102, 103, 104
-"""Status codes of the points of an arm: the point has a rod; the arm is too short for the drag of slender
-bodies; F reaches k1; the bore is as wide as the arm; the load is relative to a flutter threshold that does
-not exist, or that the search did not find. All codes but the first are statuses, larger than every task's own
-statuses."""
+"""Status codes of the points of an arm, in this order: the rod model applies; the arm is too short for the
+drag of slender bodies; F >= k1; the bore is as wide as the arm; the load is relative to a flutter threshold
+that does not exist; the load is relative to a flutter threshold that the search did not find. The codes from
+100 on are larger than the status codes of all tasks."""
 MOST_POINTS = 1_000_000
 """Maximum number of points of a grid over an arm's quantities; larger grids are refused, because the
-parameters of all points are in memory."""
+parameters of all points are kept in memory."""
 
 
 def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
@@ -65,7 +65,9 @@ def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
 
 
 def parameter_of_axis(axis: str) -> str:
-    """The only parameter that changes along an axis of an arm's grid; "" for several parameters or none."""
+    """Name of the only parameter that changes along an axis of an arm's grid; "" if several parameters or no
+    parameter change.
+    """
     return axis if axis in PARAMETERS else CHANGED_PARAMETER.get(axis, "")
 
 

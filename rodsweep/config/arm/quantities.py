@@ -1,4 +1,4 @@
-"""Quantities of an arm in a config: one value, a list or a range, with units, converted to SI."""
+"""Quantities of an arm in a config: a value, a list or a range, with units, converted to SI units."""
 
 from collections.abc import Mapping
 from typing import Annotated, Any
@@ -37,7 +37,9 @@ def _axis_in_si(name: str, value: Any) -> Axis:
 
 
 def _without_unit(name: str, span: dict[str, Any]) -> str:
-    """Remark for messages on a range `span` whose start or stop alone has a unit; else ""."""
+    """Remark for error messages if only start or only stop of a range has a unit, else "". name: name of the
+    quantity. span: the range as a mapping.
+    """
     ends = [end for end in ("start", "stop") if end in span]
     bare = [end for end in ends if not isinstance(span[end], str)]
     unit = UNITS[name][0]
@@ -45,7 +47,9 @@ def _without_unit(name: str, span: dict[str, Any]) -> str:
 
 
 def _read(name: str, value: Any) -> float:
-    """Value of a quantity in SI units; ValueError if `value` is no quantity."""
+    """Number in SI units from `value`, a number or a text with a unit; ValueError for other values. name:
+    name of the quantity.
+    """
     if not isinstance(value, str):
         return as_number(value)
     try:
@@ -55,9 +59,11 @@ def _read(name: str, value: Any) -> float:
 
 
 def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Keys and values of an arm; a load like "1.2 of flutter" is moved to a key like `pressure_over_flutter`.
+    """Keys and values of an arm, with a load like "1.2 of flutter" moved to a key like
+    `pressure_over_flutter`.
 
-    Raises ValueError if only some values of the load are relative, or if both keys are given.
+    given: keys and values from the config. Raises ValueError if only some values of the load are relative, or
+    if both `pressure` and `pressure_over_flutter` (or both force keys) are given.
     """
     found = dict(given)
     for name, load in RELATIVE.items():
@@ -66,8 +72,8 @@ def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
             continue
         if not all(each is not None for each in shares):
             raise ValueError(
-                f"parameters.arm.{load} = {short(given[load])} is relative to flutter in part; write all of "
-                "its values as in '1.2 of flutter', or none"
+                f"parameters.arm.{load} = {short(given[load])} has relative and absolute values; write all "
+                "values like '1.2 of flutter', or all as absolute loads"
             )
         if given.get(name) is not None:
             raise ValueError(
@@ -80,8 +86,8 @@ def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _shares(value: Any) -> tuple[list[float | None], bool]:
-    """(values of a load divided by the flutter load, None for absolute values; whether any value is
-    relative).
+    """Returns (shares, is_relative). shares: each value of a load divided by the flutter load, None for an
+    absolute value. is_relative: whether any value is relative to flutter.
     """
     shares = [None if one is None else share_of_flutter(one) for one in _each(value)]
     return shares, any(share is not None for share in shares)
@@ -116,7 +122,7 @@ def typed_unit(name: str, axis: Axis) -> str:
 def given_text(quantities: Mapping[str, Axis]) -> str:
     """Text with names, values and typed units of an arm's quantities, like "length 10 cm, radius 5 mm".
 
-    A remark names the quantities that were given without a unit.
+    A remark at the end names the quantities that were given without a unit.
     """
     words = []
     bare = []
@@ -136,14 +142,14 @@ def given_text(quantities: Mapping[str, Axis]) -> str:
 
 
 def _each(written: Any) -> list[Any]:
-    """List of the values that a user wrote for a quantity; start and stop of a range."""
+    """List of the values that a user wrote for a quantity: of a range, start and stop."""
     if isinstance(written, Mapping):
         return [written.get(end) for end in RANGE_ENDS]
     return list(written) if isinstance(written, list | tuple) else [written]
 
 
 def _schema() -> dict[str, Any]:
-    """JSON schema of the values that `as_quantities` accepts: axes whose numbers may be texts with a unit."""
+    """JSON schema of the values that `as_quantities` accepts: axes of numbers or of texts with a unit."""
     each: dict[str, Any] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
     *_, values, span = AXIS_SCHEMA["anyOf"]
     ends = {end: {"description": span["properties"][end]["description"], **each} for end in ("start", "stop")}

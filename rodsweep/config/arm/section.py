@@ -1,4 +1,5 @@
-"""The section `parameters.arm` of a config: an arm in SI units, and the parameter axes made from it."""
+"""The section `parameters.arm` of a config: an arm in SI units, and the parameter axes computed from the
+arm."""
 
 from collections.abc import Collection, Iterator, Mapping
 from functools import cached_property
@@ -33,38 +34,39 @@ class ArmSection(StrictSection):
     length: Annotated[Quantities | None, Allowed] = None
     """Length from the clamp to the tip; for an arm in segments, the sum of their lengths."""
     radius: Annotated[Quantities | None, Allowed] = None
-    """Radius of a circular section; or give width and height, or segments."""
+    """Radius of a circular section. Alternatives: width and height, or segments."""
     inner_radius: Annotated[Quantities | None, Allowed] = None
     """Radius of the bore of a tube, which is closed at its tip."""
     tip_radius: Annotated[Quantities | None, Allowed] = None
     """Radius at the tip of a solid cone, which has `radius` at its base."""
     segments: Annotated[Segments, Field(description=SEGMENTS_ALLOWED)] = None
-    """Segments from the base to the tip: lengths, radii, and if need be inner_radius and their own young."""
+    """Segments from the base to the tip, each with length, radius, and optionally inner_radius and young."""
     width: Annotated[Quantities | None, Allowed] = None
     """Width of a rectangular section, across the plane of motion."""
     height: Annotated[Quantities | None, Allowed] = None
     """Height of a rectangular section, in the plane of motion."""
     young: Annotated[Quantities | None, Allowed] = None
-    """Young's modulus at small strain; in an arm with segments, the modulus of every segment that states no
-    modulus."""
+    """Young's modulus at small strain; in an arm with segments, the modulus of every segment without a
+    modulus of its own."""
     poisson: Annotated[Values | None, RatioAllowed] = None
     """Poisson's ratio, by default 0.5."""
     law: Annotated[LawName | None, Field(description="linear or neo_hookean")] = None
-    """Constitutive law, by default linear; in place of `material.law`."""
+    """Constitutive law, by default linear. For an arm, this key replaces `material.law`."""
     section: Annotated[SectionName | None, Field(description="fixed or swelling")] = None
-    """Whether the section of rubber is fixed, the default, or swelling; in place of `material.section`."""
+    """Whether the cross-section is fixed (the default) or swelling. For an arm, this key replaces
+    `material.section`."""
     viscosity: Annotated[Quantities, Allowed]
     """Viscosity of the fluid. The parameters do not depend on the viscosity; times are proportional to the
     viscosity."""
     fluid_density: Annotated[Quantities | None, Allowed] = None
-    """Density of the fluid, by default water's. The density decides whether the model applies."""
+    """Density of the fluid, by default the density of water; used only to test whether the model applies."""
     density_difference: Annotated[Quantities | None, Allowed] = None
-    """Density of the arm minus density of the fluid, for whether the model applies. Without it, weight is
-    neglected."""
+    """Density of the arm minus density of the fluid; used only to test whether the neglected weight is small.
+    If it is not given, the weight is not tested."""
     drag: Annotated[Drags | None, DragAllowed] = None
-    """Members of the range of drags in the literature; by default the likeliest."""
+    """Drag estimates from the range in the literature, by name; by default the likeliest estimate."""
     pressure: Annotated[Quantities | None, Allowed] = None
-    """Pressure on the tip's cross section; or give force. Omit it if the task finds F."""
+    """Pressure on the tip's cross section; alternative: force. Omit the load if the task solves for F."""
     force: Annotated[Quantities | None, Allowed] = None
     """Follower force at the tip."""
     pressure_over_flutter: Annotated[Values | None, ShareAllowed] = None
@@ -75,7 +77,7 @@ class ArmSection(StrictSection):
     @model_validator(mode="before")
     @classmethod
     def _with_shares(cls, given: Any) -> Any:
-        """Moves a load relative to flutter to its own key, and adds the total length of segments."""
+        """Moves a load relative to flutter to its own key, and adds the length of an arm with segments."""
         return with_length(with_relative_load(given)) if isinstance(given, dict) else given
 
     @model_validator(mode="after")
@@ -87,17 +89,17 @@ class ArmSection(StrictSection):
 
     @cached_property
     def build(self) -> Build:
-        """Constitutive law and profile of all arms; ValueError if a grid of parameters has several."""
+        """Law and profile of all arms; ValueError if the profiles of a grid of parameters differ."""
         return build_of(self)
 
     @property
     def material(self) -> dict[str, Any]:
-        """Values of the keys segments, law and section that are given, by key."""
+        """Values of the given keys among segments, law and section, by key."""
         return {name: getattr(self, name) for name in OF_MATERIAL if getattr(self, name) is not None}
 
     @property
     def varies(self) -> bool:
-        """Whether the arms are cones or have segments."""
+        """Whether any key makes the arms nonuniform: `tip_radius` or `segments`."""
         return self.tip_radius is not None or self.segments is not None
 
     @property
@@ -109,12 +111,12 @@ class ArmSection(StrictSection):
 
     @property
     def load_axis(self) -> str | None:
-        """Key of the load that is given, absolute or relative to flutter; None without a load."""
+        """Key of the given load, absolute or relative to flutter; None if no load is given."""
         return next((name for name in LOAD_AXES if getattr(self, name) is not None), None)
 
     @property
     def load(self) -> str | None:
-        """Name of the load, "pressure" or "force", whether absolute or relative; None without a load."""
+        """Name of the given load, "pressure" or "force", absolute or relative; None if no load is given."""
         return RELATIVE.get(str(self.load_axis), self.load_axis)
 
     @property
@@ -124,9 +126,10 @@ class ArmSection(StrictSection):
 
     @property
     def meaning(self) -> dict[str, Any]:
-        """What determines the results besides the points: SI values of quantities by name, and the material.
+        """Data of the arm on which the results depend, except the points: quantities in SI units and material
+        keys, by name.
 
-        The value is None for a quantity that varies between points.
+        A quantity that varies between points has the value None.
         """
         varied = AXIS_OF if self.is_grid else self.several
         numbers = {n: None if n in varied else float(axis.array()[0]) for n, axis in self.given.items()}
@@ -134,7 +137,7 @@ class ArmSection(StrictSection):
 
     @property
     def is_grid(self) -> bool:
-        """Whether every axis changes exactly one parameter: the points then form a grid of parameters."""
+        """Whether the points form a grid of parameters, that is, every axis changes exactly one parameter."""
         return all(name in AXIS_OF for name in self.several)
 
     @property
@@ -144,7 +147,7 @@ class ArmSection(StrictSection):
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
     def refuse_unfit(self) -> None:
-        """Raises ValueError for a value out of range, and for a grid of parameters of arms without a rod."""
+        """Raises ValueError for a value out of range, or if the model does not cover a grid's first arm."""
         for name, axis in self.given.items():
             low = float(axis.array()[0])
             if name in RELATIVE and low < 0:
@@ -155,9 +158,11 @@ class ArmSection(StrictSection):
             self.made(self.firsts, loaded=True)
 
     def refuse_misuse(self, forced: bool, beside: Collection[str]) -> None:
-        """Raises ValueError unless the load suits the task, and every axis of a quantity changes a parameter.
+        """Raises ValueError if the load does not suit the task, or if k2 is given in addition to an axis of
+        Poisson's ratio.
 
-        forced: whether F is a parameter of the task. beside: parameters that replace the arm's values.
+        forced: whether F is a parameter of the task. beside: names of the parameters that replace the arm's
+        values.
         """
         loads = ["parameters.F"] if "F" in beside else []
         loads += [f"parameters.arm.{name}" for name in LOAD_AXES if getattr(self, name) is not None]
@@ -165,7 +170,7 @@ class ArmSection(StrictSection):
             raise ValueError(f"{loads[0]} and {loads[1]} are both given; give one of them")
         if "poisson" in self.several and "k2" in beside:
             raise ValueError(
-                "parameters.arm.poisson has several values but changes k2 only, and parameters.k2 is given "
+                "parameters.arm.poisson has several values but changes only k2, and parameters.k2 is given "
                 "too; give one of them"
             )
         if self.load and not forced:
@@ -177,9 +182,10 @@ class ArmSection(StrictSection):
             raise ValueError("parameters.arm.pressure is missing; give the pressure on the tip or a force")
 
     def grid_axes(self) -> dict[str, Axis]:
-        """Axes of the dimensionless parameters of a grid of parameters, by name; without F for no load.
+        """Axes of the dimensionless parameters of a grid of parameters, by name; without F if the arm has no
+        load.
 
-        Raises ValueError if the arm is not slender, or if the smallest load crushes it.
+        Raises ValueError if the arm is not slender, or if the smallest load crushes the arm.
         """
         arm = self.made(self.firsts, loaded=True)
         names = (*all_but("F", NONLINEAR_PARAMETERS), *self.tapering)
@@ -192,7 +198,7 @@ class ArmSection(StrictSection):
         return axes
 
     def grid_quantities(self) -> dict[str, Array]:
-        """Quantities and units of the arm by name, in a grid of parameters: (), or (n,) along a parameter."""
+        """Quantities and units of the arm by name, in a grid of parameters: (), or (n,) for n values."""
         values = {name: axis.array() for name, axis in self.given.items()}
         if self.poisson is not None:  # k2 decreases with Poisson's ratio, and axes must increase
             values["poisson"] = values["poisson"][::-1]
@@ -210,7 +216,7 @@ class ArmSection(StrictSection):
         return () if self.tip_radius is None else ("taper",)
 
     def count(self, beside: int) -> int:
-        """Number of points of a grid; beside: number of combinations of parameters given beside the arm."""
+        """Number of points of a grid. beside: number of combinations of the parameters given with the arm."""
         return int(np.prod([float(axis.size) for axis in self.given.values()])) * beside
 
     @property
@@ -225,10 +231,10 @@ class ArmSection(StrictSection):
             yield dict(zip(names, map(float, values), strict=True))
 
     def made(self, values: Mapping[str, float], loaded: bool = False) -> SlenderArm:
-        """The arm with these values of its quantities, in SI units by name; ValueError for invalid values.
+        """The arm with the given quantities; ValueError for invalid values.
 
-        loaded: whether the arm has its load; a load relative to flutter is left out. Raises UncoveredArm if
-        the rod model does not apply to the arm.
+        values: quantities in SI units, by name. loaded: whether the load is included; a load relative to
+        flutter is always left out. Raises UncoveredArm if the rod model does not apply to the arm.
         """
         section: dict[str, Any] = {name: value for name, value in values.items() if name in ALL_BUT_LOAD}
         has_load = loaded and self.load_axis in LOADS

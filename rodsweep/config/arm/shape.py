@@ -25,7 +25,9 @@ RUBBER_POISSON = 0.5
 
 
 def as_segments(value: Any) -> tuple[str, ...] | None:
-    """Texts of the segments in a config value, None for None; ValueError for an invalid list of segments."""
+    """Segments of a config value as texts; None if the value is None. Raises ValueError for an invalid list
+    of segments.
+    """
     if value is None:
         return None
     try:
@@ -45,9 +47,9 @@ def with_length(given: dict[str, Any]) -> dict[str, Any]:
 
 
 def build_of(arm: "ArmSection") -> Build:
-    """Build with the law of all arms, and the profile of the first arm to which the rod model applies.
+    """Constitutive law of all arms, with the profile of the first arm to which the rod model applies.
 
-    Raises ValueError if arms of a grid of parameters have different profiles.
+    Raises ValueError if the arms of a grid of parameters have different profiles.
     """
     alike = Build(arm.law or STANDARD.law, arm.section or STANDARD.section)
     if all(getattr(arm, name) is None for name in SHAPE_KEYS):
@@ -61,14 +63,18 @@ def build_of(arm: "ArmSection") -> Build:
 
 
 def builds_of(arm: "ArmSection") -> Iterator[Build]:
-    """Yields constitutive law and profile of every arm of a section to which the rod model applies."""
+    """Yields the constitutive law and profile of every arm to which the rod model applies. arm: config
+    section.
+    """
     for values in arm.sections():
         with suppress(UncoveredArm):
             yield arm.made(values).build
 
 
 def tapers_of(arm: "ArmSection") -> set[float]:
-    """All ratios of tip radius to base radius of the arms of a section; {1.0} without a tip radius."""
+    """All ratios of tip radius to base radius of the arms of a config section; {1.0} if no tip radius is
+    given.
+    """
     if arm.tip_radius is None or arm.radius is None:
         return {1.0}
     pairs = product(arm.tip_radius.array().tolist(), arm.radius.array().tolist())
@@ -76,9 +82,10 @@ def tapers_of(arm: "ArmSection") -> set[float]:
 
 
 def refuse_misused_shape(arm: "ArmSection", beside: dict[str, Any]) -> None:
-    """Raises ValueError for an axis `length` beside segments, and for `taper` beside a cone or segments.
+    """Raises ValueError if an arm with segments has several lengths, or if `taper` is given for a cone or for
+    segments.
 
-    beside: parameters given beside the arm.
+    beside: parameters given in addition to the arm, by name.
     """
     if arm.segments is not None and "length" in arm.several:
         raise ValueError(
@@ -90,7 +97,9 @@ def refuse_misused_shape(arm: "ArmSection", beside: dict[str, Any]) -> None:
 
 
 def refuse_compressible(arm: "ArmSection", section: str) -> None:
-    """Raises ValueError if the section is "swelling" but a Poisson's ratio of the arm is not 0.5."""
+    """Raises ValueError if the cross-section `section` is "swelling" but a Poisson's ratio of the arm is not
+    0.5.
+    """
     ratios = [] if arm.poisson is None else arm.poisson.array().tolist()
     wrong = next((ratio for ratio in ratios if ratio != RUBBER_POISSON), None)
     if section == "swelling" and wrong is not None:

@@ -1,4 +1,4 @@
-"""Error messages for missing, unknown or surplus arguments of a call in Python, one sentence each."""
+"""Error messages, of one sentence each, for missing, unknown or surplus arguments of a Python call."""
 
 from collections.abc import Callable, Mapping
 from functools import wraps
@@ -14,7 +14,7 @@ R = TypeVar("R")
 
 
 def in_sentences(example: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Decorator that makes wrong arguments of a call raise InputError, with `example`, not TypeError."""
+    """Decorator: wrong arguments of a call raise an InputError that quotes `example`, not a TypeError."""
 
     def decorated(function: Callable[P, R]) -> Callable[P, R]:
         asked = signature(function)
@@ -32,9 +32,10 @@ def in_sentences(example: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 def refuse_misfit(
     asked: Signature, example: str, values: tuple[object, ...], named: Mapping[str, object]
 ) -> None:
-    """Raises InputError for the first unknown, repeated, surplus or missing argument of a call.
+    """Raises InputError for the first surplus, repeated, unknown or missing argument of a call.
 
-    asked: signature of the function. values, named: positional and keyword arguments of the call.
+    asked: signature of the function. example: correct call, for the message. values, named: positional and
+    keyword arguments of the call.
     """
     ours = list(asked.parameters.values())
     by_place = [p.name for p in ours if p.kind is Parameter.POSITIONAL_OR_KEYWORD]

@@ -1,7 +1,7 @@
 """Safe YAML of a config: version 1.2, one small document of limited depth, plain data only.
 
-Every parser event is checked before anything is built: no text can run code or exhaust memory. Every refusal
-is one sentence with the place in the file.
+Every parser event is checked before any value is built: no text can run code or exhaust memory. Every error
+message is one sentence with the line and column in the file.
 """
 
 from pathlib import Path
@@ -17,7 +17,7 @@ from ..values import named, overflows, short
 
 LARGEST_FILE = 100_000
 """Maximum size of a config file, in bytes: about 15,000 numbers, read in a second. Longer lists of points
-belong into CSV files."""
+belong in CSV files."""
 MAX_TEXT_LENGTH = 1000
 """Maximum length of a key or value, in characters."""
 HDF5_SIGNATURE = b"\x89HDF"
@@ -39,7 +39,7 @@ def read_text(path: Path) -> str:
     except OSError as error:
         raise InputError(f"{where} cannot be read: {error.strerror}") from error
     if data.startswith(HDF5_SIGNATURE):
-        raise InputError(f"{where} is a result file and no config; `rodsweep show` says what it holds")
+        raise InputError(f"{where} is a result file, not a config; `rodsweep show` prints its content")
     if path.suffix in TABLE_ENDINGS:
         raise InputError(
             f"{where} is a table, not a config; name the table in a config, as parameters.points"
@@ -56,7 +56,9 @@ def read_text(path: Path) -> str:
 
 
 def parse(text: str, where: str) -> Any:
-    """Value of a YAML text, as nested dicts and lists; InputError, beginning with `where`, if not allowed."""
+    """Value of a YAML text, as nested dicts and lists; InputError if the text is not valid or not allowed.
+    where: name of the text, with which the message begins.
+    """
     if any(line.startswith("%") for line in text.splitlines()):
         raise InputError(f"{where}: directives (%...) are not allowed in a config")
     yaml = YAML(typ="safe", pure=True)

@@ -1,6 +1,6 @@
 """Reads a YAML file with --set overrides into a Config; every error is one sentence with the key.
 
-The content of files named in a config becomes keys of the config before validation.
+The contents of the files that a config names become keys of the config before validation.
 """
 
 import csv
@@ -29,9 +29,10 @@ line."""
 
 
 def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, str]:
-    """(config, its YAML text); raises InputError for any error in the file.
+    """Returns (config, YAML text).
 
-    overrides: texts "a.b=value" of --set, which change keys; the YAML text lists them as comments.
+    Raises InputError for any error in the file. overrides: texts "a.b=value" of --set, which change keys; the
+    YAML text lists the overrides as comments.
     """
     text = read_text(path)
     where = named(path)
@@ -60,7 +61,9 @@ def validated(tree: dict[str, Any]) -> Config:
 
 
 def canonical(config: Config) -> dict[str, Any]:
-    """The resolved config: with all defaults and axes of parameters, as JSON values; inf becomes "inf"."""
+    """The resolved config, as JSON values: with all defaults and with the axes computed from an arm; inf
+    becomes "inf".
+    """
     tree = config.model_dump(mode="json", exclude_none=True)
     if config.parameters.arm is not None:
         tree["parameters"] |= {name: axis.resolved for name, axis in config.parameters.axes.items()}
@@ -68,7 +71,9 @@ def canonical(config: Config) -> dict[str, Any]:
 
 
 def config_of(resolved: dict[str, Any]) -> Config:
-    """The config from a resolved config, which `canonical` returned; ValueError if it is invalid now."""
+    """The config from a resolved config that `canonical` returned; ValueError if this version of rodsweep
+    does not accept the config.
+    """
     try:
         task = resolved["task"]
         section: Any = CONFIGS[task].model_fields[task].annotation
@@ -132,7 +137,9 @@ def text_of(config: Config) -> str:
 
 
 def _written(axis: Any) -> Any:
-    """The notation of a config file, a number, a list or a range, for a resolved axis or an arm's axes."""
+    """An axis in the notation of a config file (a number, a list or a range); for an arm, a mapping of the
+    quantities to this notation. Other values are returned unchanged. axis: resolved.
+    """
     if not isinstance(axis, dict):
         return axis
     if "length" in axis:
@@ -143,7 +150,9 @@ def _written(axis: Any) -> Any:
 
 
 def _override(tree: dict, override: str) -> None:
-    """Sets, in place, the key in the parsed config `tree` that one "--set a.b=value" names; value: YAML."""
+    """Sets a key of the parsed config `tree`, in place. override: text "a.b=value" of one --set, with a YAML
+    value.
+    """
     where = named(f"--set {override}", MAX_KEY_LENGTH)
     if not override.isprintable():
         raise InputError(f"{where} has characters that cannot be printed")
@@ -186,9 +195,11 @@ def _task(tree: dict) -> str:
 
 
 def with_files_read(tree: Any, directory: Path) -> Any:
-    """A parsed config, with the profile from its file, and `parameters.columns` from the header of the list.
+    """A parsed config, with the profile read from its file, and `parameters.columns` read from the header of
+    the file of points.
 
-    directory: folder of relative file names. Raises InputError for a profile that is no table of numbers.
+    directory: folder of relative file names. Raises InputError if the file of the profile is not a table of
+    numbers.
     """
     return _with_columns(with_profile_read(tree, directory), directory)
 

@@ -1,4 +1,5 @@
-"""Error messages of a config: each a sentence with the key, the value, and what is allowed or was meant."""
+"""Error messages of a config: each is a sentence with the key, the value, and the allowed values or the most
+similar key."""
 
 from collections.abc import Sequence
 from math import isinf
@@ -16,7 +17,8 @@ from ..values import named, short
 MAX_KEY_LENGTH = 100
 """Maximum number of characters of a key in a message; longer keys are shortened."""
 LETTERS_PER_TYPING_ERROR = 3
-"""Minimum number of letters of a key per typing error; with more typing errors, no known key is suggested."""
+"""A known key is suggested if it differs from the unknown key by at most one typing error per this number of
+letters."""
 MAX_SUGGESTIONS = 4
 """Maximum number of suggested keys. If more keys are equally similar, all known keys are listed instead."""
 MIN_SUBSTRING_LENGTH = 4
@@ -24,7 +26,9 @@ MIN_SUBSTRING_LENGTH = 4
 
 
 def sentence_of(config: type[Config], problem: Any) -> str:
-    """Message for one error `problem` of pydantic: a sentence with key, value and allowed values."""
+    """Message for an error of pydantic: a sentence with key, value and allowed values. problem: one item of
+    `ValidationError.errors()`.
+    """
     location = tuple(str(part) for part in problem["loc"])
     key = dotted(location)
     kind = problem["type"]
@@ -49,7 +53,9 @@ def sentence_of(config: type[Config], problem: Any) -> str:
 
 
 def hint_of(key: str, known: Sequence[str], there_are: str = "known keys are") -> str:
-    """Hint for an unknown key: "did you mean ...?" with similar known keys, or a list of all known keys."""
+    """Hint for an unknown key: "did you mean ...?" with similar known keys, or a list of all known keys.
+    there_are: beginning of the list.
+    """
     close = nearest(key, known)
     return f"did you mean {words(tuple(close), 'or')}?" if close else f"{there_are} {', '.join(known)}"
 
@@ -58,8 +64,8 @@ def nearest(key: str, known: Sequence[str]) -> list[str]:
     """The known keys that are most similar to an unknown key, in the given order; empty if no key is similar.
 
     A known key is similar if the unknown key differs only in capitals and underscores, is the beginning or a
-    substring of MIN_SUBSTRING_LENGTH or more letters of the known key, or has at most one typing error
-    in three letters.
+    substring of MIN_SUBSTRING_LENGTH or more letters of the known key, or has at most one typing error in
+    LETTERS_PER_TYPING_ERROR letters.
     """
     near = [(slips, name) for name in known if (slips := _slips(_plain(key), _plain(name))) is not None]
     least = min((slips for slips, _ in near), default=0)
@@ -72,7 +78,9 @@ def _plain(key: str) -> str:
 
 
 def _slips(key: str, name: str) -> float | None:
-    """Number of typing errors between a key and a name, 0.5 for a substring; None for dissimilar words."""
+    """Number of typing errors in `key` if `name` was meant, 0.5 for a substring; None if the two are not
+    similar.
+    """
     if key == name:
         return 0
     if name.startswith(key) or (len(key) >= MIN_SUBSTRING_LENGTH and key in name):
@@ -85,7 +93,9 @@ def _slips(key: str, name: str) -> float | None:
 
 
 def _edits(a: str, b: str) -> int:
-    """Edit distance of two words: insertions, deletions, changes and exchanges of neighbouring letters."""
+    """Edit distance of the words a and b: number of inserted, deleted, changed and exchanged neighbouring
+    letters.
+    """
     rows = [list(range(len(b) + 1))]
     for i, letter in enumerate(a, 1):
         row = [i]
@@ -99,7 +109,9 @@ def _edits(a: str, b: str) -> int:
 
 
 def full_names_of(config: type[Config], location: Sequence[str]) -> list[str]:
-    """Full names, like "parameters.F", of keys in other sections with the name of an unknown key."""
+    """Full names, like "parameters.F", of the known keys in other sections whose name is the last name of
+    `location`.
+    """
     task = str(get_args(config.model_fields["task"].annotation)[0])
     found = []
     for section in ((), ("parameters",), (task,), ("material",), ("parameters", "arm")):
@@ -125,7 +137,7 @@ def _section(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]
 
 
 def model_of(field: FieldInfo) -> Any:
-    """Type of the values of a config key, without the None of a key that may be missing."""
+    """Type of the values of a config key; for an optional key, the type without None."""
     kinds = [kind for kind in get_args(field.annotation) if kind is not NoneType]
     return kinds[0] if get_origin(field.annotation) is UnionType and len(kinds) == 1 else field.annotation
 

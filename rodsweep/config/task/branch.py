@@ -28,15 +28,16 @@ class BranchOptions(StrictSection):
     along: Literal[CONTINUATION_PARAMETERS] = "F"  # type: ignore[valid-type]  # pydantic reads it at run time
     """Parameter along which branches are followed. All other parameters are axes."""
     start: Annotated[Number, Field(gt=-inf, lt=inf)] = 0.0
-    """Smallest value of the parameter `along`; a branch ends there."""
+    """Smallest value of the parameter `along`; a branch that reaches this value ends."""
     stop: Annotated[Number, Field(gt=-inf, lt=inf)] = 200.0
-    """Largest value of the parameter `along`. F ends just below the force that crushes the rod."""
+    """Largest value of the parameter `along`. Branches along F end just below a smaller force that crushes
+    the rod."""
     cycles: Annotated[int, Field(ge=1, le=100_000)] = 500
     """Maximum number of stored cycles per rod, over all branches."""
     special: Annotated[int, Field(ge=1, le=10_000)] = 64
     """Maximum number of stored special points per rod."""
     certify: bool = True
-    """Confirm by winding numbers between the Hopf points that none is missing."""
+    """Confirm by winding numbers between the Hopf points that no Hopf point is missing."""
 
     @model_validator(mode="after")
     def _range_of_the_parameter(self) -> "BranchOptions":
@@ -59,7 +60,7 @@ class BranchConfig(Config):
     parameters: NonlinearParameters
     accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-7
     """Relative error of each cycle's period and largest y. Special points are located to the smaller of
-    `accuracy` and 1e-9. The file holds error estimates of all."""
+    `accuracy` and 1e-9. The file has error estimates of all these numbers."""
     branch: BranchOptions = BranchOptions()
 
     others_may_be_needed: ClassVar[bool] = True
@@ -76,7 +77,9 @@ class BranchConfig(Config):
     @model_validator(mode="before")
     @classmethod
     def _followed_has_no_default(cls, given: Any) -> Any:
-        """Removes the default of the followed parameter, which has no value; a given value is refused."""
+        """Removes the default of the followed parameter, so that only a value given by the user is
+        refused.
+        """
         sections = given if isinstance(given, dict) else {}
         options = sections.get("branch")
         parameters = sections.get("parameters")

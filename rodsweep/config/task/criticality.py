@@ -1,4 +1,4 @@
-"""Config of the task criticality: Hopf points of the straight rod, and the cycles born there."""
+"""Config of the task criticality: Hopf points of the straight rod, and the cycles that bifurcate there."""
 
 from collections.abc import Mapping
 from math import inf
@@ -16,11 +16,12 @@ class CriticalityOptions(StrictSection):
     """Options of the task criticality: range of the search for Hopf points, and number of stored points."""
 
     F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0
-    """Largest force of the search for Hopf points, which ends just below the force that crushes the rod."""
+    """Largest force of the search for Hopf points. If a smaller force crushes the rod, the search ends just
+    below this smaller force."""
     crossings: Crossings = 16
     """Maximum number of stored Hopf points."""
     certify: bool = True
-    """Confirm by winding numbers between the Hopf points that none is missing."""
+    """Confirm by winding numbers between the Hopf points that no Hopf point is missing."""
 
 
 class CriticalityConfig(Config):
@@ -32,7 +33,8 @@ class CriticalityConfig(Config):
     parameters: NonlinearParameters
     accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
     """Relative error of each Hopf point, of the eigenvalue's slope and of the Landau coefficient. The errors
-    of the amplitude coefficient and of the frequency slope follow; the file holds all error estimates."""
+    of the amplitude coefficient and of the frequency slope follow from these errors; the file has all error
+    estimates."""
     criticality: CriticalityOptions = CriticalityOptions()
 
     of_cycles: ClassVar[bool] = True

@@ -18,40 +18,44 @@ class LimitCycleOptions(StrictSection):
     """Options of the task limit_cycle: initial guess, limits of the computation, stored data of a cycle."""
 
     method: Literal["collocation", "integration"] = "collocation"
-    """Cycles by collocation in time, with multipliers, or by time integration alone, without multipliers."""
+    """Method: collocation in time, with Floquet multipliers, or time integration only, without Floquet
+    multipliers."""
     amplitude: Annotated[Number, Field(gt=0, le=1, description="a number above 0, at most 1")] = 0.01
-    """Tip deflection of the leading mode at the start of a point, in L."""
+    """Tip deflection of the initial guess, which is the leading mode, in L."""
     start: Literal["mode", "neighbour", "hopf"] = "mode"
-    """Start of each point: the leading mode, a neighbour's cycle, or the Hopf point."""
+    """Initial guess at each point: the leading mode, the cycle of a neighbouring point, or the cycle near the
+    Hopf point."""
     along: ChainParameter = LONGEST
-    """Parameter along which each point starts from the previous point's cycle, or a quantity of the arm that
-    changes only this parameter; `longest`: the parameter with most values."""
+    """Parameter along which the cycle of a point is the initial guess at the next point, or the quantity of
+    the arm that changes only this parameter; `longest`: the parameter with the most values."""
     direction: Literal["up", "down"] = "up"
     """Whether the parameter `along` increases or decreases from a point to the next."""
     harmonics: Annotated[int, Field(ge=1, le=100)] = 8
     """Number of stored harmonics of the tip's y."""
     samples: Annotated[int, Field(ge=0, le=100_000)] = 0
-    """Times per period at which the tip and the energy are stored; 0 stores none."""
+    """Number of times per period at which the tip and the energy are stored; 0 stores no samples."""
     shapes: Annotated[int, Field(ge=0, le=10_000)] = 0
-    """Times per period at which the shape of the rod is stored; 0 stores none."""
+    """Number of times per period at which the shape of the rod is stored; 0 stores no shapes."""
     nodes: Nodes = 33
     """Number of Lobatto nodes of each shape."""
     transient: Annotated[int, Field(ge=0, le=100_000)] = 0
-    """Times from the start to the cycle at which the tip of the real motion is stored; 0 stores none."""
+    """Number of times, from the start of the motion until the cycle is reached, at which the tip is stored; 0
+    stores no transient."""
     most_periods: Annotated[int, Field(ge=1, le=1_000_000)] = 400
-    """Maximum number of periods; an unsettled point is then given up, or after 200 time steps per period."""
+    """Maximum number of periods, and of time steps in units of 200 per period. A motion that has not settled
+    then has no result."""
     time: Literal["tau2", "tau1"] = "tau2"
-    """Unit of time; tau1 adds the period in units of tau1, and all else stays in tau2."""
+    """Unit of time. tau1 adds the period in units of tau1; all other variables stay in units of tau2."""
 
 
 class LimitCycleConfig(Config):
-    """The task limit_cycle computes the limit cycle of the nonlinear rod at every point, or finds none."""
+    """The task limit_cycle computes the limit cycle of the nonlinear rod, if there is one, at every point."""
 
     task: Literal["limit_cycle"]
     parameters: NonlinearParameters
     accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-7
     """Relative error of the period and of the tip's largest y. Other extrema of the tip may have errors a
-    hundred times larger, in units of the largest y. The file holds error estimates of all."""
+    hundred times larger, relative to the largest y. The file has error estimates of all these numbers."""
     limit_cycle: LimitCycleOptions = LimitCycleOptions()
 
     of_cycles: ClassVar[bool] = True
@@ -60,7 +64,8 @@ class LimitCycleConfig(Config):
     def along(self) -> str:
         """Parameter along which the cycle of a point is the initial guess for the next point.
 
-        By default the first of the parameters with most values.
+        By default the parameter with the most values; the first parameter if several have equally many
+        values.
         """
         sizes = self.parameters.alone
         given = self.limit_cycle.along

@@ -18,37 +18,39 @@ THIRD_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 
 
 class BautinAlong(LinearAxes):
-    """The option bautin_along: a third parameter with values, over which generalised Hopf points are
+    """The option bautin_along: a third parameter and its values, along which generalised Hopf points are
     followed.
     """
 
 
 class PhaseDiagramOptions(StrictSection):
-    """Options of the task phase_diagram, for its rows and for the boundary curves through the rows."""
+    """Options of the task phase_diagram, for the rows of the diagram and for the boundary curves."""
 
     crossings: Crossings = 16
     """Maximum number of stored crossings per row."""
     certify: bool = True
-    """Confirm by winding numbers between the changes, and certify every spectrum."""
+    """Confirm by winding numbers that no change of stability is missing, and certify every spectrum."""
     curves: bool = True
     """Follow the boundaries between the rows as curves."""
     criticality: bool = False
-    """Compute the criticality along Hopf curves, and where it changes; needs `curves`."""
+    """Compute the criticality along Hopf curves, and the points where the criticality changes; needs
+    `curves`."""
     cycles: bool = False
-    """Follow the cycles of each row, for the stable states and, with `curves`, the curves of their folds."""
+    """Follow the cycles of each row, for the stable states and, with `curves`, for the curves of folds of
+    cycles."""
     cycle_accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-6
     """Relative error of the period and of the largest y of each cycle; needs `cycles`. Special points are
-    located to the smaller of `cycle_accuracy` and 1e-9. A smaller number leaves fewer states undecided."""
+    located to the smaller of `cycle_accuracy` and 1e-9. A smaller value leaves fewer states undetermined."""
     bautin_along: Annotated[BautinAlong | None, Field(description="a mapping of one parameter to values")] = (
         None
     )
-    """A third parameter with values, over which curves of generalised Hopf points are followed; needs
+    """A third parameter and its values, along which curves of generalised Hopf points are followed; needs
     `criticality`."""
 
     @property
     def third(self) -> tuple[str, Axis] | None:
-        """(name, values) of the parameter in `bautin_along`, the third besides the diagram's two; None
-        without.
+        """Returns (name, values) of the third parameter, in `bautin_along`; None if `bautin_along` is not
+        given.
         """
         given = [(name, getattr(self.bautin_along, name, None)) for name in THIRD_PARAMETERS]
         return next(((name, axis) for name, axis in given if axis is not None), None)
@@ -90,7 +92,7 @@ class PhaseDiagramConfig(LinearConfig):
     def plane(self) -> tuple[str, ...]:
         """(parameter along a row, parameter across rows): names of the parameters with several values.
 
-        They are in the order of LINEAR_PARAMETERS and OPTIONAL_PARAMETERS.
+        The names are in the order of LINEAR_PARAMETERS and OPTIONAL_PARAMETERS.
         """
         return tuple(name for name, axis in self.parameters.axes.items() if axis.size > 1)
 
@@ -100,7 +102,9 @@ class PhaseDiagramConfig(LinearConfig):
 
     @property
     def gamma1(self) -> float:
-        """Axial drag for criticality and cycles: the given value, else the arm's, else the default."""
+        """Axial drag for criticality and cycles: the given value, else the value of the arm, else the
+        default.
+        """
         if "gamma1" in self.parameters.numbers:
             return self.parameters.numbers["gamma1"]
         if self.parameters.arm is not None:
@@ -113,7 +117,9 @@ class PhaseDiagramConfig(LinearConfig):
 
     @property
     def meaning(self) -> dict[str, Any]:
-        """`Config.meaning` with the values along a row and, for boundary curves, the logarithmic axes."""
+        """`Config.meaning`, with the parameter values along a row and, for boundary curves, the names of the
+        logarithmic axes.
+        """
         meant = super().meaning
         axes = self.parameters.axes
         line = self.plane[0]
@@ -168,7 +174,7 @@ class PhaseDiagramConfig(LinearConfig):
             )
             raise ValueError(
                 f"parameters.arm.{RELATIVE.get(several, several)} {why}; a phase diagram of an arm is over "
-                f"{words((*AXIS_OF, 'drag'), 'or')}, or parameters beside the arm"
+                f"{words((*AXIS_OF, 'drag'), 'or')}, or parameters given with the arm"
             )
         long = self.plane
         names = words((*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), "and")

@@ -16,15 +16,16 @@ class SpectrumOptions(StrictSection):
     modes: Modes = 4
     """Number of leading eigenvalues at each point."""
     method: Literal["determinant", "krylov_schur"] = "determinant"
-    """Eigenvalues as roots of D, or by Krylov-Schur on two meshes, which proves nothing."""
+    """Method: roots of D, or Krylov-Schur on two meshes, which does not prove that no eigenvalue is
+    missing."""
     certify: bool = True
     """Prove by the winding number of D that no eigenvalue is missing."""
     vectors: bool = False
-    """Store (Y, Theta), scaled to Y(1) = 1, with an error of about `accuracy`."""
+    """Store the eigenvectors (Y, Theta), scaled to Y(1) = 1, with an error of about `accuracy`."""
     nodes: Nodes = 33
     """Number of Lobatto nodes of (Y, Theta); used if `vectors` is true."""
     follow: bool = True
-    """Follow eigenvalues along the longest axis of a grid, where `certify` is true and `vectors` false."""
+    """Follow eigenvalues along the longest axis of a grid; needs `certify: true` and `vectors: false`."""
     longitudinal: bool = False
     """Add the longitudinal modes: -(k1/gamma1) (pi (n - 1/2))^2 for a uniform rod of linear material."""
 
@@ -50,12 +51,14 @@ class SpectrumConfig(LinearConfig):
 
     @property
     def certifies(self) -> bool:
-        """Whether the winding number of D must prove that no leading eigenvalue is missing."""
+        """Whether the task must prove by the winding number of D that no leading eigenvalue is missing."""
         return self.spectrum.certify and self.spectrum.method == "determinant"
 
     @property
     def follows(self) -> bool:
-        """Whether eigenvalues are followed along an axis: for certified spectra of a grid without vectors."""
+        """Whether eigenvalues are followed along an axis: only on grids, with certified spectra and without
+        eigenvectors.
+        """
         return self.spectrum.follow and self._could_follow
 
     @property

@@ -20,11 +20,13 @@ class ThresholdsOptions(StrictSection):
     crossings: Crossings = 16
     """Maximum number of stored crossings."""
     certify: bool = True
-    """Confirm by winding numbers between the changes, and certify every spectrum."""
+    """Confirm by winding numbers that no change of stability is missing, and certify every spectrum."""
 
 
 class ThresholdsConfig(LinearConfig):
-    """The task thresholds finds the forces at which number or kind of a rod's unstable eigenvalues change."""
+    """The task thresholds finds the forces at which the number or the kind of a rod's unstable eigenvalues
+    changes.
+    """
 
     task: Literal["thresholds"]
     thresholds: ThresholdsOptions = ThresholdsOptions()

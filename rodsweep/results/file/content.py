@@ -1,6 +1,6 @@
-"""Digests of the variables and attributes of a result file, and refusal of content by other programs.
+"""Digests of the variables and attributes of a result file, and refusal of content written by other programs.
 
-A digest covers the meaning, not the storage: type, shape, dimensions, numbers and attributes of a variable. A
+A digest covers the content, not its storage: type, shape, dimensions, numbers and attributes of a variable. A
 file rewritten by another program, such as xarray, keeps the digests. Names that begin with `user_` belong to
 the user: the user's content has no digest, and only `rs.open` reads it.
 """
@@ -37,7 +37,8 @@ BYTES_A_READ = 1 << 18
 XARRAY_FILL_ATTRIBUTE = ("_FillValue", "[nan]")
 """(name, value as text) of an attribute that xarray adds when it writes a file, and that has no effect."""
 Digests = dict[str, dict[str, str]]
-"""Digests by name of the attribute or variable, under the keys `attributes` and `variables`."""
+"""Digest of every attribute and variable by name, in one dict with the key `attributes` and one dict with the
+key `variables`."""
 
 
 def is_users(name: str) -> bool:
@@ -52,7 +53,9 @@ def variable_digest(
     attributes: Mapping[str, Any],
     blocks: Iterable[Any],
 ) -> str:
-    """Digest of a variable of the type `kind`; blocks: its numbers as buffers in row-major order."""
+    """Digest of a variable of the NumPy type `kind`. dimensions: names of its dimensions. blocks: its numbers
+    as buffers in row-major order.
+    """
     described = [kind.newbyteorder("<").str, list(shape), list(dimensions), _plain_attributes(attributes)]
     digest = sha256(json.dumps(described, sort_keys=True).encode())
     for block in blocks:
@@ -67,7 +70,9 @@ def attribute_digests(attributes: Mapping[str, Any]) -> dict[str, str]:
 
 
 def digests_of(file: h5py.File) -> Digests:
-    """Digests of an open file; raises ValueError, with a clause as message, for content of other programs."""
+    """Digests of an open file. Raises ValueError, with a clause as message, for content that rodsweep does
+    not write.
+    """
     variables = {}
     for name, data in _variables(file):
         if data.dtype.kind not in NUMBERS or data.shape is None:
@@ -124,9 +129,10 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
 
 
 def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
-    """Names of a variable's dimensions, from its attributes; a coordinate has itself as dimension.
+    """Names of a variable's dimensions, read from its attributes; the only dimension of a coordinate has the
+    name of the coordinate.
 
-    HDF5's own functions for dimensions crash on damaged attributes, and are not used.
+    HDF5's own functions for dimensions are not used, because they crash on damaged attributes.
     """
     attributes = data.attrs
     changed = ValueError(f"the dimensions of {named(name, 40)} were changed after rodsweep wrote them")

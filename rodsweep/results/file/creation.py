@@ -1,4 +1,5 @@
-"""Creation of a result file: netCDF-4-compatible HDF5 with every variable in place, and later additions."""
+"""Creation of a result file, which is netCDF-4-compatible HDF5 with space for all variables, and later
+addition of variables."""
 
 import json
 from collections.abc import Callable, Mapping, Sequence
@@ -21,22 +22,26 @@ from .validation import FORMAT, PROGRAM
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Plan of a result file: points, layout, resolved config, and the variables besides the points."""
+    """Plan of a result file: points, layout, resolved config, and the variables that do not belong to single
+    points.
+    """
 
     points: Points
     layout: Layout
     coordinates: dict[str, Array]
-    """Coordinates, (n,) each, of extra dimensions such as u, where the default 1, 2, ... does not apply."""
+    """Coordinates, (n,) each, of extra dimensions such as u, by name of the dimension. All other extra
+    dimensions have the coordinates 1, 2, ..."""
     constants: Callable[[], tuple[Filled, ...]]
     """Returns the variables known before any point is solved; called once, when a file is created."""
     config: dict[str, Any]
     """The resolved config."""
     attributes: dict[str, Any]
-    """Attributes of the file, besides the attributes that every result file has."""
+    """Attributes of the file, in addition to the attributes that every result file has."""
     flags: tuple[tuple[int, str], ...]
-    """(value, word) of every status except MISSING."""
+    """(value, name) of every status except MISSING."""
     quantities: tuple[Filled, ...] = ()
-    """Quantities of an arm: axes of a grid over them, or further coordinates of the points."""
+    """Quantities of an arm, with values: axes of a grid over these quantities, or additional coordinates of
+    the points."""
     chains: Chains | None = None
     """Chains of points; None if no point starts from the state of another point."""
     stretches: Stretches | None = None
@@ -123,7 +128,9 @@ def _write_scale(file: h5py.File, name: str, values: NDArray[Any], variable: Var
 
 
 def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> h5py.Dataset:
-    """New contiguous dataset, allocated and filled at once, so that its offset in the file is final."""
+    """New contiguous dataset, allocated and filled when it is created, so that its offset in the file is
+    final.
+    """
     creation = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
     creation.set_layout(h5py.h5d.CONTIGUOUS)
     creation.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)

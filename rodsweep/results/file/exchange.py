@@ -1,6 +1,6 @@
-"""Atomic replacement of a result file, under a lock that a single run or merge holds at a time.
+"""Atomic replacement of a result file, under a lock that only one run or merge can take at a time.
 
-The new file is written beside the journals, and sealed and synced to disk before the rename.
+The new file is written into the journal directory, and is sealed and synced to disk before it is renamed.
 """
 
 import fcntl
@@ -16,9 +16,11 @@ from ..run.journal import journal_directory
 from .seal import seal
 
 LOCK_PATIENCE = 5.0
-"""Seconds to wait for the lock before a refusal. Ranks of a killed launcher live on for a moment."""
+"""Seconds to wait for the lock before InputError is raised, because ranks of a killed launcher end a moment
+later."""
 Identity = tuple[int, ...]
-"""(device, inode, size, time of change): changes when a file is replaced or written; empty without a file."""
+"""(device, inode, size, time of change): changes when a file is replaced or written; empty if there is no
+file."""
 
 
 def identity(path: Path) -> Identity:
@@ -32,9 +34,10 @@ def identity(path: Path) -> Identity:
 
 @contextmanager
 def disk_refusals(path: Path, kept: Callable[[], str] = str) -> Iterator[None]:
-    """Context that turns disk errors (RuntimeError from HDF5) into EnvironmentIncomplete.
+    """Context that turns disk errors (OSError, or RuntimeError from HDF5) into EnvironmentIncomplete.
 
-    path: file that is written. kept: returns a clause for the message on what is saved.
+    path: file that is written. kept: function that returns a clause, for the message, on the data that are
+    saved.
     """
     try:
         yield
@@ -89,7 +92,7 @@ class Lock:
     """Lock on a result file: a file in the journal directory. The lock creates and removes this directory."""
 
     def __init__(self, directory: Path, path: Path):
-        """Takes the lock on the file `path`; raises InputError if another run holds it."""
+        """Takes the lock on the file `path`; raises InputError if another run has the lock."""
         self.directory = directory
         patience = time.monotonic() + LOCK_PATIENCE
         while True:

@@ -11,11 +11,12 @@ from ...errors import EnvironmentIncomplete
 Table = dict[str, Sequence[str] | Sequence[float]]
 """Table of the measurements of a benchmark study: columns of equal length, by name."""
 UNITS = {"seconds": "s", "error": "1"}
-"""Unit of a column by its name; other columns have no unit."""
+"""Unit of a column, by name of the column; all other columns have no unit."""
 
 
 def write_measurements(path: Path, tables: Mapping[str, Table], attributes: Mapping[str, str]) -> None:
-    """Writes the table of every benchmark study to `path`, as /STUDY/COLUMN, (measurement,) each.
+    """Writes the table of every benchmark study to `path`, as /STUDY/COLUMN, (measurement,) each, and
+    `attributes` as attributes of the file.
 
     Raises EnvironmentIncomplete if writing fails.
     """

@@ -1,7 +1,8 @@
-"""Points of a closed result file, read and written at computed offsets: every variable is contiguous.
+"""Points of a closed result file, read and written at computed offsets, because every variable is contiguous.
 
-HDF5 is not used: HDF5's blocks follow the axes of a grid, and the first axis may have a single value. The
-file is not mapped into memory: touched pages would count as memory of the process, finally the whole file.
+HDF5 is not used for the points: HDF5 reads blocks along the axes of a grid, and the first axis may have a
+single value. The file is not mapped into memory, because all pages that were read would be counted as memory
+of the process.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -28,7 +29,7 @@ def statuses(path: Path, at_once: int | None = None) -> Iterator[tuple[int, np.n
     """Yields (flat index of the first point, statuses of n consecutive points, (n,)) until all points are
     read.
 
-    at_once: number of points in a block; POINTS_AT_ONCE by default.
+    at_once: number of points per step; POINTS_AT_ONCE by default.
     """
     with h5py.File(path, "r") as file:
         data = file["status"]
@@ -120,9 +121,11 @@ def points_in(file: h5py.File, layout: Layout) -> Points:
 
 
 def on_grid(variables: Mapping[str, Any], layout: Layout) -> Iterator[np.ndarray]:
-    """Yields each parameter on a grid over an arm's quantities, shaped to broadcast over the grid.
+    """Yields the values of each parameter on a grid over an arm's quantities, shaped to broadcast over the
+    grid.
 
-    A parameter has the shape of the grid, or extends along its own axis only.
+    variables: variables of the file by name. A parameter has the shape of the grid or, if it is an axis,
+    varies along this axis only.
     """
     for name in layout.parameters:
         along = [-1 if axis == name else 1 for axis in layout.over]

@@ -16,7 +16,7 @@ import numpy as np
 from ... import __version__
 
 MAX_RANK_SHARES = 10_000
-"""Maximum number of ranks whose work statistics are stored; more would exceed the 64 kB of an attribute."""
+"""Maximum number of ranks whose work statistics are stored, because an attribute is limited to 64 kB."""
 LONGEST_ATTRIBUTE = 60_000
 """Maximum number of characters of an attribute; HDF5 allows 64 kB."""
 RANK_SHARES = ("rank_points", "rank_busy_seconds", "rank_idle_seconds")
@@ -28,9 +28,10 @@ FAILURE_REASONS = "failure_reasons"
 """Name of the attribute with one example point for each distinct reason of failure, in all runs; each line
 has parameters, status and reason."""
 NUMBER = re.compile(r"\d[\d.]*(?:e[+-]?\d+)?")
-"""Matches a number in a message. Messages that differ only in numbers count as the same reason of failure."""
+"""Matches a number in a message. Messages that differ only in numbers are treated as the same reason of
+failure."""
 MAX_FAILURE_REASONS = 20
-"""Maximum number of reasons of failure in a file; further reasons are dropped."""
+"""Maximum number of reasons of failure in a file; additional reasons are dropped."""
 KERNEL_NOT_RECORDED = "unknown"
 """Name of the BLAS kernel of points from an earlier version, which did not record kernels."""
 
@@ -41,8 +42,8 @@ def now() -> str:
 
 
 def provenance() -> dict[str, str]:
-    """Versions of rodsweep, Python and libraries except the solver's, the git commit, and the system, by
-    name.
+    """Versions of rodsweep, Python and libraries (except PETSc and SLEPc), the git commit, and the system, by
+    name of the attribute.
     """
     return {
         "rodsweep_version": __version__,
@@ -73,9 +74,10 @@ def reason_of(line: str) -> str:
 
 
 def united_reasons(*several: str) -> dict[str, str]:
-    """The attribute FAILURE_REASONS, by name, from several values of it; empty without reasons.
+    """Dict with the attribute FAILURE_REASONS, joined from several values of this attribute; empty if there
+    are no reasons.
 
-    Of lines with equal reasons the first is included.
+    Only the first line with each reason is included.
     """
     lines: dict[str, str] = {}
     for line in "\n".join(several).splitlines():
@@ -85,7 +87,7 @@ def united_reasons(*several: str) -> dict[str, str]:
 
 
 def reasons_added(lines: Iterable[str], before: Mapping[str, Any]) -> dict[str, str]:
-    """The attribute FAILURE_REASONS, by name, after new failures.
+    """Dict with the attribute FAILURE_REASONS after new failures.
 
     lines: lines of the new failures. before: attributes of the file, with the reasons of earlier runs.
     """
@@ -105,7 +107,9 @@ def kernels_sentence(attribute: str) -> str:
 
 
 def merged_history(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Attributes of a merged file on the runs that computed its points, from its sources' attributes."""
+    """Attributes of a merged file that describe the runs that computed its points. several: attributes of
+    each source.
+    """
     history: dict[str, Any] = {
         "shard": "",
         KERNELS_ATTRIBUTE: united_kernels(*map(kernels_of, several))[:LONGEST_ATTRIBUTE],

@@ -29,11 +29,12 @@ Found = TypeVar("Found")
 
 
 def read_unfolded(path: Path, read: Callable[[], Found]) -> Found:
-    """Result of `read`, which reads a file and its journals; `read` is called again if the file was replaced.
+    """Result of the function `read`, which reads a file and its journals, and is called again if the file was
+    replaced meanwhile.
 
-    A run that moves journalled points into the file replaces the file before it deletes the journals. No
-    journal was deleted if the file is the same before and after the reading. Raises EnvironmentIncomplete if
-    the file keeps changing.
+    A run that moves journalled points into the file replaces the file before the journals are deleted. If the
+    file is unchanged after the reading, no journal was deleted meanwhile. Raises EnvironmentIncomplete if the
+    file keeps changing.
     """
     for _ in range(MAX_REREADS):
         has_journals = journal_directory(path).is_dir()
@@ -61,14 +62,18 @@ def journalled_points(header: ResultHeader, status: np.ndarray) -> np.ndarray:
 
 
 def journalled_reasons(header: ResultHeader) -> dict[str, str]:
-    """The attribute FAILURE_REASONS, by name, including failed points in the journals; may be empty."""
+    """Dict with the attribute FAILURE_REASONS, including failed points in the journals; empty if no point
+    failed.
+    """
     directory = journal_directory(header.path)
     lines = read_reasons(directory, header.layout, header.fingerprint) if directory.is_dir() else ()
     return reasons_added(lines, header.attributes)
 
 
 def insert_records(values: np.ndarray, name: str, records: np.ndarray) -> None:
-    """Copies the variable `name` of records, (n,), into `values`, its array over all points, in place."""
+    """Copies the variable `name` of records, (n,), into `values`, the array of this variable at all points,
+    in place.
+    """
     values.reshape(-1, *records[name].shape[1:])[records["index"]] = records[name]
 
 
@@ -108,7 +113,9 @@ def _copied(path: Path, exchange: FileReplacement) -> tuple[int, int]:
 
 
 def _is_snapshot(path: Path) -> bool:
-    """Whether a file is a snapshot. A run that continues a snapshot makes it an ordinary result file."""
+    """Whether a file is a snapshot. A run that continues a snapshot turns the snapshot into an ordinary
+    result file.
+    """
     if not is_ours(path):
         return False
     with reading(path), h5py.File(path, "r") as file:

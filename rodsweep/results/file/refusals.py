@@ -12,10 +12,10 @@ from .points import parameters_of
 from .validation import IncompleteFile, ResultHeader, read_header
 
 SPACE_FACTOR = 3
-"""Disk space that a run needs, divided by the size of its file: for the file, journals and a replacing
-copy."""
+"""Disk space that a run needs (for the file, the journals and a new copy of the file), divided by the size of
+the file."""
 SPACE_FIXED = 300_000
-"""Further disk space that a run needs, in bytes, for attributes, coordinates and checkpoints."""
+"""Additional disk space that a run needs, in bytes, for attributes, coordinates and checkpoints."""
 
 
 def require_room(path: Path, plan: Plan) -> None:
@@ -42,7 +42,9 @@ def header_in_the_way(path: Path, plan: Plan, journals: Path) -> ResultHeader:
 
 
 def refuse_other(header: ResultHeader, plan: Plan, journals: Path) -> None:
-    """Raises InputError for an existing file that was made for another config than the plan's."""
+    """Raises InputError for an existing file, described by `header`, whose config differs from the config of
+    the plan. journals: journal directory of the file.
+    """
     change = change_between(header.config, plan.config)
     ways = _ways_out(plan, journals)
     try:
@@ -54,7 +56,9 @@ def refuse_other(header: ResultHeader, plan: Plan, journals: Path) -> None:
 
 
 def _ways_out(plan: Plan, journals: Path) -> str:
-    """Remedies, as a clause, for an existing file that prevents the run of a plan."""
+    """Clause with the remedies for an existing file that prevents the run of a plan. journals: journal
+    directory of the file.
+    """
     if journals_of(journals, plan.fingerprint):
         return f"move it away, and the same command will use the points in {journals}"
     return "choose another file with -o, or replace it with --fresh"

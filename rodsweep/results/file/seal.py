@@ -40,7 +40,9 @@ class BrokenSeal(ValueError):
 
 
 def seal(path: Path) -> None:
-    """Adds digests and checksum to a closed file that rodsweep has just written; replaces former ones."""
+    """Adds digests and a checksum to a closed file that rodsweep has just written; replaces earlier digests
+    and checksums.
+    """
     with h5py.File(path, "r+") as file:
         file.attrs[SEAL_ATTRIBUTE] = json.dumps(digests_of(file))
     with h5py.File(path, "r") as file:
@@ -54,7 +56,7 @@ def seal(path: Path) -> None:
 
 
 def check_frame(path: Path) -> bool:
-    """Whether the file has a checksum that its HDF5 structures match; False without a checksum.
+    """Whether the HDF5 structures of the file match its checksum; False if the file has no checksum.
 
     Another program that writes the file removes the checksum. Raises BrokenSeal for a wrong checksum, or
     OSError. Takes a millisecond.

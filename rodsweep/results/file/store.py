@@ -1,9 +1,9 @@
 """Result file of a run: created with all variables at the start, replaced as a whole when points are added.
 
 The file is netCDF-4-compatible HDF5, is only ever replaced by a rename, and can be opened at any time. Ranks
-write finished points to journals beside the file (`rodsweep.results.run.journal`). Journals are folded in
-(added to the file) at the end of a run, or at the start of the next run after a kill. A journal is recognised
-by its fingerprint, even without a file; journals of other points are moved away, never deleted.
+write finished points to journals beside the file (`rodsweep.results.run.journal`). The points of journals are
+folded into (added to) the file at the end of a run, or at the start of the next run after a kill. A journal
+is recognised by its fingerprint, even without a file; journals of other points are moved away, never deleted.
 """
 
 import json
@@ -45,13 +45,13 @@ BACKUPS = "before-*.h5"
 
 
 class Store:
-    """Result file of one run. Only the first rank has a store, and a file has a single run at a time."""
+    """Result file of one run. Only the first rank has a store, and only one run at a time can open a file."""
 
     def __init__(self, path: Path, plan: Plan, fresh: bool = False, extend: bool = False):
         """Opens the file of a plan or creates the file; raises InputError for a file of another plan.
 
-        fresh: replaces a result file of any plan. extend: extends the file of a smaller config to the plan,
-        and reuses its points where possible.
+        fresh: whether to replace an existing result file of any plan. extend: whether to extend the file of a
+        smaller config to the plan, reusing its points where possible.
         """
         self.path = path
         self.plan = plan
@@ -67,7 +67,7 @@ class Store:
                 raise
 
     def _open(self, fresh: bool, extend: bool) -> None:
-        """Creates, continues or extends the file, or raises InputError; moves other points' journals away."""
+        """Creates, continues or extends the file; moves other journals away. May raise InputError."""
         if fresh or not self.path.exists():
             self._create(fresh)
         else:
@@ -129,7 +129,7 @@ class Store:
         return copy
 
     def _set_aside(self, paths: Sequence[Path], what: str) -> None:
-        """Moves files out of the journal directory, and notes for the user where the files, `what`, are."""
+        """Moves `paths` out of the journal directory, and notes the new place. what: noun for the files."""
         if paths:
             self.notes.append(f"{what} are kept in {set_aside(self.journals, paths)}")
 
@@ -172,9 +172,7 @@ class Store:
                 drop_files(self.journals, pattern)
 
     def restore(self) -> None:
-        """Creates the file again if it was moved or deleted; EnvironmentIncomplete if another file replaced
-        it.
-        """
+        """Creates a moved or deleted file again; EnvironmentIncomplete if another file replaced it."""
         with disk_refusals(self.path, self._kept):
             self._restore_if_gone()
 
@@ -224,7 +222,7 @@ class Store:
                 journal.unlink(missing_ok=True)
 
     def _kept(self) -> str:
-        """Clause for messages that says where journalled points are; empty without points."""
+        """Clause for messages with the directory of journalled points; empty if no points are in journals."""
         return kept_sentence(journal_directory(self.path), self.plan.fingerprint)
 
     def status_counts(self) -> dict[str, int]:
@@ -243,7 +241,7 @@ class Store:
         self.exchange.close()
 
     def _header(self) -> ResultHeader:
-        """Header of the existing file; raises InputError unless it is a complete result."""
+        """Header of the existing file; raises InputError if the file is not a complete result."""
         left = identity(self.path)
         header = header_in_the_way(self.path, self.plan, self.journals)
         self.exchange.left = left

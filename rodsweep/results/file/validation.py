@@ -30,13 +30,14 @@ quantities."""
 CONFIGS = (".yaml", ".yml")
 """Suffixes of the names of config files."""
 LONGEST_REASON = 150
-"""Maximum number of characters of a library's error message in a message of rodsweep; the message is cut."""
+"""Maximum number of characters of a library's error message that a message of rodsweep quotes; longer
+messages are cut."""
 DAMAGES = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
 """Exceptions that h5py, or the use of the data it reads, raises for a damaged file."""
 
 
 class IncompleteFile(InputError):
-    """The file is no rodsweep result, or is damaged or changed."""
+    """Raised for a file that is not a rodsweep result, is damaged, or was changed."""
 
 
 @contextmanager
@@ -71,10 +72,10 @@ class ResultHeader:
 
 
 def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, ResultHeader]:
-    """(open file, its header): every reader of a result file opens it here.
+    """Returns (open file, header); every reader opens a result file by this function.
 
-    values: whether the numbers are compared with the seal as well, which takes a second for each GB.
-    Otherwise only the structures around the large variables are compared, unless another program has written
+    values: whether the numbers of large variables are also compared with the seal, which takes a second per
+    GB. Otherwise only HDF5's structures and small variables are compared, unless another program has written
     the file. Raises InputError unless the file is a complete result with the content written by rodsweep.
     """
     refuse_absent(path)
@@ -100,7 +101,7 @@ def read_header(path: Path) -> ResultHeader:
 
 
 def refuse_absent(path: Path) -> None:
-    """Raises InputError unless there is a file at `path`."""
+    """Raises InputError if there is no file at `path`."""
     if not path.is_file():
         raise InputError(f"{path} is not a file" if path.exists() else f"{path} does not exist")
 

@@ -54,7 +54,7 @@ class Variables(Mapping[str, np.ndarray]):
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """Contents of a result file: attributes, and variables as NumPy arrays, with points still in journals."""
+    """Contents of a result file and its journals: attributes, and variables as NumPy arrays."""
 
     path: Path
     attributes: dict[str, Any]
@@ -62,11 +62,12 @@ class View:
     parameters: tuple[str, ...]
     """Names of the parameters of a point: dimensions of a grid, or variables along the dimension `point`."""
     flags: dict[int, str]
-    """Word of each value of the variable `status`."""
+    """Name of the status, by value of the variable `status`."""
     journalled: int
     """Number of points that are still in the journals of a running or interrupted run."""
     over: tuple[str, ...] = ()
-    """Dimensions of a grid over an arm's quantities; empty for other points."""
+    """Names of the dimensions of a grid over an arm's quantities; empty for a grid of parameters or a
+    list."""
     typed: dict[str, str] = field(default_factory=dict)
     """Unit in which the user typed a quantity of an arm, by name of the quantity."""
 
@@ -93,16 +94,18 @@ class View:
 
     @property
     def quantities(self) -> dict[str, np.ndarray]:
-        """Quantities of an arm in SI units by name; empty without an arm.
+        """Quantities of an arm in SI units by name; empty if the file has no arm.
 
-        A quantity has the shape (), or varies along a parameter or the dimension `point`, (n,), or along axes
-        of a grid over quantities, (...,).
+        The shape of a quantity is (); (n,) along a parameter or the dimension `point`; or (...,) along axes
+        of a grid over quantities.
         """
         return {name: self.variables[name] for name in ALL_QUANTITIES if name in self.variables}
 
     @property
     def listed(self) -> "View":
-        """This view with a grid over an arm's quantities as a list of points; unchanged for other points."""
+        """This view with a grid over an arm's quantities turned into a list of points; for all other points,
+        this view unchanged.
+        """
         if not self.over:
             return self
         shape = self.variables["status"].shape
@@ -124,17 +127,17 @@ class View:
 
     @property
     def outcomes(self) -> NDArray[np.str_]:
-        """Status word of every point, (points,)."""
+        """Name of the status of every point, (points,)."""
         return np.array([self.flags.get(int(s), "missing") for s in self.variables["status"].ravel()])
 
     def with_status(self, *words: str) -> NDArray[np.bool_]:
-        """Mask of the points whose status is one of `words`, of the shape of `status`."""
+        """Mask of the points whose status has one of the names `words`, with the shape of `status`."""
         values = [value for value, word in self.flags.items() if word in words]
         return np.isin(self.variables["status"], values)
 
     @property
     def sentences(self) -> dict[str, str]:
-        """Meaning of every status as a sentence, by status word."""
+        """Meaning of every status as a sentence, by name of the status."""
         return sentences_in(self.attributes)
 
     def by_point(self, name: str) -> np.ndarray:
@@ -143,8 +146,8 @@ class View:
         return values.reshape(-1, *values.shape[self.variables["status"].ndim :])
 
     def of_point(self, index: int) -> dict[str, np.ndarray]:
-        """Values of every variable at the point with a flat index, by name, each of its extra dimensions'
-        shape.
+        """Values of every variable of points at a flat index, by name, with the shape of the variable's extra
+        dimensions.
         """
         shape = self.variables["status"].shape
         names = (name for name, values in self.variables.items() if values.shape[: len(shape)] == shape)
@@ -162,7 +165,7 @@ class View:
 
 
 def sentences_in(attributes: Mapping[str, Any]) -> dict[str, str]:
-    """Meaning of every status as a sentence, by status word, from the attributes of a file."""
+    """Meaning of every status as a sentence, by name of the status, from the attributes of a file."""
     lines = str(attributes.get("status_sentences", "")).splitlines()
     return dict(line.split(": ", 1) for line in lines if ": " in line)
 
@@ -176,7 +179,7 @@ def read_view(path: Path) -> View:
 
 
 def _view(path: Path) -> View:
-    """View from one reading of the file and its journals, see `read_view`."""
+    """View from reading the file and its journals once; see `read_view`."""
     refuse_absent(path)
     # Opened only once, because a run may replace the file at any instant.
     file, header = open_whole(path, values=path.stat().st_size <= LARGEST_CHECKED)

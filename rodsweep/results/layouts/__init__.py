@@ -24,8 +24,8 @@ LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
 }
 """Function from a resolved config to the layout of the file, by task."""
 INCREASES: dict[str, dict[str, IncreaseRule]] = {task: module.INCREASES for task, module in MODULES.items()}
-"""Rules for the options whose larger value requests more data of a point, by task and option. A file cannot
-be extended to another value of any other option."""
+"""Rules for the options of which a larger value requests more data of a point, by task and option. A file
+cannot be extended if any other option changes."""
 BESIDE_POINTS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
     "spectrum": spectrum.beside_points,
     "modes": lambda config, is_grid: spectrum.FORCE_CHANGES,
@@ -48,7 +48,7 @@ def layout_of(config: dict[str, Any]) -> Layout:
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of a file that belong to all points together, for a resolved config.
 
-    is_grid: whether the points are a grid. `extra` of such a variable has all its dimensions.
+    is_grid: whether the points are a grid. `extra` of these variables has all their dimensions.
     """
     found = BESIDE_POINTS.get(config["task"])
     return found(config, is_grid) if found else ()

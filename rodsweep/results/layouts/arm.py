@@ -1,8 +1,9 @@
-"""Variables in the file of an arm besides the variables of a rod: quantities, and results in SI units.
+"""Variables in the file of an arm, in addition to the variables of a rod: quantities, and results in SI
+units.
 
 A variable such as `period`, in tau2, has the SI variable `period_si`, in s; `frequency`, in rad/tau2, has
 `frequency_hz`, in cycles per second. The quantities of the arm, and the derived units tau2, force_scale and
-pressure_scale, are coordinates: numbers, or along a parameter or `point`.
+pressure_scale, are coordinates: single numbers, or arrays along a parameter or `point`.
 """
 
 from collections.abc import Iterable, Mapping
@@ -35,8 +36,8 @@ HERTZ = "Hz"
 
 
 class SIUnit(NamedTuple):
-    """SI unit of a result. The dimensionless unit is the product of an arm's quantities `factors` over
-    `divisors`.
+    """SI unit of a result. The dimensionless unit is the product of the arm's quantities in `factors` divided
+    by the product of the quantities in `divisors`.
 
     Dimensionless frequencies are angular; the conversion to Hz contains 2 pi.
     """
@@ -46,13 +47,15 @@ class SIUnit(NamedTuple):
     divisors: tuple[str, ...] = ()
 
     def scale(self, quantities: Mapping[str, Any]) -> NDArray[Any]:
-        """The dimensionless unit in SI units, () or (n,); quantities: the arm's by name, () or (n,) each."""
+        """The dimensionless unit in SI units, () or (n,). quantities: the quantities of the arm by name, ()
+        or (n,) each.
+        """
         up, down = (prod(quantities[name] for name in names) for names in (self.factors, self.divisors))
         return np.asarray(up / (2 * np.pi * down if self.unit == HERTZ else down))
 
 
 NO_UNIT = SIUnit()
-"""Stands for variables that are not stored in SI units."""
+"""Used for variables that are not stored in SI units."""
 SI_UNITS = {
     "tau2": SIUnit("s", ("tau2",)),
     "1/tau2": SIUnit("1/s", (), ("tau2",)),
@@ -141,7 +144,7 @@ def _meaning(variable: Variable, unit: str) -> str:
 
 
 def _stored_si_unit(variable: Variable, as_force: bool) -> SIUnit:
-    """SI unit in which a variable is stored too, or NO_UNIT; as_force: whether the arm's load is a force."""
+    """SI unit in which a variable is also stored, or NO_UNIT. as_force: whether the load is a force."""
     return si_unit_of(variable, as_force) if variable.extra in SI_DIMENSIONS else NO_UNIT
 
 
@@ -157,14 +160,16 @@ def si_unit_of(variable: Variable, as_force: bool) -> SIUnit:
 
 
 def si_variable(variable: Variable, values: Array, quantities: Mapping[str, Array]) -> tuple[Variable, Array]:
-    """A variable and its values, (n,), in SI units; quantities: the arm's by name, () or (n,) each."""
+    """Returns (variable, values, (n,)) converted to SI units. quantities: the quantities of the arm by name,
+    () or (n,) each.
+    """
     si = si_unit_of(variable, "force" in quantities)
     si_variable = real(si_name_of(variable.name, si.unit), si.unit, _meaning(variable, si.unit))
     return si_variable, values * si.scale(quantities)
 
 
 def over_of(config: Mapping[str, Any]) -> tuple[str, ...]:
-    """Names of the axes of a resolved config's grid over an arm's quantities; empty for other points."""
+    """Names of the axes of a grid over an arm's quantities in a resolved config; else empty."""
     parameters = config["parameters"]
     axes = parameters["arm"] | {name: axis for name, axis in parameters.items() if name in PARAMETERS}
     ranges = {name: axis for name, axis in axes.items() if isinstance(axis, Mapping)}
@@ -173,7 +178,7 @@ def over_of(config: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def quantities_of(parameters: Axes, points: Points) -> tuple[Filled, ...]:
-    """(variable, values) of each quantity and unit of a config's arm; empty without an arm.
+    """(variable, values) of each quantity and unit of a config's arm; empty if the config has no arm.
 
     For a grid over the arm's quantities the axes come first, and every parameter is included, along the grid.
     """
@@ -209,7 +214,7 @@ def _filled(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]
 
 
 def at_points(quantities: Iterable[Filled], points: Points) -> dict[str, NDArray[Any]]:
-    """Values of an arm's quantities by name; in a grid over quantities at every point, (points,)."""
+    """Values of an arm's quantities by name; for a grid over quantities, at every point, (points,)."""
     if not points.over:
         return {variable.name: values for variable, values in quantities}
     dimensions = tuple(points.over)

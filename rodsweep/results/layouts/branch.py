@@ -34,9 +34,10 @@ SPECIAL_MEANINGS = {
 }
 """Meaning of every kind of special point, by word; the file stores the position in this table."""
 SPECIAL_KINDS = tuple(SPECIAL_MEANINGS)
-"""Words for the kinds of special points, in the order of their stored numbers."""
+"""Names of the kinds of special points, in the order of their stored numbers."""
 END_REASONS = ("none", "range_end", "crushed", "no_cycle_found", "list_full")
-"""Words for the reasons why a branch ends, at a special point of the kind `end`, in the stored order."""
+"""Names of the reasons why a branch ends at a special point of the kind `end`, in the order of their stored
+numbers."""
 ERRORS = (
     ("period_error", "the relative error of period"),
     ("amplitude_error", "the relative error of tip_y_max"),
@@ -105,7 +106,7 @@ def special_variables(parameter: str) -> tuple[Variable, ...]:
         word("special_reason", "reason for the end of the branch", END_REASONS),
         integer(
             "special_meets",
-            "at a symmetry breaking: number of the other branch that begins or ends there; -1: none",
+            "at a symmetry breaking: number of the second branch that begins or ends there; -1: no branch",
         ),
         integer(
             "special_unstable_after",
@@ -115,9 +116,9 @@ def special_variables(parameter: str) -> tuple[Variable, ...]:
 
 
 def _has(name: str) -> IncreaseRule:
-    """Increase of the maximum length of a list whose number of items is the variable `name`.
+    """Rule for the maximum length of a list; the variable `name` is the number of its items.
 
-    A stored list that is not full has all items already.
+    A stored list that is not full already has all items.
     """
     return IncreaseRule(lambda records, before: records[name] < before)
 

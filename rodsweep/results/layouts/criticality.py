@@ -15,15 +15,17 @@ LANDAU_UNIT = "1/(tau2 L^2)"
 """Unit of the Landau coefficient c."""
 ALONG = "crossing"
 ABSENT_FROM_HOPF_SEARCH = ("crossing_growth_rate", "solves")
-"""Names of variables of a search for crossings that a search for Hopf points lacks, since growth rates are
-0."""
+"""Names of the variables of a search for crossings that are not stored for a search for Hopf points, where
+growth rates are 0."""
 CRITICALITY_WORDS = ((-1, "supercritical"), (0, "undecided"), (1, "subcritical"))
 """(stored number, word) of each criticality. The number is the sign of Re c; nan is stored for an unknown
 c."""
 
 
 def criticality_variable(name: str, decided_by: str) -> Variable:
-    """Variable for the criticality of Hopf points; decided_by: name of the number whose sign decides."""
+    """Variable for the criticality of Hopf points. decided_by: name of the number whose sign is the
+    criticality.
+    """
     meaning = (
         "supercritical: cycles exist where the pair is unstable, and are stable unless other modes are "
         "unstable; subcritical: cycles exist where the pair is stable; "

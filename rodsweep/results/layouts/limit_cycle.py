@@ -30,7 +30,7 @@ STORED_MULTIPLIERS = 6
 """Number of stored nontrivial Floquet multipliers, the solver's `MULTIPLIER_LIST.length`; NaN stands for a
 modulus below its `min_modulus`."""
 CYCLE_WORDS = ("cycle", "unstable")
-"""Status words of points with a limit cycle, stable or unstable."""
+"""Names of the statuses of points with a limit cycle, stable or unstable."""
 SECOND_STATES = ((-1, "not_known"), (0, "none_known"), (1, "straight"), (2, "cycle_possible"))
 """(stored number, word) for a second stable state of the rod, besides the state that the solve reached."""
 CYCLE = (
@@ -101,7 +101,7 @@ HOPF = "hopf"
 HOPF_ALONG = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 """Parameters along which Hopf points are searched; gamma1 has no influence on Hopf points."""
 PAIR_CROSSINGS = ("none", "hopf", "hopf_reverse", "restabilization")
-"""Words for the kinds of crossings at which a pair of eigenvalues crosses the imaginary axis."""
+"""Names of the kinds of crossings at which a pair of eigenvalues crosses the imaginary axis."""
 
 
 def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
@@ -135,7 +135,8 @@ def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
 
 
 NO_CYCLE = IncreaseRule(lambda records, before: np.isnan(records["period"]))
-"""Increase of the stored data of a cycle: every point with a cycle is solved again."""
+"""Rule for the options that set the stored data of a cycle: after an increase, every point with a cycle is
+solved again."""
 INCREASES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), NO_CYCLE) | {
     "transient": NEEDS_NEW_SOLVE,
     "time": IncreaseRule(NO_CYCLE.has, ("tau2", "tau1")),

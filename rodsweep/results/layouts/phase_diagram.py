@@ -24,7 +24,8 @@ from .variables import (
 CLASSES = ((-1, "missing"), *enumerate(("monotone", "oscillatory", "flutter", "undecided", "crushed")))
 """(stored number, word) for the behaviour of the rod at a point of a phase diagram."""
 BAUTIN_ENDS = ("none", "range_end", "plane_edge", "not_found", "list_full", "closed")
-"""Words for the reasons why a curve of generalised Hopf points ends; the file stores the position here."""
+"""Names of the reasons why a curve of generalised Hopf points ends; the file stores the position in this
+list."""
 CURVE_ENDS = {
     "none": "the curve goes on",
     "edge": "the curve leaves the diagram",
@@ -64,7 +65,9 @@ INCREASES = dict.fromkeys(("certify", "cycles"), NEEDS_NEW_SOLVE) | {
 
 
 def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
-    """((parameter along a row, parameter across rows), number of values by parameter) of a phase diagram."""
+    """Returns ((parameter along a row, parameter across rows), number of values by parameter) for a resolved
+    config.
+    """
     axes = config["parameters"]
     names = (name for name in (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS) if name in axes)
     sizes = {name: len(axes[name].get("values", ())) or axes[name]["num"] for name in names}
@@ -73,7 +76,9 @@ def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables computed from all rows of a phase diagram together, whichever options request them."""
+    """Variables computed from all rows of a phase diagram together, including variables that the config does
+    not request.
+    """
     (line, row), _ = plane_of(config)
     variables = curve_variables(line, row) | criticality_variables(line, row)
     variables |= cycle_curve_variables(line, row)
@@ -175,7 +180,7 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
         *end_variables("curve", CURVE_ENDS, "curve_point"),
         integer("fold_curve", "number of the curve on which the fold lies", "fold"),
         word("fold_kind", kind, CURVE_KINDS, "fold"),
-        word("fold_of", "parameter that has an extremum along the curve at the fold", units, "fold"),
+        word("fold_of", "parameter that reverses its direction along the curve at the fold", units, "fold"),
         *(real(f"fold_{name}", units[name], f"{name} at the fold", "fold") for name in units),
         *(real(f"fold_{name}_error", units[name], f"{error}{name}", "fold") for name in units),
         real("fold_frequency", ANGULAR_UNIT, "angular frequency of the modes at the fold", "fold"),

@@ -1,4 +1,4 @@
-"""Properties of the rods of a resolved config that decide on the variables of its result file."""
+"""Properties of the rods of a resolved config on which the variables of its result file depend."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -27,7 +27,9 @@ def estimates_counts(config: Mapping[str, Any]) -> bool:
 
 
 def has_covering(config: Mapping[str, Any]) -> bool:
-    """Whether a covering proves the list of crossings: if all rods are uniform and of linear material."""
+    """Whether all rods are uniform and of linear material. Only then can a covering prove that the list of
+    crossings is complete.
+    """
     return is_linear(config) and not estimates_counts(config)
 
 
@@ -40,7 +42,8 @@ def is_linear(config: Mapping[str, Any]) -> bool:
 def with_certified_meaning(
     variables: tuple[Variable, ...], config: Mapping[str, Any], noun: str
 ) -> tuple[Variable, ...]:
-    """The variables; without a covering, `certified` gets a long name for lists confirmed by counts only.
+    """The variables. If the config has no covering, `certified` has a long name that describes confirmation
+    by counts only.
 
     noun: name of the listed items, such as "Hopf points".
     """
@@ -54,5 +57,5 @@ def with_certified_meaning(
 
 
 def with_meaning(variables: tuple[Variable, ...], name: str, meaning: str) -> tuple[Variable, ...]:
-    """The variables, with another long name for the variable `name`."""
+    """The variables, with the long name `meaning` for the variable `name`."""
     return tuple(replace(v, long_name=meaning) if v.name == name else v for v in variables)

@@ -48,8 +48,8 @@ EACH_MODE = (
 )
 CERTIFIED = boolean("certified", "whether the winding number of D proves the list of leading modes complete")
 ESTIMATED_MEANING = (
-    "whether D right of the spectrum, or its winding number, says that the list of leading modes is "
-    "complete; for arms that vary along their length it is estimated in part"
+    "whether D right of the spectrum, or the winding number of D, proves the list of leading modes "
+    "complete; for arms that vary along their length the proof is partly an estimate"
 )
 """Long name of the variable `certified` in a file of arms that vary along their length."""
 EACH_POINT = (UNSTABLE_COUNT, CERTIFIED, *MESH, SECONDS, STATUS)

@@ -1,4 +1,5 @@
-"""Layout of the task thresholds, and variables of the crossings along a line, shared with further tasks."""
+"""Layout of the task thresholds, and variables of the crossings along a line, which other tasks use as
+well."""
 
 from typing import Any
 
@@ -41,7 +42,7 @@ CROSSING_MEANINGS = {
 }
 """Meaning of every kind of crossing, as the parameter grows, by word."""
 CROSSING_KINDS = tuple(CROSSING_MEANINGS)
-"""Words for the kinds of crossings; the file stores the position in this list."""
+"""Names of the kinds of crossings; the file stores the position in this list."""
 
 
 def crossing_variables(line: str, at: str) -> tuple[Variable, ...]:
@@ -62,7 +63,7 @@ def crossing_variables(line: str, at: str) -> tuple[Variable, ...]:
 def search_variables(line: str, at: str) -> tuple[Variable, ...]:
     """Variables of a search for crossings along the parameter `line`; at: as in `crossing_variables`."""
     units = PARAMETERS[line].unit
-    undecided = f"of a range of {line} that may contain a window of flutter too narrow to decide"
+    undecided = f"of a range of {line} that may contain a window of flutter too narrow to be resolved"
     return (
         integer("crossing_count", "number of crossings found, stored or not"),
         *crossing_variables(line, at),
@@ -77,7 +78,8 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
 
 
 MORE_CROSSINGS = IncreaseRule(lambda records, before: records["crossing_count"] <= before)
-"""Increase of the maximum number of stored crossings; a stored list that is not full is complete already."""
+"""Rule for the maximum number of stored crossings; a stored list that is not full already has all
+crossings."""
 INCREASES = {"crossings": MORE_CROSSINGS, "certify": NEEDS_NEW_SOLVE}
 
 

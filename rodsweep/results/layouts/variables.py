@@ -62,8 +62,8 @@ class Variable:
     long_name: str
     extra: tuple[str, ...] = ()
     flags: tuple[tuple[int, str], ...] = ()
-    """(stored number, word) pairs of a variable that stands for words; those of `status` come from the
-    solver."""
+    """(stored number, name) pairs of a variable whose numbers stand for names; the pairs of `status` come
+    from the solver."""
     typed: str = ""
     """Unit in which the user typed the quantity, or empty; the stored values are in `units`."""
 
@@ -163,9 +163,9 @@ def _field(name: str, outcomes: Sequence[Any]) -> Any:
 def listed(
     variables: Iterable[Variable], rows: Sequence[Mapping[str, Any]], room: int | None = None
 ) -> dict[str, list[Any]]:
-    """List of the values of each variable, by name, from rows with the values of one item by name.
+    """List of the values of each variable, by name. rows: for each item, the values of all variables by name.
 
-    room: length of the lists, by cutting, or by appending fill values; None for the number of rows.
+    room: length of the lists, which are cut or padded with fill values; None for the number of rows.
     """
     kept = rows[:room]
     empty = max(0, (room or 0) - len(rows))
@@ -174,14 +174,14 @@ def listed(
 
 @dataclass(frozen=True, slots=True)
 class IncreaseRule:
-    """Rule for an option whose larger value only requests more data of every point of a file.
+    """Rule for an option of which a larger value only requests more data of every point of a file.
 
-    The rule says which stored points need no new solve when the option increases.
+    The rule determines which stored points need no new solve when the option increases.
     """
 
     has: Callable[[np.ndarray, Any], NDArray[np.bool_]]
-    """Function from stored records, (n,), and the former value of the option to whether each record has the
-    additional data already, (n,)."""
+    """Function from (stored records, (n,); old value of the option) to whether each record already has the
+    additional data, (n,)."""
     values: tuple[Any, ...] = ()
     """Values of the option, in increasing order; empty for numbers and booleans."""
 
@@ -198,7 +198,7 @@ NEEDS_NO_SOLVE = IncreaseRule(lambda records, before: np.ones(len(records), bool
 """Rule for an option whose increase needs no new solve, because the additional data belong to all points
 together."""
 Filled = tuple[Variable, NDArray[Any]]
-"""(variable, all its values, (...,)); `extra` names all dimensions."""
+"""(variable, values, (...,)), where `extra` of the variable names all dimensions of the values."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,7 +211,8 @@ class Layout:
     parameters: tuple[str, ...] = LINEAR_PARAMETERS
     """Names of the parameters of a point: dimensions of a grid, or variables along the dimension `point`."""
     over: tuple[str, ...] = ()
-    """Names of the dimensions of a grid over an arm's quantities; empty for other points."""
+    """Names of the dimensions of a grid over an arm's quantities; empty for a grid of parameters or a
+    list."""
     needs_all_points: bool = False
     """Whether a finished file also has variables that are computed from all points together."""
 

@@ -1,1 +1,1 @@
-"""Files in the journal directory, beside the result file of an unfinished run: journals and checkpoints."""
+"""Files in the journal directory, next to the result file of an unfinished run: journals and checkpoints."""

@@ -1,4 +1,5 @@
-"""Checkpoints of unfinished work in the journal directory: solver states of chains, results of units.
+"""Checkpoints of unfinished work in the journal directory: solver states of chains, and results of units
+(work items for variables that depend on all points).
 
 Each checkpoint is a small file, replaced as a whole and recognised by fingerprint and checksum. A damaged
 file, or a file of another run, is ignored: the chain starts again, the unit is solved again.
@@ -35,11 +36,13 @@ class HasArrays(Protocol):
     """Solver state of a chain, which can be written as arrays."""
 
     def arrays(self) -> Arrays:
-        """The whole solver state as arrays of any shape, (...,), by name."""
+        """The complete solver state as arrays of any shape, (...,), by name."""
 
 
 class KeptArrays:
-    """Store of sets of named arrays, a file for each number, in the journal directory of a run."""
+    """Store of sets of named arrays in the journal directory of a run, with one file per set. A set is
+    identified by a number.
+    """
 
     pattern: ClassVar[str]
 
@@ -60,7 +63,7 @@ class KeptArrays:
         os.replace(copy, path)
 
     def get(self, number: int) -> Arrays | None:
-        """Arrays stored under `number`, by name; None without an intact file of this run."""
+        """Arrays stored under `number`, by name; None if there is no intact file of this run."""
         if not self._path(number).is_file():
             return None
         data = self._path(number).read_bytes()
@@ -76,7 +79,7 @@ class KeptArrays:
 
 
 class Checkpoints(KeptArrays):
-    """Store of the last solved point, and the solver state after this point, of each unfinished chain."""
+    """Store with the last solved point of each unfinished chain, and the solver state after this point."""
 
     pattern = CHECKPOINTS
 
@@ -91,7 +94,7 @@ class Checkpoints(KeptArrays):
         self.put(chain, {"index": np.array(index)} | {STATE + name: part for name, part in parts.items()})
 
     def read(self, chain: int) -> tuple[int, HasArrays | None] | None:
-        """(flat index, solver state) of a chain's last checkpoint; None without an intact checkpoint."""
+        """(flat index, solver state) of a chain's last checkpoint; None if there is no intact checkpoint."""
         arrays = self.get(chain)
         if arrays is None:
             return None
@@ -105,7 +108,7 @@ class Checkpoints(KeptArrays):
 
 
 class UnitResults(KeptArrays):
-    """Store of the results of finished units, in runs whose points are computed from all units together."""
+    """Store of the results of finished units, until the variables that depend on all units are computed."""
 
     pattern = UNIT_RESULTS
 

@@ -1,5 +1,5 @@
-"""Journals: append-only files, one per rank, beside the result file, with points as soon as they are
-finished.
+"""Journals: append-only files next to the result file, one per rank, to which finished points are written at
+once.
 
 The records of a point, or of a stretch of points, are written by a single call. A kill at any instant
 therefore loses only the points in progress. Every record has a checksum, which reveals an incomplete record.
@@ -86,9 +86,9 @@ class Journal:
                 yield index.to_bytes(INDEX_BYTES, "little", signed=True) + piece.ljust(room, b"\0")
 
     def close(self) -> None:
-        """Syncs the journal to disk and closes it; deletes a journal without points.
+        """Syncs the journal to disk and closes the file; deletes the file if the journal has no points.
 
-        A journal whose file was moved or deleted is written again first.
+        If the file was moved or deleted, the journal is written again first.
         """
         empty = os.fstat(self.handle).st_size == self.head
         if not empty and not self._is_in_place():
@@ -146,7 +146,9 @@ def other_journals(directory: Path, fingerprint: str) -> list[Path]:
 
 
 def set_aside(directory: Path, paths: Iterable[Path]) -> Path:
-    """Moves files from a journal directory into a new directory beside it; returns the new directory."""
+    """Moves the files `paths` from the journal directory into a new directory next to the journal directory;
+    returns the new directory.
+    """
     number = 1
     while os.path.lexists(kept := directory.with_name(f"{directory.name}-{number}")):
         number += 1
@@ -157,7 +159,9 @@ def set_aside(directory: Path, paths: Iterable[Path]) -> Path:
 
 
 def kept_sentence(directory: Path, fingerprint: str) -> str:
-    """Clause for messages that finished points are in the journals; empty without such points."""
+    """Clause for messages with the directory of finished points in journals; empty if the journals have no
+    points.
+    """
     return f"; what is done is kept in {directory}" if journals_of(directory, fingerprint) else ""
 
 
@@ -195,7 +199,7 @@ def read_journals(
 
 
 def read_reasons(directory: Path, layout: Layout, fingerprint: str) -> list[str]:
-    """Lines that say why points failed, from all journals with this fingerprint in a directory."""
+    """Lines with the reasons why points failed, from all journals with this fingerprint in a directory."""
     return [
         line
         for path in journals_of(directory, fingerprint)
@@ -232,7 +236,9 @@ def _rows(path: Path, layout: Layout, fingerprint: str) -> Iterator[np.ndarray]:
 
 
 def _is_whole(rows: np.ndarray) -> np.ndarray:
-    """Whether each row of bytes, (records, bytes), has its own checksum, (records,)."""
+    """Whether the checksum at the end of each record is correct, (records,). rows: records as bytes,
+    (records, bytes).
+    """
     sums = np.ascontiguousarray(rows[:, -CHECKSUM_BYTES:]).view("<u4").ravel()
     own = np.array([zlib.crc32(row[:-CHECKSUM_BYTES].data) for row in rows], dtype=np.uint32)
     whole: np.ndarray = own == sums

@@ -1,4 +1,5 @@
-"""Grid over the quantities of an arm: each point has its own rod, or a status that says why it has no rod."""
+"""Grid over the quantities of an arm: each point has its own rod, or the status code of the reason why the
+rod model does not apply."""
 
 from collections.abc import Callable, Mapping, Sequence
 from operator import attrgetter, methodcaller
@@ -21,9 +22,10 @@ from .points import Points
 FlutterOf = Callable[[SlenderArm, float | None], FlutterForce]
 """Function from (arm, taper that replaces the arm's taper or None) to the force of first flutter."""
 Forces = NDArray[np.object_]
-"""Array of `FlutterForce` objects, (arms, 1, combinations of replaced parameters)."""
+"""Array of `FlutterForce` objects, (arms, 1, combinations). Combinations are the combinations of values of
+the parameters that replace the arm's parameters."""
 UNCOVERED = FlutterForce(np.nan)
-"""Force of an arm without a rod, or without load: nan."""
+"""Force (nan) of an arm without load, or to which the rod model does not apply."""
 
 
 def grid_of_arms(
@@ -36,8 +38,9 @@ def grid_of_arms(
     """Points of a grid over an arm's quantities, and over the parameters in `beside` that have several
     values.
 
-    beside: values, (n,), of parameters that replace the arm's. names: the parameters of the task. flutter:
-    force of first flutter of an arm, for relative loads. Raises ValueError if no point has a rod.
+    beside: values, (n,), of the parameters that replace the arm's parameters, by name. names: the parameters
+    of the task. flutter: force of first flutter of an arm, for relative loads. build: constitutive law and
+    profile of all arms. Raises ValueError if the rod model applies to no point.
     """
     arms, statuses = zip(*(_arm_or_status(section, values) for values in section.sections()), strict=True)
     loads = section.given[section.load_axis].array() if section.load_axis else np.zeros(1)
@@ -75,12 +78,16 @@ def grid_of_arms(
 
 
 def _of_each(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:
-    """Values of `quantity` of all arms, (arms, 1, 1); nan for None, an arm without a rod."""
+    """Values of `quantity` for all arms, (arms, 1, 1); nan for None, which stands for an arm outside the rod
+    model.
+    """
     return _along(0, [quantity(arm) if arm else np.nan for arm in arms])
 
 
 def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
-    """(arm without load for these values of its quantities, status); the arm is None if it has no rod."""
+    """Returns (arm without load, status code). The arm is None if the rod model does not apply. values:
+    quantities of the arm in SI units, by name.
+    """
     try:
         return section.made(values), SLENDER
     except UncoveredArm as error:
@@ -90,7 +97,7 @@ def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[Sl
 def _forces(
     section: ArmSection, arms: Sequence[SlenderArm | None], tapers: Array | None, flutter: FlutterOf
 ) -> Forces:
-    """Dimensionless force F that a load of size 1 exerts on each arm, see `_force_of`.
+    """Dimensionless force F of a unit load (see `_force_of`) on each arm.
 
     tapers: values, (n,), that replace the arms' taper; None for no replacement.
     """
@@ -105,9 +112,9 @@ def _forces(
 def _force_of(
     section: ArmSection, arm: SlenderArm | None, taper: float | None, flutter: FlutterOf
 ) -> FlutterForce:
-    """Dimensionless force F that a load of size 1 exerts on an arm; UNCOVERED without load or rod.
+    """Dimensionless force F of a unit load on an arm; UNCOVERED if `arm` is None or has no load.
 
-    The load is 1 Pa or 1 N, or the load at first flutter for a load relative to flutter.
+    The unit load is 1 Pa or 1 N; for a load relative to flutter, the load at first flutter.
     """
     if arm is None or not section.load:
         return UNCOVERED
@@ -119,7 +126,8 @@ def _force_of(
 def _with_flutter(coverage: Array, flutter: Array) -> Array:
     """Status codes `coverage`, with NO_FLUTTER and FLUTTER_UNKNOWN where a relative load has no value.
 
-    flutter: F at flutter; inf without flutter, nan if unknown. The shapes broadcast to (arms, loads, n).
+    flutter: F at flutter; inf if the arm does not flutter, nan if unknown. The shapes broadcast to (arms,
+    loads, n).
     """
     found = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
     codes: Array = np.where(coverage == SLENDER, found, coverage)
@@ -136,7 +144,9 @@ def _failures(coverage: Array, forces: Forces) -> dict[int, str]:
 
 
 def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bool, forces: Forces) -> None:
-    """Raises ValueError that says why no point has a rod; no_flutter: whether some arm does not flutter."""
+    """Raises ValueError with the reason why the rod model applies to no point. no_flutter: whether some arm
+    does not flutter.
+    """
     section.made(section.firsts, loaded=True)
     for force in forces.ravel():
         if force.failure:

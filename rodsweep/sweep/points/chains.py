@@ -1,7 +1,8 @@
-"""Chains: points of a grid along an axis, where each point starts from the state of the previous point.
+"""Chains: points of a grid along an axis, where the solve of each point starts from the solver state of the
+previous point.
 
-A rank solves a whole chain, point after point. The start state of the next point is stored after each point.
-A killed chain therefore resumes after the last point and gives the same numbers.
+A rank solves a complete chain, point after point. The start state of the next point is stored after each
+point. A killed chain therefore resumes after the last point and gives the same numbers.
 """
 
 import math
@@ -20,10 +21,10 @@ Arrays = dict[str, Array]
 
 
 class ChainState(Protocol):
-    """Solver state after a point of a chain, from which the solve of the next point starts."""
+    """State of the solver after a point of a chain, from which the solve of the next point starts."""
 
     def arrays(self) -> Arrays:
-        """The whole state as arrays of any shape, (...,), by name, for a checkpoint."""
+        """The complete state as arrays of any shape, (...,), by name, for a checkpoint."""
 
 
 State = ChainState | None
@@ -33,7 +34,9 @@ ChainStep = Callable[[int, Any], tuple[Any, Any]]
 
 
 class ChainStates(Protocol):
-    """Store of checkpoints: (flat index of last solved point, state after it) of each unfinished chain."""
+    """Store of checkpoints: (flat index of the last solved point, solver state after this point) of each
+    unfinished chain.
+    """
 
     def write(self, chain: int, index: int, state: State) -> None: ...
 
@@ -69,7 +72,9 @@ class Chains:
         return indices_along(self.shape, self.axis, chain, along if self.upward else along[::-1])
 
     def todo(self, missing: IndexSet) -> list[IndexRange]:
-        """Ranges of the numbers of those chains that have missing points."""
+        """Ranges of the numbers of the chains with missing points. missing: flat indices of missing
+        points.
+        """
         return merged_ranges((n, n + 1) for n in range(self.count) if missing[self.indices(n)].any())
 
 
@@ -97,8 +102,8 @@ class ChainSolver:
     def __call__(self, chain: int) -> Iterator[tuple[int, Any]]:
         """Yields (flat index, outcome) of each missing point of a chain; ends early after a stop request.
 
-        The state is stored after the point. A kill in between then costs a second solve of the point; in the
-        reverse order a kill could lose the point for good.
+        The caller stores the outcome before the state is stored. A kill in between costs a second solve of
+        the point; in the reverse order the point could be lost.
         """
         order = list(map(int, self.work.chains.indices(chain)))
         first, state = self._resume(chain, order)
@@ -115,8 +120,8 @@ class ChainSolver:
     def _resume(self, chain: int, order: list[int]) -> tuple[int, State]:
         """(position in the chain of the first point to solve, its initial state).
 
-        The checkpoint is used if no point before it is missing; otherwise the chain starts again from a cold
-        start.
+        The checkpoint is used if no point up to the checkpoint is missing; otherwise the chain starts again
+        without an initial state.
         """
         found = self.checkpoints.read(chain)
         if found is None or found[0] not in order:

@@ -1,8 +1,8 @@
 """Forces of first flutter, for arms with a load relative to flutter, computed once for each rod.
 
-The forces are needed before the points of a sweep are made. The search takes most of the time in which points
-are made, so the ranks of a run may divide the rods. Points get a status if the search fails. The solver is
-imported on demand.
+The forces are needed to compute the points of a sweep. The search for flutter takes most of the time of this
+computation, so the ranks of a run may divide the rods. If the search fails, the points get the status
+`flutter_unknown`. The solver is imported on demand.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -21,7 +21,8 @@ from ...model.rod import Rod
 
 @dataclass(frozen=True, slots=True)
 class FlutterForce:
-    """Force F of first flutter at the likeliest drag: inf without flutter, nan if the search fails.
+    """Force F of first flutter at the likeliest drag: inf if the rod does not flutter, nan if the search
+    fails.
 
     failure: reason why the search failed, or empty.
     """
@@ -41,10 +42,11 @@ OWN_TAPER: Tapers = (None,)
 def rods_of_flutter(
     section: ArmSection | None, build: Build | None = None, tapers: Tapers = OWN_TAPER
 ) -> list[Rod]:
-    """The distinct rods whose flutter forces the points of an arm need; none unless its load is relative.
+    """The distinct rods whose flutter forces the points of an arm need; empty if the load is not relative to
+    flutter.
 
-    build: constitutive law and profile of the config section `material`, None without. Raises InputError for
-    an invalid arm.
+    build: constitutive law and profile from the config section `material`, None if the section is not given.
+    Raises InputError for an invalid arm.
     """
     if section is None or section.load_axis not in RELATIVE:
         return []
@@ -66,7 +68,9 @@ def _arms(section: ArmSection) -> Iterable[SlenderArm]:
 
 
 def flutter_of_rod(rod: Rod) -> FlutterForce:
-    """Force of first flutter of one rod; a failed search is a `FlutterForce` too, not an exception."""
+    """Force of first flutter of one rod. If the search fails, F is nan and `failure` is the reason; no
+    exception is raised.
+    """
     from ...verdict.relative import FlutterSearchFailed, first_hopf_force
 
     try:
@@ -78,9 +82,9 @@ def flutter_of_rod(rod: Rod) -> FlutterForce:
 def flutter_of_arm(
     arm: SlenderArm, taper: float | None, known: FlutterForces, build: Build | None = None
 ) -> FlutterForce:
-    """Force of first flutter of an arm, in the arm's k3/L^2: the smallest over its planes of motion.
+    """Force of first flutter of an arm, in k3/L^2 of the arm: the smallest force over the planes of motion.
 
-    The result is a failure if the search failed in a plane. taper: replaces the arm's taper unless None.
+    If the search failed in a plane, the failure is returned. taper: replaces the arm's taper unless None.
     known: forces of all rods of `rods_of_flutter`. build: as in `rods_of_flutter`.
     """
     from ...verdict.relative import plane_rods

@@ -23,8 +23,9 @@ from .points import Points
 
 
 def grid_size(config: Config) -> int:
-    """Number of points of a grid of parameters, without making its axes; 0 for a list or a grid over an
-    arm's quantities."""
+    """Number of points of a grid of parameters, without computing the values on the axes; 0 for a list or a
+    grid over an arm's quantities.
+    """
     if config.parameters.is_list or config.parameters.over:
         return 0
     return math.prod(config.parameters.axes[name].size for name in config.names)
@@ -59,11 +60,11 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
 
 
 def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | None:
-    """Status codes CRUSHED or SLENDER, (points,), of a grid of parameters in which a load crushes some
-    points.
+    """Status codes CRUSHED or SLENDER, (points,), of a grid of parameters in which the load crushes some
+    rods.
 
-    None if all points or no points are crushed, and for grids of more than MOST_POINTS points. axes: values
-    of each parameter, (n,).
+    None if all rods or no rods are crushed, and for grids of more than MOST_POINTS points. axes: values of
+    each parameter, (n,).
     """
     count = math.prod(map(len, axes.values()))
     if not set(CRUSHING) <= axes.keys() or count > MOST_POINTS:
@@ -91,7 +92,7 @@ def refuse_outside(
 ) -> None:
     """Raises InputError for the first of `values` outside the range `allowed` of the parameter `name`.
 
-    where, why: further phrases of the message.
+    where, why: phrases inserted into the message after the value and at the end.
     """
     bad = allowed.first_outside(values)
     if bad is not None:
@@ -101,9 +102,10 @@ def refuse_outside(
 
 
 def refuse_axes(axes: dict[str, Array], into_crushed: bool = False, build: Build = STANDARD) -> None:
-    """Raises InputError for a parameter value outside its range on an axis, (n,) each, and for crushed rods.
+    """Raises InputError if a value on an axis is outside the range of its parameter, or if rods are crushed.
 
-    into_crushed: whether the grid may contain crushed rods, as long as not all are crushed.
+    axes: values, (n,), by name of the parameter. into_crushed: whether some rods, but not all rods, of the
+    grid may be crushed.
     """
     for name, column in axes.items():
         refuse_outside(PARAMETERS[name].allowed, name, column)
@@ -125,9 +127,9 @@ def refuse_axes(axes: dict[str, Array], into_crushed: bool = False, build: Build
 
 
 def _refuse_crushed(F: Array, k1: Array, some: bool) -> None:
-    """Raises InputError if rods of a grid are crushed: any rod, or, if `some` may be crushed, all rods.
+    """Raises InputError if any rod of a grid is crushed or, with `some`, if all rods are crushed.
 
-    F, k1: values on the axes, (n,).
+    F, k1: values on the axes, (n,). some: whether some rods may be crushed.
     """
     if some and F.min() >= k1.max():
         raise InputError(

@@ -18,7 +18,8 @@ from ...model.rod import Rod
 from .points import NEUTRAL
 
 LONGEST_LINE = 10_000
-"""Number of characters from which a line of a CSV file is refused; a longer line could fill the memory."""
+"""A CSV file with a line of this number of characters or more is refused; a long line could fill the
+memory."""
 
 
 def read_points(path: Path, names: tuple[str, ...], build: Build = STANDARD) -> tuple[Array, ...]:
@@ -70,7 +71,9 @@ def _lines(file: TextIO, path: Path) -> Iterator[str]:
 
 
 def _row(row: list[str], header: list[str], where: str, build: Build) -> list[float]:
-    """Numbers in a line of the file; InputError for a cell without a number, or values outside the model."""
+    """Numbers in a row of the file; InputError for a cell that is not a number, or for values outside the
+    model. header: names of the columns. where: file and line, for the message.
+    """
     if len(row) != len(header):
         raise InputError(f"{where} has {len(row)} values, but the header names {len(header)}")
     numbers = []

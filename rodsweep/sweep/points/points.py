@@ -1,6 +1,6 @@
 """Points of a sweep by flat index: a grid of parameters, a grid over an arm's quantities, or a list.
 
-Rods are made on demand: a grid takes the memory of the axes only.
+Rods are created on demand, so a grid needs memory only for its axes.
 """
 
 import math
@@ -19,7 +19,7 @@ from ...model.rod import Rod
 
 NEUTRAL = {name: parameter.neutral for name, parameter in PARAMETERS.items()}
 """Neutral value of each parameter by name, for parameters without a column. Parameter values that are invalid
-with neutral values of the other parameters are invalid with any."""
+in combination with neutral values are invalid in every combination."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,17 +36,19 @@ class Points:
     is_grid: bool
     """Whether the points are a grid of parameters, whose axes are `columns`."""
     over: dict[str, Array] = field(default_factory=dict)
-    """Axes of a grid over an arm's quantities by name, in SI units, (n,) each; empty for other points."""
+    """Axes of a grid over an arm's quantities by name, in SI units, (n,) each; empty for a grid of parameters
+    or a list."""
     units: dict[str, Array] = field(default_factory=dict)
     """The arm's units of time, force and pressure at every point of a grid over its quantities, (points,)."""
     build: Build = STANDARD
     """Constitutive law and profile of all rods, unless `builds` is given."""
     builds: tuple[Build, ...] = ()
     """Constitutive law and profile of each arm of a grid over an arm's quantities, in the order of the
-    points; each is valid for the same number of points. Empty if all points have `build`."""
+    points. Every arm has the same number of consecutive points. Empty if all points have `build`."""
     coverage: NDArray[np.int8] | None = None
-    """Status code of each point of an arm, (points,): SLENDER, or the reason why the point has no rod, from
-    `rodsweep.config.arm.axes`. None if every point has a rod."""
+    """Status code of each point of an arm, (points,): SLENDER if the point has a rod, else the code, from
+    `rodsweep.config.arm.axes`, of the reason why the rod model does not apply. None if every point has a
+    rod."""
     failures: dict[int, str] = field(default_factory=dict)
     """Reason why the search for flutter failed at a point with a relative load, by flat index."""
 
@@ -62,17 +64,23 @@ class Points:
 
     @property
     def moved(self) -> tuple[str, ...]:
-        """The only parameter that varies along each axis; "" for an axis of several parameters or none."""
+        """Name of the only parameter that varies along each axis; "" for an axis along which several
+        parameters or no parameters vary.
+        """
         return self.names if self.is_grid else tuple(map(parameter_of_axis, self.over))
 
     @property
     def identity(self) -> list[Array]:
-        """Axes in `over` and `columns`, (n,) each: two sweeps have the same points if these are equal."""
+        """The arrays in `over` and `columns`, (n,) each. Two sweeps have the same points if all these arrays
+        are equal.
+        """
         return [*self.over.values(), *self.columns]
 
     @property
     def of_rods(self) -> dict[str, Array]:
-        """`columns` by name of the parameter, without points that have no rod, (n,) each."""
+        """Values of each parameter by name, (n,) each, as in `columns`, without the points that have no
+        rod.
+        """
         if self.coverage is None:
             return self.by_name
         return self.values_of(np.flatnonzero(self.coverage == SLENDER))
@@ -83,7 +91,7 @@ class Points:
 
     @property
     def by_name(self) -> dict[str, Array]:
-        """`columns` by name of the parameter."""
+        """The arrays in `columns`, by name of the parameter, (n,) each."""
         return dict(zip(self.names, self.columns, strict=True))
 
     @property
@@ -117,14 +125,16 @@ class Points:
 
     @property
     def builds_of_rods(self) -> tuple[list[Build], NDArray[np.int64]]:
-        """(distinct builds, index into them for each point of `of_rods`, (rods,))."""
+        """Returns (distinct builds, indices). indices: for each point of `of_rods`, the index of its build,
+        (rods,).
+        """
         different = list(dict.fromkeys(self.builds)) or [self.build]
         of_arms = np.array([different.index(build) for build in self.builds] or [0])
         numbers = of_arms[np.arange(self.count) * len(of_arms) // self.count]
         return different, numbers if self.coverage is None else numbers[self.coverage == SLENDER]
 
     def build_of(self, index: int) -> Build:
-        """Constitutive law and profile of the rod at a flat index."""
+        """Constitutive law and profile of the rod of the point at a flat index."""
         return self.builds[index * len(self.builds) // self.count] if self.builds else self.build
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from ...errors import InputError
 
 BLOCKS_A_SHARD = 64
-"""Number of blocks of consecutive units in a shard. Many blocks make shards equal in cost; more blocks would
-separate neighbouring points in the result file of the shard."""
+"""Number of blocks of consecutive units in a shard. Many blocks give shards of equal cost, but separate
+neighbouring points in the result file of the shard."""
 IndexRange = tuple[int, int]
 """Range of flat indices of points, or of numbers of units: (first index, index after the last)."""
 
@@ -31,7 +31,8 @@ def merged_ranges(ranges: Iterable[IndexRange]) -> list[IndexRange]:
 
 
 def indices_along(shape: tuple[int, ...], axis: int, line: Any, along: Any) -> Any:
-    """Flat indices of grid points with index `along` on axis number `axis`, on the grid line number `line`.
+    """Flat indices of the grid points at position `along` on axis number `axis`, on the grid line number
+    `line`.
 
     Lines along the axis are numbered in row-major order of the remaining axes. line, along: integers or
     arrays, which broadcast to the shape of the result, (...,).
@@ -56,7 +57,9 @@ class IndexSet:
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """Shard `number` of `of` shards of a sweep, which separate runs solve; 1/1 is the whole sweep."""
+    """Shard `number` of `of` shards of a sweep, each solved by a separate run; shard 1/1 is the complete
+    sweep.
+    """
 
     number: int = 1
     of: int = 1

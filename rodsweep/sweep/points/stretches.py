@@ -1,7 +1,7 @@
-"""Stretches: neighbouring points on a grid line, which are solved together.
+"""Stretches: segments of a sweep, that is, neighbouring points on a grid line that are solved together.
 
-The division of lines into stretches depends on the grid alone. Results therefore depend neither on the number
-of ranks nor on points of an earlier run: a stretch with any missing point is solved again as a whole.
+The division of grid lines into segments depends only on the grid. Results therefore depend neither on the
+number of ranks nor on points of an earlier run: a segment with any missing point is solved again completely.
 """
 
 import math
@@ -18,7 +18,7 @@ STRETCH_POINTS = 64
 """Maximum number of points in a stretch."""
 SHORTEST_AXIS = 8
 """Minimum number of values on the axis of stretches. On a shorter axis, neighbouring points differ too much
-for eigenvalues to be followed."""
+to follow eigenvalues."""
 STRETCHES_PER_BLOCK = 1 << 12
 """Number of stretches tested for missing points in a single array operation, which bounds the memory."""
 
@@ -28,7 +28,8 @@ class StretchResult:
     """Result of a stretch of n points solved together.
 
     values: every variable of the result file at the points, (n, ...), by name. succeeded: whether the solve
-    of each point succeeded, (n,). message: status and message of a failed point, by position in the stretch.
+    of each point succeeded, (n,). message: function from the position of a failed point in the stretch to a
+    text with its status and message.
     """
 
     values: dict[str, NDArray]
@@ -92,7 +93,9 @@ class Stretches:
         return merged_ranges(ranges)
 
     def missing_in(self, stretches: Sequence[IndexRange], missing: Sequence[IndexRange]) -> int:
-        """Total number of points in `missing`, flat indices, that belong to stretches in the given ranges."""
+        """Number of missing points in the given stretches. stretches: ranges of stretch numbers. missing:
+        ranges of flat indices.
+        """
         missing_points = IndexSet(missing)
         number = 0
         for first, end in stretches:

@@ -1,1 +1,2 @@
-"""Points of arms without a rod or with equal rods, and the validity of the model."""
+"""Points of an arm: points to which the rod model does not apply, points with equal rods, and the validity of
+the model."""

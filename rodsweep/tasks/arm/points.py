@@ -1,5 +1,5 @@
-"""Points of an arm: points to which no rod corresponds get a status, and equal rods are solved once a
-rank.
+"""Points of an arm: points to which the rod model does not apply get a status, and each rank solves equal
+rods only once.
 """
 
 from collections import OrderedDict
@@ -24,13 +24,13 @@ from ..protocol import Solver
 MODEL_APPLIES_NAME = VALIDITY[0].name
 """Name of the variable that states whether the model applies."""
 OUTCOME_MEMORY = 1e8
-"""Approximate memory, in bytes, of the outcomes that a rank keeps for equal rods."""
+"""Approximate memory, in bytes, of the outcomes that a rank caches for equal rods."""
 SMALLEST_OUTCOME = 10_000
 """Minimum assumed memory of an outcome, in bytes: an outcome has more fields than the stored variables."""
 
 
 class NoRodStatus(PointStatus):
-    """Statuses, in every task, of points of an arm to which no rod corresponds."""
+    """Statuses, in every task, of the points of an arm to which the rod model does not apply."""
 
     not_slender = (
         NOT_SLENDER,
@@ -55,7 +55,7 @@ class NoRodStatus(PointStatus):
 
 @dataclass(frozen=True, slots=True)
 class OutcomeWithoutRod:
-    """Outcome of a point of an arm to which no rod corresponds."""
+    """Outcome of a point of an arm to which the rod model does not apply."""
 
     status: NoRodStatus
     message: str = ""
@@ -82,8 +82,8 @@ def rod_numbers(points: Points) -> NDArray[np.int64] | None:
     """Number of the rod at each point of a grid over an arm's quantities, (points,); equal rods have equal
     numbers. None if all rods differ.
 
-    Rods may be equal because viscosity and densities change no parameter, and Young's modulus changes none
-    without a load or with a relative load.
+    Rods may be equal because viscosity and densities change no parameter, and Young's modulus changes no
+    parameter if the arm has no load or a load relative to flutter.
     """
     if not points.over:
         return None
@@ -98,7 +98,8 @@ def rod_numbers(points: Points) -> NDArray[np.int64] | None:
 
 
 def sharing_equal_rods(solver: Solver, points: Points, layout: Layout) -> Solver:
-    """A solver that keeps outcomes, so that a rank solves a rod once even if several points have this rod.
+    """A solver that caches outcomes, so that a rank solves a rod only once even if several points have this
+    rod.
 
     In chains, an outcome is used again if the rods are equal and both points start from the same state.
     Points of stretches are always solved, because a point takes less than a millisecond.
@@ -122,13 +123,15 @@ def sharing_equal_rods(solver: Solver, points: Points, layout: Layout) -> Solver
 
 @dataclass(slots=True)
 class _Outcomes:
-    """Cache of the outcomes of a rank's last solves; most: maximum number of outcomes."""
+    """Cache of the outcomes of a rank's latest solves. most: maximum number of outcomes."""
 
     most: int
     kept: OrderedDict[Hashable, Any] = field(default_factory=OrderedDict)
 
     def of(self, key: Hashable, solve: Callable[[], Any]) -> tuple[Any, bool]:
-        """(result of the solve `key`, whether the result was in the cache); calls `solve` if it was not."""
+        """Returns (result of the solve `key`, whether the result was in the cache); otherwise calls
+        `solve`.
+        """
         if key in self.kept:
             self.kept.move_to_end(key)
             return self.kept[key], True
@@ -140,10 +143,11 @@ class _Outcomes:
 
 @dataclass(frozen=True, slots=True)
 class SkippingSolver:
-    """A solver that skips the points to which no rod corresponds and gives these points fill values.
+    """A solver that skips the points to which the rod model does not apply, and gives these points fill
+    values.
 
-    coverage: SLENDER for points with a rod, else a value of `NoRodStatus`, (points,). failures: additional
-    messages by index of the point.
+    inner: solver of the points with a rod. coverage: SLENDER for points with a rod, else a value of
+    `NoRodStatus`, (points,). failures: additional messages by flat index of the point.
     """
 
     inner: Solver
@@ -176,7 +180,9 @@ class SkippingSolver:
         return self.layout.empty_point | {SECONDS.name: 0.0, MODEL_APPLIES_NAME: Validity.does_not_apply}
 
     def _together(self, indices: NDArray[np.int64]) -> StretchResult:
-        """Results for the points of a stretch, (indices,); only points with a rod are solved."""
+        """Results for the points of a segment of the sweep at the flat indices, (n,); only points with a rod
+        are solved.
+        """
         assert self.inner.stretched is not None
         coverage = self.coverage[indices]
         places = np.flatnonzero(coverage == SLENDER)

@@ -1,10 +1,10 @@
 """Validity of the model at each point of an arm's sweep, from the size of the effects that the model
 neglects.
 
-The effects depend on the rate of the motion. This is the frequency of the first Hopf point, of the leading
-oscillating mode or of the cycle, according to the task. For an arm at rest only compression and weight count.
-If the solver may have missed a motion, the validity is not known, unless compression or weight alone exclude
-the model.
+The effects depend on the rate of the motion. Depending on the task, the rate is the frequency of the first
+Hopf point, of the leading oscillating mode or of the cycle. For an arm at rest only compression and weight
+are tested. If the solver may have missed a motion, the validity is not known, unless compression or weight
+exceeds its limit.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -38,9 +38,10 @@ AT_REST_STATUSES: dict[str, tuple[str, ...]] = {
     "thresholds": ("accuracy_not_reached", "list_full"),
     "phase_diagram": ("accuracy_not_reached", "special_undecided", "special_full"),
 }
-"""By task, the unsuccessful statuses at which an arm without a stored Hopf point counts as at rest."""
+"""Unsuccessful statuses for which an arm without a stored Hopf point is nevertheless treated as at rest, by
+task."""
 HOPF_KINDS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
-"""Values of the variable crossing_kind that are Hopf points."""
+"""Values of the variable crossing_kind for crossings that are Hopf points."""
 CLASSES_WITH_FLUTTER = [value for value, name in CLASSES if name in ("flutter", "undecided")]
 """Values of the variable class, in a phase diagram, of rods that flutter or may flutter."""
 
@@ -49,21 +50,23 @@ CLASSES_WITH_FLUTTER = [value for value, name in CLASSES if name in ("flutter", 
 class ArmMotion:
     """Motions of an arm at n points, from which the neglected effects are computed; arrays (n, ...).
 
-    frequency: angular, in 1/tau2, NaN for an arm at rest. amplitude: largest y of the tip in L. is_cycle:
-    whether the motions are limit cycles.
+    frequency: angular frequency in 1/tau2, NaN for an arm at rest. amplitude: largest y of the tip in L.
+    is_cycle: whether the motions are limit cycles.
     """
 
     frequency: Array
     F: Array | None = None
-    """Follower force of each motion, used if F is no parameter of the points; None if unknown."""
+    """Follower force of each motion, used if F is not a parameter of the points; None if unknown."""
     amplitude: Array | float = HALF_LENGTH
     is_cycle: bool = False
     may_be_missed: NDArray[np.bool_] | bool = False
-    """Whether the point may have a motion whose frequency is not known, (n,)."""
+    """Whether each point may have a motion that the solver did not find, (n,)."""
 
 
 def _of_modes(record: Record) -> ArmMotion:
-    """Motion of the oscillating mode with the largest growth rate; frequency NaN if no mode oscillates."""
+    """Motion of the oscillating mode with the largest growth rate. The frequency is NaN if no mode
+    oscillates.
+    """
     frequency = np.abs(record["frequency"])
     first = np.argmax(frequency > 0, axis=-1, keepdims=True)  # 0 if no mode oscillates
     leading = np.take_along_axis(frequency, first, axis=-1)[..., 0]
@@ -71,8 +74,8 @@ def _of_modes(record: Record) -> ArmMotion:
 
 
 def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
-    """Function from a record to the motion of the first Hopf point; at: name of the variable with its
-    force.
+    """Function from a record to the motion at the first Hopf point. at: name of the variable with the force
+    at crossings.
     """
 
     def found(record: Record) -> ArmMotion:
@@ -87,13 +90,17 @@ def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
 
 
 def _of_row(record: Record) -> ArmMotion:
-    """Motion of the first Hopf point of a row; `may_be_missed` if rods of the row flutter or may flutter."""
+    """Motion at the first Hopf point of a row. `may_be_missed` is True if rods of the row flutter or may
+    flutter.
+    """
     beats = np.isin(record["class"], CLASSES_WITH_FLUTTER).any(axis=-1)
     return replace(_of_hopf_point("crossing_at")(record), may_be_missed=beats)
 
 
 def _of_flutter(record: Record) -> ArmMotion:
-    """Motion at the first Hopf point, which is stored as F_hopf even if the list of crossings is full."""
+    """Motion at the first Hopf point, read from F_hopf, because a full list of crossings may lack this
+    point.
+    """
     frequency, F = (np.asarray(record[name], float) for name in ("hopf_frequency", "F_hopf"))
     return ArmMotion(np.abs(frequency), F)
 
@@ -121,7 +128,7 @@ MOTION_OF_TASK: dict[str, Callable[[Record], ArmMotion]] = {
 
 
 class ArmValidity:
-    """Computes the variables of VALIDITY, which state whether the model applies, for the arm of a config."""
+    """Computes the variables of VALIDITY, which state whether the model applies to the arms of a config."""
 
     def __init__(self, config: Config, points: Points, statuses: Iterable[PointStatus] = ()):
         """statuses: all statuses that points of the task can have."""
@@ -186,8 +193,8 @@ class ArmValidity:
         }
 
     def _force(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> Array:
-        """F multiplied by the ratio of the arm's k1 to a k1 that the config gives beside the arm; NaN without
-        load.
+        """F, multiplied by (arm's k1)/(k1 in the config) if the config gives k1 in addition to the arm; NaN
+        if the arm has no load.
         """
         own = self._column("k1", index)
         F = self._column("F", index) if "F" in self.points.names else motion.F
@@ -211,7 +218,9 @@ class ArmValidity:
         return np.asarray(F) / shares.reshape(shares.shape + (1,) * max(np.ndim(F) - shares.ndim, 0))
 
     def _column(self, name: str, index: int | NDArray[np.int64]) -> Array | None:
-        """A parameter at a point, shape (), or at n points, (n,); None if the points lack the parameter."""
+        """Value of the parameter `name` at a point, shape (), or at n points, (n,); None if the points do not
+        have this parameter.
+        """
         if name not in self.points.names:
             return None
         return np.asarray(self.points.values_of(np.asarray(index))[name])

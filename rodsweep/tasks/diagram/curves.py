@@ -34,17 +34,17 @@ if TYPE_CHECKING:
     from ..phase_diagram import PhaseDiagramTask
 
 MAX_KEPT_ROWS = 200
-"""Maximum number of rows with special points kept in a process, because the cycles of a row take up to a
-megabyte. Special points of further rows are located again, in some seconds and with equal results."""
+"""Maximum number of rows whose special points are cached in a process, because the cycles of a row take up to
+a megabyte. Special points of further rows are computed again, in some seconds and with equal results."""
 
 
 @dataclass(slots=True, eq=False)
 class DiagramCurves:
     """Computes the curves of a phase diagram after its rows are solved.
 
-    These are boundaries of stability with their criticality, curves of generalised Hopf points, and curves of
-    folds and torus points of cycles. Only the curves of cycles, which take most of the time, are divided into
-    units of work for the ranks.
+    The curves are boundaries of stability with their criticality, curves of generalised Hopf points, and
+    curves of folds and torus points of cycles. Only the last kind of curves, which takes most of the time, is
+    divided among the ranks, into half curves.
     """
 
     task: "PhaseDiagramTask"
@@ -54,25 +54,29 @@ class DiagramCurves:
     """Special points of cycles by the number of their row, for rows solved in this process."""
 
     def keep(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
-        """Returns the row unchanged, and keeps its special points unless MAX_KEPT_ROWS rows are kept
-        already."""
+        """Returns `row` unchanged, after caching its special points if fewer than MAX_KEPT_ROWS rows are
+        cached. number: number of the row.
+        """
         if len(self.special) < MAX_KEPT_ROWS:
             self.special[number] = row.special
         return row
 
     def starts(self, units: "SpecialBoundaries", wanted: Sequence[int]) -> "dict[int, Any]":
-        """Special points kept on this rank, by number of the row, for the rows where the wanted units
-        start.
+        """Special points cached on this rank, by number of the row, for the rows on which the half curves
+        `wanted` start.
         """
         rows = {units.row_of(unit) for unit in wanted}
         return {row: self.special[row] for row in rows if row in self.special}
 
     def take(self, starts: "Mapping[int, Any]") -> None:
-        """Keeps special points, by number of the row, of rows solved on a different rank."""
+        """Caches special points of rows solved on other ranks. starts: special points by number of the
+        row.
+        """
         self.special.update(starts)
 
     def units(self, view: View) -> "SpecialBoundaries | None":
-        """Curves of folds and torus points of cycles as units of work; None if none are requested.
+        """Curves of folds and torus points of cycles, divided into half curves; None if these curves are not
+        requested, or if fewer than two rows have a finite value.
 
         view: the result file with all rows.
         """
@@ -86,11 +90,11 @@ class DiagramCurves:
         return SpecialBoundaries(*plane.axes, special)
 
     def solve(self, units: "SpecialBoundaries", unit: int) -> dict[str, np.ndarray]:
-        """Result of a unit, arrays with the shapes of `TracedHalfCurve`."""
+        """Result of the half curve number `unit`, as arrays with the shapes of `TracedHalfCurve`."""
         return units.solve(unit, self._special_points, self.workspace)
 
     def empty_result(self) -> dict[str, np.ndarray]:
-        """Result of a unit without a curve: arrays of shape (0, ...)."""
+        """Result of a half curve without points: arrays of shape (0, ...)."""
         from ...solve.branch.special.cycle_curves import TracedHalfCurve
 
         return TracedHalfCurve(None).arrays()
@@ -98,7 +102,9 @@ class DiagramCurves:
     def variables(
         self, view: View, units: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
     ) -> list[Filled]:
-        """All curves as variables of the file. results: of all units, shapes as in `TracedHalfCurve`."""
+        """All curves as variables of the file. view: the file with all rows. results: results of all half
+        curves by number, with shapes as in `TracedHalfCurve`.
+        """
         plane = self.plane
         if plane is None:
             return []
@@ -153,7 +159,9 @@ class DiagramCurves:
         return Plane(rod, (abscissa, ordinate))
 
     def _boundaries(self, plane: "Plane", view: View, rows: np.ndarray) -> "Boundaries[BoundaryCurve]":
-        """Curves through the crossings of all rows with a finite value; rows: value of every row, (rows,)."""
+        """Boundary curves through the crossings of all rows with a finite value. rows: parameter value of
+        every row, (rows,).
+        """
         from ...solve.changes.diagram.boundaries import curves_through, seed_of
 
         names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
@@ -171,7 +179,7 @@ class DiagramCurves:
         return replace(found, untraced=found.untraced + int(cut[np.isfinite(rows)].clip(min=0).sum()))
 
     def _special_points(self, number: int) -> "tuple[SpecialPoint, ...]":
-        """Special points of the branches of a row, kept or solved again."""
+        """Special points of the branches of the row `number`, cached or computed again."""
         from ...solve.branch.coexistence import row_branches, special_points_of
 
         if number not in self.special:
@@ -196,7 +204,9 @@ class DiagramCurves:
     def _bautin_curves(
         self, plane: "Plane", criticalities: Sequence["CurveCriticality"], name: str, axis: Axis
     ) -> list[Filled]:
-        """Curves of generalised Hopf points over the third parameter `name`, as variables of the file."""
+        """Curves of generalised Hopf points along the third parameter `name`, as variables of the file. axis:
+        values of the third parameter.
+        """
         from ...determinant.parameter_plane import PlaneAxis
         from ...solve.hopf.bautin_curves import BautinCurve, BautinSpace, bautin_curve, lies_on, on_curve
 

@@ -35,7 +35,9 @@ if TYPE_CHECKING:
 
 
 def curve_record(found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **more: Any) -> list[Filled]:
-    """Variables of the boundary curves and of their folds; more: values of the partial beam limit by name."""
+    """Variables of the boundary curves and of their folds. more: values of the variables on the partial beam
+    limit, by name.
+    """
     points = []
     folds = []
     for number, curve in enumerate(found.curves, 1):
@@ -99,7 +101,9 @@ def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) 
 
 
 def _located(point: Any, names: Sequence[str], **beside: Any) -> tuple[Any, ...]:
-    """(object with a point's parameter values and errors by name and with the values `beside`, the point)."""
+    """Returns (object, point). The attributes of the object are the point's parameter values and errors,
+    under `names`, and the values in `beside`.
+    """
     errors = {f"{name}_error": error for name, error in zip(names, point.errors, strict=True)}
     return SimpleNamespace(**dict(zip(names, point.values, strict=True)), **errors, **beside), point
 
@@ -107,9 +111,10 @@ def _located(point: Any, names: Sequence[str], **beside: Any) -> tuple[Any, ...]
 def _columns(
     declared: Mapping[str, Variable], dimension: str, prefix: str, rows: Iterable[tuple[Any, ...]]
 ) -> dict[str, Any]:
-    """Values of the declared variables along a dimension whose names begin with a prefix.
+    """Values of the variables in `declared` that have the dimension `dimension` and whose names begin with
+    `prefix`.
 
-    rows: for each item along the dimension, the objects that have its values as attributes.
+    rows: for each item along the dimension, the objects whose attributes are the values.
     """
     along = [v for v in declared.values() if v.extra == (dimension,) and v.name.startswith(prefix)]
     return listed(along, [recorded(along, *row, prefix=prefix) for row in rows])
@@ -120,7 +125,8 @@ def _filled(declared: Mapping[str, Variable], values: Mapping[str, Any]) -> list
 
 
 def _reasons(ends: Sequence[int], count: int) -> list[dict[str, int]]:
-    """For each of the `count` points of a curve, the reasons why the curve starts or ends there; 0 for none.
+    """For each of the `count` points of a curve, the reasons why the curve starts or ends there; 0 if the
+    curve goes on.
 
     ends: (reason at the first point, reason at the last point).
     """
@@ -143,7 +149,9 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
 
 
 def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecialPoint]":
-    """Folds and torus points of all finite rows in the file. rows: value of every row, (rows,)."""
+    """Folds and torus points of all rows of the file with a finite parameter value. line: parameter along the
+    rows. rows: parameter value of every row, (rows,).
+    """
     from ...solve.branch.special.boundaries import FOLLOWED_KINDS, RowSpecialPoint
     from ...solve.branch.special.point import SpecialKind
 
@@ -164,9 +172,10 @@ def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecialPoi
 
 
 def unstored_specials(view: View, finite: np.ndarray) -> int:
-    """Number of special points that the full lists of rows lack; no curve can start at such a point.
+    """Number of special points that are not stored because the list of their row is full; no curve can start
+    at these points.
 
-    finite: whether the value of each row is finite, (rows,).
+    finite: whether the parameter value of each row is finite, (rows,).
     """
     stored = np.count_nonzero(view.by_point("cycle_special_kind"), axis=1)
     lacking = view.variables["cycle_special_count"].ravel() - stored
@@ -179,7 +188,10 @@ def with_hopf_ends(
     criticalities: "Sequence[CurveCriticality]",
     unstored: int,
 ) -> "Boundaries[CycleCurve]":
-    """Curves whose ends at generalised Hopf points are replaced by the points located on Hopf curves."""
+    """The curves in `found`, with ends at generalised Hopf points replaced by the points located on Hopf
+    curves. criticalities: criticality along each boundary curve. unstored: number of special points that are
+    not stored, added to `untraced`.
+    """
     from ...solve.branch.special.cycle_curves import with_located_ends
 
     known = [point for curve in criticalities for point in curve.points]

@@ -2,7 +2,7 @@
 
 The forces are computed from the stored eigenvalues after all points are solved, and stored in the file for
 `show` and figures. A change takes about 30 us: 1 % of the time of spectra followed along lines of 512 forces,
-3 to 5 % along lines of 50.
+and 3 to 5 % along lines of 50 forces.
 """
 
 from collections.abc import Iterator, Mapping
@@ -30,7 +30,8 @@ class ForceLines:
     """Lines over F through the points of a file; all lines have the same forces.
 
     fixed: k1, k2 and gamma3 of each line, (lines, 3). F: forces, increasing, (n,). eigenvalues: in 1/tau2,
-    leading first, (lines, n, modes). unstable: number of growing modes, -1 if unknown, (lines, n).
+    leading first, (lines, n, modes). unstable: number of modes with positive growth rate, -1 if unknown,
+    (lines, n).
     """
 
     fixed: Array
@@ -144,9 +145,10 @@ def _new_pairs(w: Complex) -> NeighbourPairs:
 
 
 def _neighbours(known: NDArray[np.bool_]) -> tuple[NDArray[np.int64], ...]:
-    """(lines, indices of first points, indices of second points) of neighbouring points with eigenvalues.
+    """Returns three index arrays, (pairs,), for pairs of neighbouring points with eigenvalues: line, first
+    point, second point.
 
-    known: whether a point has eigenvalues, (lines, n).
+    Points without eigenvalues are skipped. known: whether a point has eigenvalues, (lines, n).
     """
     line, point = np.nonzero(known)
     together = line[1:] == line[:-1]
@@ -154,7 +156,7 @@ def _neighbours(known: NDArray[np.bool_]) -> tuple[NDArray[np.int64], ...]:
 
 
 def _by_line(steps: NeighbourPairs) -> dict[int, list[tuple[int, int]]]:
-    """Pairs (index of the first point, index of the second point) by line."""
+    """Pairs (index of the first point, index of the second point), by index of the line."""
     found: dict[int, list[tuple[int, int]]] = {}
     for line, before, behind in steps.tolist():
         found.setdefault(line, []).append((before, behind))

@@ -1,6 +1,6 @@
 """Hopf points of the straight rod on lines through the points of a file, for figures and for `show`.
 
-The Hopf points depend on the config alone and are stored before any point is solved. Hence the file has the
+The Hopf points depend only on the config and are stored before any point is solved. Hence the file has the
 Hopf points of all its lines after a run, an extension or a merge.
 """
 
@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class HopfLine:
-    """Line of rods on which one parameter varies from `start` to `stop` and all others are fixed."""
+    """Line of rods along which one parameter varies from `start` to `stop`; all other parameters are
+    fixed.
+    """
 
     name: str
     """The parameter that varies."""
@@ -36,9 +38,7 @@ class HopfLine:
     build: Build = STANDARD
 
     def search(self) -> "Transitions | None":
-        """Hopf points on the line; None if the range without crushed rods is empty, or if the search
-        fails.
-        """
+        """Hopf points on the line; None if the search fails, or if all rods on the line are crushed."""
         from ...determinant.parameter_path import Path
         from ...solve.changes.along_path import pair_crossings
         from ...solve.changes.unstable_modes import CHANGE_COUNTS
@@ -65,13 +65,15 @@ class HopfLine:
 
 
 def hopf_lines_of(points: Points) -> list[HopfLine]:
-    """Lines through the points of a file, each line once. Rods that differ in gamma1 alone share a line."""
+    """Lines through the points of a file, without repetition. Rods that differ only in gamma1 share a
+    line.
+    """
     names = [name for name in HOPF_ALONG if name in points.of_rods]
     return [line for name in names for line in _lines_over(points, name, names)]
 
 
 def _lines_over(points: Points, name: str, names: Sequence[str]) -> Iterator[HopfLine]:
-    """Yields the lines over a parameter with at least two finite values.
+    """Yields the lines along the parameter `name`, if at least two of its values are finite.
 
     names: all parameters of the lines. Lines over F begin at 0, because the Hopf point may lie below the
     smallest force of the points. Arms with equal parameters and different profiles have no line, because a

@@ -12,7 +12,7 @@ from ...sweep.points.stretches import StretchResult
 
 
 def parameters_in_words(values: Mapping[str, float]) -> str:
-    """A point's parameters in words: `F=40.0, k1=200.0`."""
+    """Text with the parameters of a point: `F=40.0, k1=200.0`."""
     return ", ".join(f"{name}={value!r}" for name, value in values.items())
 
 
@@ -20,8 +20,8 @@ def parameters_in_words(values: Mapping[str, float]) -> str:
 class FailureReasons:
     """Distinct reasons why points failed, each with the first point that failed for this reason.
 
-    where: function from the index of a point to its parameters in words. examples: point, status and message
-    in words, by the reason with all numbers removed.
+    where: function from the flat index of a point to a text with its parameters. examples: text with
+    parameters, status and message, by the reason with all numbers replaced.
     """
 
     where: Callable[[int], str]
@@ -30,7 +30,8 @@ class FailureReasons:
     def add(self, index: Indices, result: Any) -> list[str]:
         """Adds the reasons of failed points; returns the examples of reasons that are new.
 
-        index: of one point with its outcome, or of the n points of a stretch, (n,), with their result.
+        index, result: flat index and outcome of one point, or flat indices, (n,), and result of a segment of
+        the sweep.
         """
         new = []
         for at, outcome in _failed(index, result):
@@ -44,7 +45,7 @@ class FailureReasons:
 
 
 def _failed(index: Indices, result: Any) -> Iterable[tuple[int, str]]:
-    """Yields (index, status and message in words) of the failed points of a result."""
+    """Yields (flat index, text with status and message) of each failed point of a result."""
     if isinstance(result, StretchResult):
         for i in np.flatnonzero(~result.succeeded):
             yield int(np.asarray(index)[i]), result.message(int(i))

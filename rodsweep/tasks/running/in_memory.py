@@ -25,10 +25,10 @@ StoredVariable = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
 
 @solving
 def solved_view(job: Job) -> View:
-    """Solves all points of a job; returns the results in the form in which `show` reads a file.
+    """Solves all points of a job; returns the results as a `View`, which `show` and figures read.
 
-    The job has no chains and no variables that depend on all points. Raises EnvironmentIncomplete if PETSc or
-    SLEPc is missing.
+    The job must have no chains and no variables that depend on all points. Raises EnvironmentIncomplete if
+    PETSc or SLEPc is missing.
     """
     require_solvers()
     started = now()
@@ -53,11 +53,10 @@ def solved_view(job: Job) -> View:
 def view_in_memory(
     job: Job, plan: Plan, values: Mapping[str, np.ndarray], filled: Sequence[Filled] = ()
 ) -> View:
-    """Results in the form in which `show` reads a file, with the attributes `task` and `config_resolved`
-    only.
+    """Results as a `View`, with only the attributes `task` and `config_resolved`.
 
-    values: variables of the layout by name, shape (points, own dimensions). filled: variables of the file
-    that do not belong to single points.
+    values: variables of the layout by name, shape (points, own dimensions). filled: variables that do not
+    belong to single points, with values.
     """
     coordinates, variables = stored_variables(plan, values, filled)
     return View(
@@ -75,7 +74,9 @@ def view_in_memory(
 def stored_variables(
     plan: Plan, values: Mapping[str, np.ndarray], filled: Sequence[Filled]
 ) -> tuple[dict[str, StoredVariable], dict[str, StoredVariable]]:
-    """(coordinates, variables) of the file of a plan, by name; values and filled as for `view_in_memory`."""
+    """Returns (coordinates, variables) of the file of a plan, by name. values, filled: as in
+    `view_in_memory`.
+    """
     coordinates = _coordinates(plan)
     variables: dict[str, StoredVariable] = {}
     for variable in plan.layout.variables:
@@ -91,7 +92,7 @@ def stored_variables(
 
 
 def _coordinates(plan: Plan) -> dict[str, StoredVariable]:
-    """Coordinates of the points and of all further dimensions of a plan, by name."""
+    """Coordinates of the points and of all other dimensions of a plan, by name."""
     points = plan.points
     found: dict[str, StoredVariable] = {}
     if not points.axes:

@@ -1,6 +1,4 @@
-"""The job of a config, which is all that a run needs except PETSc and MPI, and the plan of its result
-file.
-"""
+"""The job of a config (all data that a run needs, except PETSc and MPI), and the plan of its result file."""
 
 import os
 from collections.abc import Sequence
@@ -33,7 +31,8 @@ from ..protocol import Solver, Task
 MAX_FILE_BYTES = 2**63 - 1
 """Maximum size of a file in bytes; also the maximum number of points."""
 BYTES_PER_VALUE = 40
-"""Memory per value of an axis while a run is set up, in bytes: four arrays; 33 to 36 bytes were measured."""
+"""Memory per value of an axis while a run is set up, in bytes, for four arrays and overhead; 33 to 36 bytes
+were measured."""
 MAX_RECORD_BYTES = 100_000_000
 """Maximum size of the results of one point in bytes: they are held in memory and written at once."""
 
@@ -60,16 +59,18 @@ class Job:
 
     @property
     def name(self) -> str:
-        """The config's title, or else the name of the config's file."""
+        """The title of the config; if the title is empty, the name of the config file."""
         return self.config.title or self.path.stem
 
     @property
     def quantities(self) -> tuple[Filled, ...]:
-        """Quantities of the config's arm as coordinates of the points; empty without an arm."""
+        """Quantities of the config's arm as coordinates of the points; empty if the config has no arm."""
         return quantities_of(self.config.parameters, self.points)
 
     def solver(self) -> Solver:
-        """The task's solver; for an arm, its results also contain SI units and the validity. Starts PETSc."""
+        """The solver of the task; for an arm, the results also contain values in SI units and the validity of
+        the model. Starts PETSc.
+        """
         solver = self.task.solver()
         if self.config.parameters.arm is None:
             return solver
@@ -121,7 +122,8 @@ def job_of(
     """The job of a config. A file of points is relative to the folder of the config file `path`.
 
     source: the config as the user wrote it. flutter: flutter forces of rods with a load relative to flutter;
-    None to solve for these forces. Raises InputError if the results do not fit into memory or a file.
+    None: the forces are computed here. Raises InputError if the axes do not fit into memory, or the results
+    into a file.
     """
     values = sum(axis.size for axis in config.parameters.axes.values())  # checked before arrays are made
     if values * BYTES_PER_VALUE > machine_memory():

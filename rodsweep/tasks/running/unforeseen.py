@@ -27,15 +27,17 @@ from ...sweep.points.stretches import StretchResult
 from ..protocol import Solver
 
 RUN_ENDING_EXCEPTIONS = (Refusal, OSError)
-"""Exceptions that concern the whole run, not a point: the run ends with a sentence."""
+"""Exceptions that end the run with a message, because they concern all points."""
 MAX_LOGGED_EXCEPTIONS = 1000
 """Maximum number of exceptions that a rank writes into the log; more exceptions would repeat the same bug."""
 FAILED_STATUS = "failed"
 """Status, in every task, of a point with an unforeseen exception in the solver."""
 PointNote = Callable[[Sequence[int], Exception], None]
-"""Function called with the flat indices of the points that a solver solved together, and its exception."""
+"""Function called with the flat indices of the points that were solved together, and the exception of the
+solver."""
 UnitNote = Callable[[str, Exception], None]
-"""Function called with the name of a unit of joint work and the exception of its solver."""
+"""Function called with the name of a work item for variables that depend on all points, and the exception of
+the solver."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,15 +52,15 @@ class RecordedOutcome:
 def guarded_solver(solver: Solver, layout: Layout, note: PointNote) -> Solver:
     """A solver that catches unforeseen exceptions, calls `note`, and gives a failed point fill values.
 
-    After an exception in a stretch, each point of the stretch is solved alone, so that only the points that
-    fail alone have no spectrum.
+    After an exception in a segment of the sweep, each point of the segment is solved alone. Only points that
+    fail again get fill values.
     """
     return _Guard(solver, layout, note).solver()
 
 
 @dataclass(frozen=True, slots=True)
 class _Guard:
-    """Makes the guarded solver of `guarded_solver` from the solver `inner`."""
+    """Implementation of `guarded_solver`. inner: the solver whose exceptions are caught."""
 
     inner: Solver
     layout: Layout
@@ -71,7 +73,9 @@ class _Guard:
     def _outcome(
         self, index: int, start: State, solve: Callable[[], tuple[Any, State]]
     ) -> tuple[RecordedOutcome, State]:
-        """(outcome, state for the next point) of a point whose solve or record may raise an exception."""
+        """Returns (outcome, initial state for the next point) of a point. An unforeseen exception of the
+        solve or the record gives a failed outcome and no state.
+        """
         began = time.perf_counter()
         try:
             found, state = solve()
@@ -84,7 +88,9 @@ class _Guard:
             return self._failed(error, time.perf_counter() - began), None
 
     def _failed(self, error: Exception, seconds: float) -> RecordedOutcome:
-        """Outcome of a failed point, with the fill value of every variable."""
+        """Outcome of a failed point, with the fill value of every variable. seconds: time spent on the
+        point.
+        """
         status = next(status for status in self.inner.statuses if status.name == FAILED_STATUS)
         values = {SECONDS.name: seconds, STATUS.name: int(status)}
         return RecordedOutcome(status, describe_unforeseen(error), self.layout.empty_point | values)
@@ -101,7 +107,9 @@ class _Guard:
             return self._one_by_one(indices)
 
     def _one_by_one(self, indices: NDArray[np.int64]) -> StretchResult:
-        """The points of a stretch, each solved alone."""
+        """Result of a segment of the sweep from separate solves of its points. indices: flat indices,
+        (n,).
+        """
         solve = self.solver().solve
         outcomes = [solve(index) for index in indices.tolist()]
         names = [variable.name for variable in self.layout.variables]
@@ -121,16 +129,18 @@ def describe_unforeseen(error: Exception) -> str:
 
 
 def log_file(output: Path) -> Path:
-    """Path of the log with the tracebacks of failed points, beside the result file `output`."""
+    """Path of the log with the tracebacks of failed points, in the folder of the result file `output`."""
     return output.with_name(output.name + ".log")
 
 
 class TracebackLog:
-    """Log of unforeseen exceptions: a file beside the result to which all ranks append tracebacks."""
+    """Log of unforeseen exceptions: a file in the folder of the result file, to which all ranks append
+    tracebacks.
+    """
 
     def __init__(self, output: Path, rank: int, where: Callable[[int], str], strict: bool = False):
-        """output: the result file. where: function from the index of a point to its parameters in words.
-        strict: whether an exception is raised again after it is written.
+        """output: the result file. where: function from the flat index of a point to a text with its
+        parameters. strict: whether every exception is raised again after it is logged.
         """
         self.strict = strict
         self.path = log_file(output)
@@ -141,17 +151,19 @@ class TracebackLog:
         self._known: set[str] = set()
 
     def __call__(self, indices: Sequence[int], error: Exception) -> None:
-        """Appends the exception of points, named by their parameters, to the log."""
+        """Appends the exception of points to the log, with their parameters. indices: flat indices of the
+        points.
+        """
         points = self.where(indices[0])
         if len(indices) > 1:
             points = f"{len(indices)} points together, from {points} to {self.where(indices[-1])}"
         self.note(points, error)
 
     def note(self, place: str, error: Exception) -> None:
-        """Appends the exception of a point or a unit of work to the log.
+        """Appends the exception of points or of a work item to the log.
 
-        place: name of the point or unit. Of a traceback that this rank has written before, only the last line
-        is appended.
+        place: text naming the points or the work item. If this rank has logged the same traceback before,
+        only the last line of the traceback is appended.
         """
         self.count += 1
         if self.count <= MAX_LOGGED_EXCEPTIONS:

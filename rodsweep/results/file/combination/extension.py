@@ -1,8 +1,9 @@
-"""Extension of a result file to a larger config: whether it is possible, and which stored points are reused.
+"""Extension of a result file to a larger config: whether an extension is possible, and which stored points
+are reused.
 
 A stored point is reused only if a run of the larger config would give results that are equal bit by bit: the
-parameters are equal bit by bit, and every requested result is present. The same must hold for all previous
-points of a chain, or for all points of a stretch.
+parameters are equal bit by bit, and every requested result is present. In a chain all previous points, and in
+a stretch (a segment of the sweep) all points, must satisfy the same conditions.
 """
 
 from collections.abc import Iterator
@@ -27,9 +28,9 @@ from ..validation import ResultHeader
 from .identity import config_difference
 
 ROUNDING_TOLERANCE = 4 * np.finfo(float).eps
-"""Relative difference of two values on an axis up to which the difference counts as rounding error."""
+"""Two values on an axis with at most this relative difference are treated as equal up to rounding."""
 Indices = NDArray[np.int64]
-"""Flat indices of points, or positions on an axis, (n,); -1 for none."""
+"""Flat indices of points, or positions on an axis, (n,); -1 if there is no such point or position."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +46,9 @@ class StoredPointMap:
     value are computed again."""
 
     def __call__(self, index: Indices) -> Indices:
-        """New flat indices of the points with the stored flat indices `index`, (n,); -1 if computed again."""
+        """New flat indices of the points with the stored flat indices `index`, (n,); -1 for a point that is
+        computed again.
+        """
         each = [place[i] for place, i in zip(self.places, np.unravel_index(index, self.shape), strict=True)]
         stays = np.min(each, axis=0) >= 0
         new = np.ravel_multi_index([np.maximum(place, 0) for place in each], self.new_shape)
@@ -56,7 +59,8 @@ class StoredPointMap:
 class Extension:
     """The stored points of a result file that the file of a larger config reuses.
 
-    path: stored file. old, new: layouts of both files.
+    path: stored file. old, new: layouts of the stored and the new file. places: map from stored to new
+    points.
     """
 
     path: Path
@@ -64,7 +68,7 @@ class Extension:
     new: Layout
     places: StoredPointMap
     grown: tuple[tuple[IncreaseRule, Any], ...]
-    """(rule, former value) for every option that the new config increases."""
+    """(rule, old value) for every option that the new config increases."""
     nothing_stays: bool
     """Whether every stored point is computed again."""
 
@@ -130,7 +134,7 @@ def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
 
 
 def _refuse(header: ResultHeader, difference: str) -> None:
-    """Raises InputError for a difference between file and config, unless it is empty."""
+    """Raises InputError if the text `difference`, on how file and config differ, is not empty."""
     if difference:
         raise InputError(
             f"{header.path} cannot be extended to this config ({difference}); choose another file with -o, "
@@ -178,7 +182,8 @@ def _places_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> 
 
 
 def _same_from_the_start(places: Indices, count: int, upward: bool) -> Indices:
-    """Positions `places` of the values along chains, (n,), up to the first changed position; then -1.
+    """Positions `places` of the values along a chain, (n,), with -1 from the first changed position of the
+    chain on.
 
     count: number of values on the new axis. upward: direction of the chains.
     """
@@ -188,7 +193,9 @@ def _same_from_the_start(places: Indices, count: int, upward: bool) -> Indices:
 
 
 def _same_stretches(places: Indices, count: int) -> NDArray[np.bool_]:
-    """Whether the stretch of each old value, (n,), has the same values on a new axis of `count` values."""
+    """Whether the stretch of each old value, (n,), is unchanged on the new axis. places: new position of each
+    old value, (n,). count: number of values on the new axis.
+    """
     at = np.arange(len(places))
     first = at // STRETCH_POINTS * STRETCH_POINTS
     same_length = np.minimum(first + STRETCH_POINTS, len(places)) == np.minimum(first + STRETCH_POINTS, count)

@@ -1,7 +1,7 @@
-"""Comparison of configs: whether two configs request the same results, and their difference in words.
+"""Comparison of configs: whether two configs request the same results, and a text on their difference.
 
 Configs are compared by `Config.meaning`. The notation of an axis, the title, the name of a list of points,
-and unused options do not count.
+and unused options are not compared.
 """
 
 import json
@@ -38,7 +38,9 @@ def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
 
 
 def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
-    """Difference, in words, of two resolved configs with different fingerprints."""
+    """Text on the difference of two resolved configs with different fingerprints. theirs: config of the file.
+    ours: config of the run.
+    """
     if theirs["task"] != ours["task"]:
         return config_difference(theirs["task"], ours["task"], "task")
     configs = config_of(theirs), config_of(ours)
@@ -59,7 +61,7 @@ def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
 
 
 def _kind(parameters: Axes) -> str:
-    """In words, whether the points of a config are a grid, a grid over an arm's quantities, or a list."""
+    """Text stating whether the points of a config are a grid, a grid over an arm's quantities, or a list."""
     if parameters.over:
         return f"a grid over {' and '.join(parameters.over)}"
     return "a list of points" if parameters.is_list else "a grid"
@@ -70,7 +72,7 @@ def config_difference(
 ) -> str:
     """Text with the first key in which two configs differ, and both values; empty for equal configs.
 
-    key: key of both values. places: names of the origins of both configs.
+    key: full name of the key of `theirs` and `ours`. places: names of the origins of `theirs` and `ours`.
     """
     if isinstance(theirs, dict) and isinstance(ours, dict):
         for name in [*ours, *(n for n in theirs if n not in ours)]:

@@ -34,8 +34,8 @@ NOT_INHERITED_ATTRIBUTES = (
 )  # fmt: skip
 """Names of the attributes that a joined file does not copy from the first source."""
 ROUNDING_FACTOR = 1e3
-"""Relative difference of two results, divided by the requested accuracy, up to which the difference counts as
-rounding error."""
+"""Two results with a relative difference of at most this multiple of the requested accuracy are treated as
+equal up to rounding."""
 Planner = Callable[[Config, Points], Plan]
 """Function from a config and its points to the plan of the result file, without attributes and flags."""
 
@@ -49,7 +49,8 @@ class JoinedFile:
     places: Sequence[StoredPointMap]
 
     def write(self, path: Path) -> list[ResultHeader]:
-        """Writes the points of all sources into the file at `path`; returns the sources of stored points.
+        """Writes the points of all sources into the file at `path`; returns the sources from which points
+        were written.
 
         Raises InputError if two sources have different values of a point.
         """
@@ -64,8 +65,8 @@ class JoinedFile:
         return [self.sources[number] for number in np.unique(owner[owner >= 0])]
 
     def _compare(self, path: Path, records: np.ndarray, owner: np.ndarray, number: int) -> None:
-        """Raises InputError if records, (n,), of the source `number` differ from stored values of their
-        points.
+        """Raises InputError if records, (n,), of the source `number` differ from the values already stored in
+        the file for the same points.
 
         Rounding errors are allowed. owner: number of the source of each stored point, (points,).
         """
@@ -88,9 +89,11 @@ class JoinedFile:
     def _is_rounding(
         self, name: str, first: Any, second: Any, sources: tuple[ResultHeader, ResultHeader]
     ) -> bool:
-        """Whether two values of the variable `name` differ by rounding error only.
+        """Whether two values of the variable `name` differ only by rounding error. first, second: the values.
+        sources: headers of their files.
 
-        Results of different BLAS kernels, or of different stretches, may differ so.
+        Only results of different BLAS kernels, or of stretches solved with different points, may differ by
+        rounding error.
         """
         kernels = {kernel for source in sources for kernel in kernels_of(source.attributes)}
         if (len(kernels) < 2 and not self.plan.stretches) or name == "status":
@@ -104,7 +107,7 @@ class JoinedFile:
 
 
 def _place(points: Points, index: int) -> str:
-    """Parameters of the point at a flat index, in words."""
+    """Text with the parameters of the point at a flat index."""
     return ", ".join(f"{name} = {value:.15g}" for name, value in points.values(index).items())
 
 
@@ -138,9 +141,10 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: Planner) -> JoinedF
 
 
 def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]:
-    """(grid with all values of all grids on every axis, map from each grid to it).
+    """Returns (joined grid, map from each grid to the joined grid).
 
-    Raises InputError if points of the large grid are in no grid, or if values differ by rounding only.
+    The axes of the joined grid have the values of all grids. Raises InputError if a point of the joined grid
+    is in no grid, or if values differ only by rounding.
     """
     axes = []
     for name in grids[0].names:
@@ -169,7 +173,9 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
 
 
 def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]:
-    """(list of the points of all lists, each point once; map from each list to it)."""
+    """Returns (joined list, map from each list to the joined list). The joined list has the points of all
+    lists without repetition.
+    """
     known: dict[bytes, int] = {}
     rows = [np.column_stack(points.columns) + 0.0 for points in lists]
     places = [np.array([known.setdefault(row.tobytes(), len(known)) for row in each]) for each in rows]
@@ -195,7 +201,9 @@ def _joined_config(first: ResultHeader, meant: dict[str, Any], points: Points) -
 
 
 def _axis(own: Axis, values: Array) -> Axis:
-    """The axis with the given values, (n,): `own` or a range if equal bit by bit, otherwise a list."""
+    """An axis with the given values, (n,): `own` or a range if its values are equal bit by bit, otherwise a
+    list.
+    """
     if np.array_equal(own.array(), values):
         return own
     if len(values) > 2 and np.isfinite(values).all():

@@ -36,10 +36,11 @@ class MergeResult:
 def merge(output: Path, paths: Sequence[Path], planner: Planner) -> MergeResult:
     """Writes `output` with all points of the result files `paths`: shards of one sweep, or several grids.
 
-    An existing `output` is the first source. Of two values of a point in shards the first is written; files
-    of different grids must have equal values. Raises InputError for a file that is no result, was made for
-    another config, or has points in a journal, and for grids that do not form a larger grid;
-    EnvironmentIncomplete if the disk fails.
+    An existing `output` is the first source. If several shards have a point, the values in the first shard
+    are written; files of different grids must have equal values. planner: function from config and points to
+    the plan of a file. Raises InputError for a file that is not a result, was made for another config, or has
+    points in a journal, and for grids that do not form a larger grid; EnvironmentIncomplete if the disk
+    fails.
     """
     sources = _opened(paths)
     with disk_refusals(output):
@@ -76,7 +77,7 @@ def _join(exchange: FileReplacement, joint: JoinedFile) -> MergeResult:
 
 
 def _finished(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResult:
-    """Stores in the merged file how its points were computed, and finishes a file without missing points.
+    """Writes the provenance of the points into the merged file, and finishes the file if no point is missing.
 
     gave: sources of the stored points.
     """
