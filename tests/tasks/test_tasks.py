@@ -8,6 +8,8 @@ import h5py
 import numpy as np
 import pytest
 import xarray
+from contents import content
+from faults import small
 
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.post.summary import POINT_NOUNS, show_summary
@@ -429,3 +431,19 @@ def test_crossings_beyond_a_full_list_count_as_untraced(command):
         assert v["crossing_count"].ravel().tolist() == [3, 2]  # at k1 = 170 the window closes before 150
         untraced.append(int(v["curves_untraced"]))
     assert untraced == [0, 3]
+
+
+@pytest.mark.parametrize("task", ["spectrum", "modes", "thresholds", "phase_diagram", "limit_cycle"])
+def test_a_taper_of_one_that_is_written_changes_nothing(command, task):
+    """Also where stability changes between points of a grid, whose lines then have a further parameter."""
+    text = small.CONFIGS[task].lstrip()
+    command.write("plain.yaml", text)
+    command.write("taper.yaml", text.replace("gamma3:", "taper: 1, gamma3:"))
+    for name in ("plain", "taper"):
+        done = command("run", f"{name}.yaml")
+        assert done.returncode == 0, done.stderr
+    plain, with_taper = (content(command.directory / f"{name}.h5") for name in ("plain", "taper"))
+    assert "taper" in with_taper.keys() - plain.keys() <= {"taper", "hopf_taper"}
+    for name, values in plain.items():
+        found = with_taper[name].reshape(values.shape)
+        assert np.array_equal(found, values, equal_nan=values.dtype.kind == "f"), name

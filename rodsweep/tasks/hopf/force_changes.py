@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...model.parameters import LINEAR_PARAMETERS
 from ...model.rod import Rod
 from ...results.layouts.spectrum import FORCE_CHANGES
 from ...results.layouts.thresholds import CROSSING_KINDS
@@ -29,11 +28,12 @@ MAX_POINTS_IN_MEMORY = 1 << 13
 class ForceLines:
     """Lines over F through the points of a file; all lines have the same forces.
 
-    fixed: k1, k2 and gamma3 of each line, (lines, 3). F: forces, increasing, (n,). eigenvalues: in 1/tau2,
-    leading first, (lines, n, modes). unstable: number of modes with positive growth rate, -1 if unknown,
-    (lines, n).
+    names: parameters other than F, among them `taper` where a config says `taper: 1`. fixed: values of these
+    parameters on each line, (lines, names). F: forces, increasing, (n,). eigenvalues: in 1/tau2, leading
+    first, (lines, n, modes). unstable: number of modes with positive growth rate, -1 if unknown, (lines, n).
     """
 
+    names: tuple[str, ...]
     fixed: Array
     F: Array
     eigenvalues: Complex
@@ -72,7 +72,8 @@ def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
         )
         shape = (len(fixed), points.shape[along])
         w = (growth + 1j * frequency).reshape(*shape, -1)
-        yield ForceLines(fixed, points.columns[along], w, unstable.reshape(shape))
+        names = tuple(points.names[axis] for axis in others)
+        yield ForceLines(names, fixed, points.columns[along], w, unstable.reshape(shape))
 
 
 def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
@@ -83,9 +84,9 @@ def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
         if len(line.x) > 1:
             order = np.argsort(line.x, kind="stable")
             at = line.at[order]
-            yield ForceLines(
-                np.array([[*line.parameters.values()]]), line.x[order], w[None, at], unstable[None, at]
-            )
+            fixed = np.array([[*line.parameters.values()]])
+            names = tuple(line.parameters)
+            yield ForceLines(names, fixed, line.x[order], w[None, at], unstable[None, at])
 
 
 def _changes_on(lines: ForceLines) -> Iterator[dict[str, float]]:
@@ -97,7 +98,7 @@ def _changes_on(lines: ForceLines) -> Iterator[dict[str, float]]:
     onsets = _by_line(_new_pairs(w))
     changes = _by_line(_sign_changes(w))
     for number in sorted(onsets.keys() | changes.keys()):
-        fixed = dict(zip(LINEAR_PARAMETERS[1:], lines.fixed[number].tolist(), strict=True))
+        fixed = dict(zip(lines.names, lines.fixed[number].tolist(), strict=True))
         rod = Rod(F=0.0, **fixed)
         here = w[number]
         rods = rod.coefficients, rod.direction("F")
