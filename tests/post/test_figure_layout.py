@@ -49,11 +49,16 @@ def at_widths(figures, widths=WIDTHS, every=1):
 
 
 def drawn(view, tmp_path, monkeypatch, width, **words):
-    """The figure as it is written."""
+    """The figure as it is written, with what is wrong with it: the number of ticks depends on the style."""
     figures = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: figures.append(figure))
+
+    def take(figure, *_):
+        figure.draw_without_rendering()
+        figure.faults = faults(figure)
+        figures.append(figure)
+
+    monkeypatch.setattr(Figure, "savefig", take)
     draw(view, tmp_path / "f.png", look=FigureLook(title=True, width=width), **words)
-    figures[0].draw_without_rendering()
     return figures[0]
 
 
@@ -160,7 +165,7 @@ CASES = {
     at_widths([(name, words) for name in CASES for words in CASES[name][: None if RODS else 1]], every=2),
 )
 def test_nothing_is_cut_or_over_anything_else(name, words, width, tmp_path, monkeypatch):
-    assert faults(drawn(solved(name), tmp_path, monkeypatch, width, **words)) == []
+    assert drawn(solved(name), tmp_path, monkeypatch, width, **words).faults == []
 
 
 def of_cycles(forces, gamma1, seed, **words):
@@ -191,7 +196,7 @@ CYCLES = {
 def test_nothing_of_cycles_is_cut_or_over_anything_else(name, what, width, tmp_path, monkeypatch):
     (axes, _), some = CYCLES[name], 0.0 if what in ("cycle", "energy") else 0.3
     view = of_cycles(*axes, seed=1, others=some)
-    assert faults(drawn(view, tmp_path, monkeypatch, width, what=what)) == []
+    assert drawn(view, tmp_path, monkeypatch, width, what=what).faults == []
 
 
 def known_to(error, forces=(50.0, 123.456789, 200.0)):
@@ -205,7 +210,7 @@ def known_to(error, forces=(50.0, 123.456789, 200.0)):
 
 @pytest.mark.parametrize(("what", "width"), at_widths([("cycle",), ("energy",)]))
 def test_a_period_with_all_its_digits_is_not_cut(what, width, tmp_path, monkeypatch):
-    assert faults(drawn(known_to(1e-9), tmp_path, monkeypatch, width, what=what)) == []
+    assert drawn(known_to(1e-9), tmp_path, monkeypatch, width, what=what).faults == []
 
 
 @pytest.mark.parametrize(("error", "period"), [(1e-9, "0.026321"), (1e-4, "0.02632"), (1e-2, "0.026")])
@@ -243,7 +248,7 @@ def test_random_figures_of_cycles_are_whole(seed, width, tmp_path, monkeypatch):
     gamma1 = list(np.sort(rng.uniform(0.3, 2, rng.integers(1, 7))))
     what = ["amplitude", "maps", "cycle", "energy"][seed % 4] if len(gamma1) > 1 else "amplitude"
     view = of_cycles(forces, gamma1, seed, others=0.0 if what in ("cycle", "energy") else 0.4)
-    assert faults(drawn(view, tmp_path, monkeypatch, width, what=what)) == []
+    assert drawn(view, tmp_path, monkeypatch, width, what=what).faults == []
 
 
 def test_every_threshold_of_the_first_config_of_the_readme_is_within_its_axes(tmp_path, monkeypatch):
