@@ -32,6 +32,8 @@ BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?")
 
 
+ROUNDING = 1e-9
+"""Below this a number is an estimate of rounding, which depends on the processor."""
 ERROR = re.compile(r" \(\+- [^)]*\)")
 """An error estimate beside a number, of which rounding decides."""
 
@@ -44,7 +46,7 @@ def alike(said, come):
     if not (words[1].startswith(words[0]) if begins != said else words[0] == words[1]):
         return False
     first, second = (np.array(NUMBER.findall(text), float) for text in (begins, come))
-    return first == pytest.approx(second[: len(first)], rel=1e-3)
+    return first == pytest.approx(second[: len(first)], rel=1e-3, abs=ROUNDING)
 
 
 def missing(said, come):
