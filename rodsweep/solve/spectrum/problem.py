@@ -114,7 +114,7 @@ class UniformProblem(TransverseProblem):
         return resolution_for(expected_wave_number(modes, self._wave), accuracy)
 
     def next_mesh_for(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
-        """The mesh for the largest of the wave numbers `waves`, (modes,), but at least the next finer mesh."""
+        """The mesh for the largest of the wave numbers `waves`, (modes,), or the next finer mesh if finer."""
         asked = resolution_for(float(waves.max()), accuracy)
         return max(asked, finer_resolution(mesh), key=lambda each: each.unknowns)
 
