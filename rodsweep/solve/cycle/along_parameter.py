@@ -1,5 +1,5 @@
 """Natural continuation of cycles along one parameter: a polynomial predicts the next cycle, Newton's method
-corrects.
+corrects the prediction.
 
 The polynomial interpolates normalised values and parameter derivatives of the last cycles. A step that is too
 long for Newton's method is divided.
@@ -34,16 +34,16 @@ class PredictionSettings:
     """Settings for the polynomial prediction of cycles along one parameter."""
 
     max_prediction_distance: float = 0.3
-    """Largest relative distance of a cycle from its prediction; a cycle farther away may lie on another
-    branch."""
+    """Largest relative distance of a cycle from its prediction; a cycle at a larger distance may lie on
+    another branch."""
     max_tangent_distance: float = 1e-2
-    """Largest relative distance of an orbit from the orbit whose matrix gives its tangent; the tangent is
-    then accurate enough for the next step."""
+    """The tangent from the matrix at a nearby orbit is used if the relative distance between the two orbits
+    is at most this; the tangent is then accurate enough for the next step."""
     max_earlier_orbits: int = 4
     """Maximum number of earlier orbits whose values enter the predicting polynomial."""
     orbits_without_second_tangent: int = 3
-    """Number of earlier orbits from which the prediction is more accurate without the tangent of an earlier
-    orbit."""
+    """With at least this number of earlier orbits, the prediction is more accurate without the tangent of an
+    earlier orbit."""
 
 
 PREDICTION = PredictionSettings()
@@ -60,17 +60,17 @@ PARAMETER_STEPS = StepControl(
     max_solutions=100,
 )
 """Control of the steps into which a parameter change is divided; a step length is a fraction of this change.
-Newton's method takes two matrices for a prediction error of `target_error`. `max_error` is infinite, because
+Newton's method needs two matrices for a prediction error of `target_error`. `max_error` is infinite, because
 `orbit_near_prediction` already rejects cycles far from the prediction."""
 
 
 @dataclass(frozen=True, eq=False)
 class CyclePredictor:
-    """Polynomial in one parameter that predicts other orbits on the branch of a solved orbit, by Hermite
+    """Polynomial in one parameter that predicts orbits on the branch of a solved orbit, by Hermite
     interpolation.
 
-    The data are normalised values and parameter derivatives of orbits, (m, N + 1). offsets: abscissa of each
-    datum, the difference of its parameter coordinate from the solved orbit's, (m,). orders: 0 for values, 1
+    The data are normalised values and parameter derivatives of orbits, (m, N + 1). offsets: parameter
+    coordinate of each datum minus the parameter coordinate of the solved orbit, (m,). orders: 0 for values, 1
     for a derivative, (m,). The first datum is the derivative at the solved orbit.
     """
 
@@ -104,7 +104,7 @@ class CyclePredictor:
         """
         step = form.rod.coordinate(name) - self.orbit.form.rod.coordinate(name)
         values = with_weighted_data(self.values, self.data, self.orders, self.weights(step))
-        # The squared size is among the values: near a Hopf point it goes linearly through 0, where cycles
+        # The squared size, one of the values, goes linearly through 0 at a Hopf point, where cycles
         # end.
         if not values[-1] > 0:
             raise Unsolvable("the predictor has no cycle: the branch ends before this parameter value")
@@ -112,7 +112,7 @@ class CyclePredictor:
         return replace(self.orbit, form=target, values=values_of(values, reflected(self.orbit)))
 
     def on(self, target: OrbitMesh) -> "CyclePredictor":
-        """The same predictor with the solved orbit and all data carried to another mesh."""
+        """The same predictor, with the solved orbit and all data interpolated to the mesh `target`."""
         if target == mesh_of(self.orbit):
             return self
         data = [np.append(carried_change(self.orbit, row[:-1], target), row[-1]) for row in self.data]
@@ -120,7 +120,8 @@ class CyclePredictor:
 
 
 def carried_change(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
-    """A change of orbit values, (N,), carried to a target mesh by a linear map, (N of the target,)."""
+    """A change of orbit values, (N,), interpolated to the mesh `target` by a linear map, (N of the
+    target,)."""
     return target.carry(replace(orbit, values=change)).values
 
 
@@ -128,10 +129,10 @@ def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: s
     """The predictor at the orbit `found`, which was solved with its tangent. before: predictor at the
     previous orbit. name: the varied parameter. Raises ValueError if the orbit has no tangent.
 
-    A tangent has the relative error of its orbit's prediction; the values of an orbit are far more accurate.
-    With PREDICTION.orbits_without_second_tangent or more values, a second tangent makes the prediction worse.
-    States on different meshes differ by far more than period and largest y, tangents differ less. After a
-    change of mesh only tangents enter.
+    A tangent has the relative error of the prediction of its orbit; the values of an orbit are far more
+    accurate. With PREDICTION.orbits_without_second_tangent or more values, a second tangent makes the
+    prediction worse. States on different meshes differ far more than period and largest y, tangents differ
+    less. After a change of mesh only tangents are used.
     """
     orbit = found.orbit
     if found.matrix.tangent is None:
@@ -141,7 +142,7 @@ def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: s
     if before is None or step == 0:
         return CyclePredictor(orbit, np.zeros(1), np.ones(1), tangent[None])
     last = before.on(mesh_of(orbit))
-    # Earlier orbits live on their own meshes; on a new mesh only the tangents are carried over.
+    # Earlier orbits have other meshes; only their tangents are interpolated to a new mesh.
     if last is not before:
         return CyclePredictor(orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last.tangent]))
     older = np.flatnonzero(before.orders == 0)[: PREDICTION.max_earlier_orbits - 1]
@@ -157,8 +158,7 @@ def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: s
 
 
 def relative_parameter_difference(one: StressForm, other: StressForm, name: str) -> float:
-    """Difference between the parameter coordinates of two rods, in units of the larger modulus. name: the
-    parameter."""
+    """|a - b|/max(|a|, |b|) for the coordinates a, b of the parameter `name` in two rods."""
     a = one.rod.coordinate(name)
     b = other.rod.coordinate(name)
     return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0
@@ -167,8 +167,8 @@ def relative_parameter_difference(one: StressForm, other: StressForm, name: str)
 def orbit_near_prediction(
     predicted: Orbit, tolerance: float, workspace: NewtonWorkspace, name: str
 ) -> ConvergedOrbit:
-    """The orbit near a prediction, by Newton's method; raises Unsolvable if its relative distance from the
-    prediction exceeds PREDICTION.max_prediction_distance."""
+    """The orbit near `predicted`, by Newton's method along with its tangent by the parameter `name`; raises
+    Unsolvable if its relative distance from the prediction exceeds PREDICTION.max_prediction_distance."""
     found = newton(predicted, tolerance, workspace, name)
     if _distance(predicted, found) > PREDICTION.max_prediction_distance:
         raise Unsolvable("the cycle is too far from its predictor")

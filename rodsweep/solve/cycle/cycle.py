@@ -35,22 +35,22 @@ class CycleRequest:
     accuracy: float
     """Relative accuracy of the period and of the largest y of the tip."""
     amplitude: float
-    """Tip's y, in L, of a motion that starts in the leading mode."""
+    """Tip's y, in L, at the start of a motion in the leading mode."""
     harmonics: int
     """Number of stored harmonics of the tip's y."""
     samples: int
-    """Number of times per period at which the tip and the energy are stored; 0 for none."""
+    """Number of times per period at which tip and energy are stored; 0 to store neither tip nor energy."""
     shapes: int
-    """Number of stored shapes of the rod per period; 0 for none."""
+    """Number of stored shapes of the rod per period; 0 for no shapes."""
     nodes: int
     """Number of Lobatto nodes of each stored shape."""
     most_periods: int
     """Maximum number of returns of the tip, after which the integration of the motion ends."""
     start: str = "mode"
-    """Start of the search: "mode" for the leading mode; "neighbour" for the neighbour's cycle, or the leading
-    mode without a neighbour; "hopf" for the branch from the Hopf point."""
+    """Start of the search: "mode" for the leading mode; "neighbour" for the cycle of the neighbouring rod, or
+    the leading mode if there is no neighbour; "hopf" for the branch from the Hopf point."""
     transient: int = 0
-    """Number of times at which the tip's path from the start is stored; 0 for none. A motion with a stored
+    """Number of times at which the tip's path from the start is stored; 0 for no path. A motion with a stored
     path is always integrated, and its state is never scaled."""
     tip: tuple[float, float] | None = None
     frames: int = 0
@@ -64,10 +64,10 @@ class CycleRequest:
 
 @dataclass(frozen=True, kw_only=True)
 class Cycle:
-    """Outcome of the task limit_cycle for one rod, with the quantities of its cycle; NaN or None for an
-    unknown quantity.
+    """Outcome of the task limit_cycle for one rod, with the quantities of the cycle; unknown quantities are
+    NaN or None.
 
-    On a torus only the multipliers are known, of the unstable cycle inside the torus. Time series over a
+    On a torus only the multipliers of the unstable cycle inside the torus are known. Time series over a
     period start where the tip's y rises through its mean.
     """
 
@@ -83,8 +83,8 @@ class Cycle:
     second_state: int = SecondState.not_known
     """A `SecondState`: knowledge about a second stable state of the rod."""
     subcritical_F: float = nan
-    """Force, in k3/L^2, of the subcritical Hopf point that makes a second stable state possible; NaN if none
-    is known."""
+    """Force, in k3/L^2, of the subcritical Hopf point that makes a second stable state possible; NaN if no
+    such Hopf point is known."""
     elements: int = 0
     order: int = 0
     measures: Measures = Measures()
@@ -108,7 +108,7 @@ class Cycle:
     motion: MotionShapes | None = None
     """Shapes of the rod from the start of the motion, if requested."""
     neighbour: Neighbour | None = None
-    """Data of this cycle from which the next rod of a chain starts; None outside a chain."""
+    """Data of this cycle for the start at the next rod of a chain; None outside a chain."""
 
 
 def with_measures(
@@ -132,7 +132,7 @@ def with_measures(
 
 
 def padded_or_cut(values: Array | Complex, count: int, filler: complex) -> Any:
-    """The first `count` of m values, (count,), filled up with `filler` if m is smaller than `count`."""
+    """The first `count` of the entries `values`, (m,), padded with `filler` if m < count: (count,)."""
     first = np.full(count, filler, values.dtype)
     first[: len(values)] = values[:count]
     return first

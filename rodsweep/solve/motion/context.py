@@ -1,4 +1,5 @@
-"""Record that every callback of a TS receives: rod, mesh, steps, and the state of Newton's method."""
+"""Context record that PETSc passes to every callback of a TS: rod, mesh, steps, and state of Newton's
+method."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -17,8 +18,8 @@ from .time_scheme import EXTRAPOLATION_POINTS
 CONSTANTS_PER_JUMP_SIDE = len(COLUMNS)
 """Number of material constants that are stored for each side of a jump of the material."""
 MAX_STAGES = 1 + max(max(stages) for stages in EXTRAPOLATION_POINTS.values())
-"""Maximum number of stages of a time step that are stored for extrapolation, the state at the start
-included."""
+"""Maximum number of stages of a time step that are stored for extrapolation, including the state at the
+start."""
 MAX_STAGE_POINTS = max(
     len(this) + len(last) for stages in EXTRAPOLATION_POINTS.values() for this, last in stages.values()
 )
@@ -30,9 +31,9 @@ ROD = (*(name for name in NodalRod._fields if name not in ("unknown_velocities",
 compliances. `crushed`: value of z1 with h1 = 0 at each node but the tip, (nodes,)."""
 ARRAYS = ("jacobian", "base", "times", "states", "points", "constant", "rates")
 """Fields of `CONTEXT` with the addresses of a `Workspace`'s arrays: the last Jacobian, (unknowns, unknowns);
-the state at which a step's matrix is made, (unknowns,); times, (2 MAX_STAGES,), and states, (2 MAX_STAGES,
-unknowns), of the stages of this step and the last; extrapolation points of each stage, (MAX_STAGES,
-MAX_STAGE_POINTS); the constant of a stage's equation and the rates f, (unknowns,) each."""
+the state at which a step's matrix is evaluated, (unknowns,); times, (2 MAX_STAGES,), and states, (2
+MAX_STAGES, unknowns), of the stages of this step and of the last step; extrapolation points of each stage,
+(MAX_STAGES, MAX_STAGE_POINTS); the constant of a stage's equation and the rates f, (unknowns,) each."""
 HANDLES = ("ts", "matrix", "ksp", "residual", "correction")
 """Fields of `CONTEXT` with the handles of PETSc objects."""
 CONTEXT = np.dtype(
@@ -45,7 +46,7 @@ CONTEXT = np.dtype(
         ("shift", FLOAT),  # shift of the last matrix
         ("last_matrix", WHOLE),  # handle of the last matrix
         ("matrix_state", WHOLE),  # PETSc's state number of this matrix, which increases with every change
-        ("factorisations", WHOLE),  # number so far, for tests
+        ("factorisations", WHOLE),  # number of LU factorisations so far, for tests
         ("contraction", FLOAT),  # ratio of successive steps of Newton's method
         ("measured", WHOLE),  # whether the contraction was measured with the present matrix
         ("growing", WHOLE),  # number of successive growing Newton steps
@@ -58,8 +59,8 @@ CONTEXT = np.dtype(
         ("current", WHOLE),  # 0 or 1: half of `times` and `states` for this step
         ("stages", WHOLE),  # number of known stages of this step
         ("steps", WHOLE),  # number of known steps before this one, at most 1
-        ("length", FLOAT),  # of this step, in tau2
-        ("middle", FLOAT),  # time within the step at which the matrix is made, in units of the step
+        ("length", FLOAT),  # length of this step, in tau2
+        ("middle", FLOAT),  # time at which the matrix is evaluated, as a fraction of the step
         ("rows", WHOLE),  # address of the stored steps, a row (time, state) each, allocated by compiled code
         ("stored", WHOLE),  # number of stored steps
         ("capacity", WHOLE),  # number of steps for which memory is allocated
@@ -76,11 +77,11 @@ OUTPUTS, MATRIX_STATE = (CONTEXT_FIELDS[name][1] for name in ("outputs", "matrix
 """Offsets, in bytes, of the fields of `CONTEXT` into which PETSc's functions write."""
 
 UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
-"""Values of `matrix_due`: no new Newton matrix is due, or the state at which it is evaluated."""
+"""Values of `matrix_due`: no new matrix is due, or the state at which the new matrix must be evaluated."""
 
 
 def arrays_of(beam: Beam) -> dict[str, Array]:
-    """Arrays of the rod `beam` by the names in `ROD`, of any shapes."""
+    """Arrays of the rod `beam` by the names in `ROD`; the shapes differ."""
     own = beam.nodal._asdict() | {"roots": beam.sqrt_compliance, "crushed": beam.crushing_z1}
     return {name: own[name] for name in ROD}
 

@@ -1,10 +1,10 @@
-"""The rod bent until its tip is at a given point (x, y): the start of a motion that a user chooses.
+"""The rod bent until its tip is at a given point (x, y): a start of a motion chosen by the user.
 
-Of all curvatures Pi that put the tip at (x, y) the bent rod has those with the least integral of Pi^2. A
-force at the tip, without moment, bends a rod of constant bending stiffness so (an elastica). Stretch and
-shear are those of the straight rod under its follower force. Pi vanishes at the tip, so the state satisfies
-the rod's own conditions there. Newton's method solves for the curvatures and the force f, with W the weights
-of the quadrature,
+Of all curvatures Pi for which the tip is at (x, y), the bent rod has the one with the smallest integral of
+Pi^2. A rod of constant bending stiffness under a force at the tip, without moment, has this shape (an
+elastica). Stretch and shear are as in the straight rod under its follower force. Pi vanishes at the tip, so
+the state satisfies the boundary conditions there. Newton's method solves for the curvatures and the force f,
+with W the weights of the quadrature,
 
     W Pi - f . d(x, y)/dPi = 0,    (x, y)(Pi) = target,
 
@@ -23,44 +23,44 @@ from ...discretization.elements.mesh import shape_from_strains
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HeldTipSettings:
-    """Settings for the rod that is bent until its tip is at a given point."""
+    """Settings of the rod that is bent until its tip is at a given point."""
 
     reach: float = 0.98
-    """Largest distance of the tip from the clamp, in lengths of the straight rod: at 1 the rod cannot be
-    bent."""
+    """Largest distance of the tip from the clamp, divided by the length of the straight rod: at 1 the rod
+    cannot be bent."""
     first_angle: float = 0.8
-    """Angle of the tip, rad, where the path begins: the tip of a straight rod cannot move towards the
-    clamp."""
+    """Polar angle of the tip, in rad, at the start of the path of targets: the tip of a straight rod cannot
+    move towards the clamp."""
     first_step: float = 0.1
-    """First step of the target, as a fraction of its path."""
+    """First step of the target, as a fraction of the path of targets."""
     least_step: float = 1e-3
-    """Step of the target, as a fraction of its path, below which the search ends at the last point
-    reached."""
+    """If a step of the target, as a fraction of the path, must be smaller than this, the search ends at the
+    last target reached."""
     max_iterations: int = 12
     """Maximum number of Newton iterations for one target."""
     placed: float = 1e-10
     """Tolerance of Newton's method: distance of the tip from its target, in L."""
     largest_turn: float = 1.0
-    """Largest change of theta by a Newton step, in rad. Newton's method fails beyond it, because a longer
-    step may lead to a different shape."""
+    """Newton's method fails if a Newton step changes theta by more than this, in rad: a longer step may lead
+    to a different shape."""
 
 
 HELD_TIP = HeldTipSettings()
 
 
 def held_by_tip(beam: Beam, x: float, y: float) -> Array:
-    """The state z, (unknowns,), of the rod bent until the tip is at (x, y) in L.
+    """The state z, (unknowns,), of the rod bent until the tip is at (x, y), in L.
 
     A target beyond `HeldTipSettings.reach` is moved towards the clamp. If Newton's method fails on the path
     of targets, the state for the last target reached is returned.
     """
     bending = _Bending(beam)
     side = -1.0 if y < 0 else 1.0
-    # A moment that falls to 0 at the free tip, as under a force there; its integral is the angle.
+    # The curvature falls to 0 at the free tip, as under a force at the tip; its integral is the angle.
     Pi = 2 * side * HELD_TIP.first_angle * (1 - beam.mesh.positions)
     first = bending.tip(Pi)
     start = np.array([hypot(*first), atan2(first[1], first[0])])
-    # A tip as far away as the rod is long would make it straight, where the force is not determined.
+    # At a distance equal to its length the rod would be straight, and the force not determined.
     end = np.array([min(hypot(x, y), HELD_TIP.reach * bending.length), atan2(y, x)])
     force = np.zeros(2)
     reached = 0.0
@@ -78,8 +78,8 @@ def held_by_tip(beam: Beam, x: float, y: float) -> Array:
 
 
 class _Bending:
-    """A rod that only bends: position of its tip as a function of Pi. length: length of the straight rod, in
-    L."""
+    """Bending of a rod with fixed stretch and shear: position of the tip as a function of Pi. length: length
+    of the straight rod, in L."""
 
     def __init__(self, beam: Beam) -> None:
         self.mesh = beam.mesh
@@ -90,7 +90,8 @@ class _Bending:
         unit = np.zeros((3, size, self.mesh.element_nodes.size))
         unit[2] = np.eye(size)[:, self.mesh.element_nodes.ravel()]
         self.angles = shape_from_strains(beam.mesh, unit, np.zeros(3))[2].T
-        """Matrix from Pi to theta, both at all nodes; at a jump of the material from the mean Pi."""
+        """Matrix from Pi to theta, both at all nodes; at a jump of the material it uses the mean of both
+        values of Pi."""
 
     def tip(self, Pi: Array) -> Array:
         """Position (x, y) of the tip, (2,), for curvatures Pi at all nodes, (nodes + 1,)."""
@@ -102,20 +103,20 @@ class _Bending:
         return self._beam.state_of_strains(np.stack([self.h1, self.h2, Pi]))
 
     def placed(self, Pi: Array, force: Array, place: Array) -> tuple[Array, Array] | None:
-        """(curvatures Pi, (nodes + 1,); force, (2,)) with the tip at `place`, (2,); None if Newton's method
-        fails."""
+        """(curvatures Pi, (nodes + 1,); force, (2,)) for which the tip is at `place`, (2,), by Newton's
+        method from `Pi` and `force`; None if Newton's method fails."""
         size = len(Pi)
         weights = self.mesh.quadrature
         matrix = np.zeros((size + 2, size + 2))
         for _ in range(HELD_TIP.max_iterations):
             first, second = self._derivatives(Pi, force)
-            # Bending energy minus the work of the force, with the tip's place as two constraints.
+            # Bending energy minus the work of the force, with the tip's position as two constraints.
             matrix[:size, :size] = np.diag(weights) - second
             matrix[:size, size:] = -first.T
             matrix[size:, :size] = first
             misplaced = place - self.tip(Pi)
             change = np.linalg.solve(matrix, np.append(first.T @ force - weights * Pi, misplaced))
-            # A step that turns the rod by a radian has left the range of the linearisation.
+            # A step that turns the rod by a radian is outside the range of the linearisation.
             if not np.abs(self.angles @ change[:size]).max() < HELD_TIP.largest_turn:
                 return None
             Pi = Pi + change[:size]
@@ -125,7 +126,8 @@ class _Bending:
         return None
 
     def _derivatives(self, Pi: Array, force: Array) -> tuple[Array, Array]:
-        """d(x, y)/dPi, (2, nodes + 1), and d^2(f . (x, y))/dPi^2, (nodes + 1, nodes + 1), by quadrature."""
+        """(d(x, y)/dPi, (2, nodes + 1); d^2(f . (x, y))/dPi^2, (nodes + 1, nodes + 1)) for the force f, by
+        quadrature."""
         A = self.angles
         w = self.mesh.quadrature
         c = np.cos(A @ Pi)

@@ -1,9 +1,10 @@
 """Time integration of one rod from one state by PETSc's TS: the steps, and the reason why the run ended.
 
-The default is fully implicit ARKIMEX of order 5, the fastest scheme in measurements. Three measures make it
-fast. Stages are extrapolated from the stages of this step and the last. Newton's method is compiled, and its
-tolerance is a fraction of the step's tolerance. Each step has a single Jacobian, at the state predicted for
-the middle of the step; a Jacobian at the start costs a quarter more iterations.
+The default is fully implicit ARKIMEX of order 5, the fastest scheme in measurements. Three measures reduce
+the time further. Stages are extrapolated from the stages of this step and of the last step. Newton's method
+is compiled, and its tolerance is a fraction of the step's tolerance. Each step has a single Jacobian, at the
+state predicted for the middle of the step; a Jacobian at the start of the step needs a quarter more
+iterations.
 """
 
 from collections.abc import Callable
@@ -26,34 +27,35 @@ from .time_scheme import TimeScheme
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IntegratorSettings:
-    """Settings for runs of the time integration: tolerances, limits, and the run of `relaxed`."""
+    """Settings for runs of the time integration: tolerances, limits, and the run in `relaxed`."""
 
     stage_rounding: float = 1e-9
-    """Newton step, in units of the largest component of the start state, below which stagnation counts as
-    rounding error and the iteration ends."""
+    """The iteration ends, as converged, if it stagnates at Newton steps smaller than this, divided by the
+    largest component of the initial state."""
     first_step_share: float = 1e-3
     """Default first time step, as a fraction of the run's duration."""
     max_steps: int = 100_000
     """Default maximum number of time steps of a run."""
     max_rejections: int = 30
-    """Maximum number of successive rejections of one time step; PETSc ends the run beyond it."""
+    """PETSc ends the run after more than this number of successive rejections of one time step."""
     max_failed_stages: int = 1_000_000
-    """Maximum number of stages in a run at which Newton's method fails; each failure shortens the step."""
+    """PETSc ends the run after more than this number of stages at which Newton's method fails; each failure
+    shortens the step."""
     relaxation_share: float = 1e-3
-    """Duration of the run of `relaxed`, in periods."""
+    """Duration of the run in `relaxed`, as a fraction of the period."""
     relaxation_steps: float = 1e5
-    """Period divided by the first time step of `relaxed`; the fast components decay within ten steps."""
+    """Period divided by the first time step in `relaxed`; the fast components decay within ten steps."""
     relaxation_tolerance: float = 1e-3
-    """Local error per time step of `relaxed`, in units of the motion's size."""
+    """Relative local error per time step of the run that relaxes the fast components (see `relaxed`)."""
     kept: int = 8
-    """Maximum number of integrators in the pool, for further runs with the same mesh and scheme."""
+    """Maximum number of integrators in the pool, which serve further runs with the same mesh and scheme."""
 
 
 INTEGRATOR = IntegratorSettings()
 
 
 RELAXATION = TimeScheme("beuler", "", tolerance=INTEGRATOR.relaxation_tolerance, prefix="cycle_relaxation_")
-"""Time scheme of `relaxed`: backward Euler, which damps fast components."""
+"""Time scheme of the run in `relaxed`: backward Euler, which damps fast components."""
 
 
 class RunEnding(IntEnum):
@@ -68,8 +70,8 @@ class RunEnding(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Trajectory:
-    """Result of a run: times in tau2, (steps + 1,), states z, (steps + 1, unknowns), why the run ended, and
-    PETSc's error message."""
+    """Result of a run: times in tau2, (steps + 1,), states z, (steps + 1, unknowns), reason for the end of
+    the run, and PETSc's error message."""
 
     ending: RunEnding
     times: Array
@@ -79,7 +81,8 @@ class Trajectory:
 
 @dataclass(frozen=True, slots=True)
 class RunLimit:
-    """Conditions that end a run early: a step to a state z with `reached(z)` true, or `max_steps` steps."""
+    """Conditions that end a run early: a step ends at a state z for which `reached(z)` is true, or
+    `max_steps` steps are made."""
 
     reached: Callable[[Array], bool] | None = None
     max_steps: int = INTEGRATOR.max_steps
@@ -129,7 +132,8 @@ class Integrator:
         return ts
 
     def _stop_at_limit(self, ts: "PETSc.TS") -> None:
-        """Post-step of a run with a `RunLimit.reached`: stores the step, and ends the run at the limit."""
+        """Post-step function of a run with a `RunLimit.reached`: stores the step, and ends the run at the
+        limit."""
         end_step.ctypes(ts.handle)
         if self._limit.reached is not None and self._limit.reached(self.vector.array_r.copy()):
             ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_USER)
@@ -137,12 +141,12 @@ class Integrator:
     def run(
         self, beam: Beam, z: Array, duration: float, step: float = 0.0, limit: RunLimit = UNLIMITED
     ) -> Trajectory:
-        """Integrates from the state z, (unknowns,), over `duration`, in tau2, or to the limit. A failure is a
-        `RunEnding`, not an exception.
+        """Integrates from the state z, (unknowns,), over `duration`, in tau2, or to the limit. A failure is
+        returned as a `RunEnding`, never raised.
 
         step: the first time step, or every time step of a scheme with equal steps; 0 for the default.
-        Tolerances are relative to the largest component of z, so that small motions are integrated as
-        accurately as large ones.
+        Tolerances are relative to the largest component of z, so that small and large motions are integrated
+        with the same relative accuracy.
         """
         ts = self.ts
         scheme = self.scheme
@@ -200,7 +204,8 @@ _kept: LruPool[tuple[Mesh, TimeScheme], Integrator] = LruPool(lambda key: Integr
 
 
 def integrator(mesh: Mesh, scheme: TimeScheme) -> Integrator:
-    """The pooled integrator for `mesh` and `scheme`; a new integrator after an error inside PETSc."""
+    """The pooled integrator for `mesh` and `scheme`; replaced by a new integrator after an error inside
+    PETSc."""
     key = mesh, scheme
     if _kept.get(key).broken:
         _kept.drop(key)
@@ -213,12 +218,12 @@ def forget_integrators() -> None:
 
 
 def relaxed(beam: Beam, z: Array, period: float) -> Array:
-    """The state z, (unknowns,), after a thousandth of `period`, when the fast components of the start have
+    """The state, (unknowns,), a thousandth of `period` after the state z, when the fast components of z have
     decayed.
 
-    A scaled or interpolated state has rates of 1e10/tau2 in the components that k1, k2 and 1/gamma3 make
-    fast. The explicit first stage of ARKIMEX does not damp these components at any step length; backward
-    Euler damps them within ten steps. If the run fails, z itself is returned.
+    A scaled or interpolated state has rates of 1e10/tau2 in the components with the fast relaxation due to
+    k1, k2 and 1/gamma3. The explicit first stage of ARKIMEX does not damp these components at any step
+    length; backward Euler damps these components within ten steps. If the run fails, z itself is returned.
     """
     duration = INTEGRATOR.relaxation_share * period
     step = period / INTEGRATOR.relaxation_steps

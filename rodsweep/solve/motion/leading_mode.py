@@ -34,6 +34,6 @@ def leading_mode(beam: Beam) -> LeadingMode:
     k = int(np.lexsort((values.imag, values.real))[-1])
     z = np.zeros(layout.unknowns, complex)
     layout.transverse(z)[:] = vectors[:, k]
-    # The tip's y is linear in z about the straight rod, and its 'velocity' along z is the deflection.
+    # The tip's y is linear in z about the straight rod, so the tip's 'velocity' along z is its deflection.
     tip = complex(*(beam.tip_velocity(rest, part)[1] for part in (z.real, z.imag)))
     return LeadingMode(complex(values[k]), z / tip)

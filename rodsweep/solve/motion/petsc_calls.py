@@ -16,8 +16,8 @@ ENUM = types.int32
 
 
 def _external(name: str, *arguments: Any) -> Any:
-    """The libpetsc function `int name(arguments)` for compiled code. Code with this function can be cached on
-    disk, code with a ctypes function cannot.
+    """The libpetsc function `int name(arguments)` for compiled code. Compiled code that calls a function of
+    this type can be cached on disk; code that calls a ctypes function cannot.
     """
     return _found(name, typing.signature(types.int32, *arguments))
 

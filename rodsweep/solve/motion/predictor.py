@@ -1,6 +1,6 @@
-"""Prediction of a Runge-Kutta stage by a polynomial in time through stages of this step and the last.
+"""Prediction of a Runge-Kutta stage by a polynomial in time through stages of this step and of the last step.
 
-PETSc's own prediction is linear; its error is thousands of tolerances. The error of the polynomial is ten
+PETSc's prediction is linear; its error is thousands of tolerances. The error of the polynomial is ten
 tolerances, which saves every second Newton iteration. Stages of a method have different errors, so the best
 extrapolation points depend on the method's tableau: `time_scheme.EXTRAPOLATION_POINTS`.
 """
@@ -24,12 +24,12 @@ from .time_scheme import EXTRAPOLATION_POINTS
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StagePredictorSettings(CompiledSettings):
     """Settings for the prediction of Runge-Kutta stages and for the state at which Newton's matrix is
-    made."""
+    evaluated."""
 
     largest_step_ratio: float = 2.0
-    """Largest ratio of this step to the last for which stages are extrapolated. With 1, no growing step would
-    be extrapolated: Newton's method would stop too early at PETSc's prediction, with errors of a motion five
-    times as large."""
+    """Stages are extrapolated only if this step is at most `largest_step_ratio` times as long as the last
+    step. With 1, no growing step would be extrapolated: Newton's method would stop too early at PETSc's
+    prediction, with errors of a motion five times as large."""
     middle: float = 0.5
     """Time at which the state for Newton's matrix is predicted, as a fraction of the step; 0 (the start) for
     methods of a single stage."""
@@ -39,14 +39,14 @@ class StagePredictorSettings(CompiledSettings):
 STAGE_PREDICTOR = StagePredictorSettings()
 
 NO_POINT = -1
-"""Fills the unused entries of the array of extrapolation points."""
+"""Value of the unused entries in the array of extrapolation points."""
 
 
 def points_of(variant: str) -> NDArray[np.int64]:
     """Indices of the stages through which each stage is extrapolated, for the ARKIMEX type `variant`,
     (MAX_STAGES, MAX_STAGE_POINTS); unused entries are NO_POINT.
 
-    An index k of this step is k, an index k of the last step is MAX_STAGES + k.
+    Stage k of this step has the index k, stage k of the last step the index MAX_STAGES + k.
     """
     points = np.full((MAX_STAGES, MAX_STAGE_POINTS), NO_POINT)
     for stage, (this, last) in EXTRAPOLATION_POINTS.get(variant, {}).items():
@@ -57,8 +57,8 @@ def points_of(variant: str) -> NDArray[np.int64]:
 
 @c_function(POINTER)
 def begin_step(ts: int) -> int:
-    """PETSc's pre-step: stores the stages of the step before as the last step, and requests Newton's matrix
-    at the predicted middle of the new step."""
+    """PETSc's pre-step function: the stages of the finished step become those of the last step, and Newton's
+    matrix at the predicted middle of the new step is requested."""
     address = np.empty(1, np.int64)
     context_of_ts(ts, address.ctypes.data)
     context = address[0]
@@ -70,7 +70,7 @@ def begin_step(ts: int) -> int:
     states = states_of(c)
     base = floats(c.base, c.unknowns)
     last = c.current * MAX_STAGES
-    # Two halves of one memory take turns: this step's stages and the last one's.
+    # The two halves of the array take turns: stages of this step and of the last step.
     c.current = 1 - c.current
     now = c.current * MAX_STAGES
     time_of(ts, at)
@@ -84,7 +84,7 @@ def begin_step(ts: int) -> int:
     c.length = real[0]
     base[:] = states[now]
     if c.stages > 0:
-        # A matrix at the predicted middle of the step contracts better at all stages than one at the start.
+        # A matrix at the predicted middle of the step contracts better than a matrix at the start.
         base += (states[now] - states[last]) * (c.middle * c.length / (times[now] - times[last]))
     c.steps = min(c.stages, 1)
     c.stages = 1
@@ -111,7 +111,7 @@ def extrapolate(points: NDArray[np.int64], times: Array, states: Array, t: float
 
 @compiled
 def predict(c: Any, guess: Array) -> None:
-    """Writes the predicted stage at time `c.time` into `guess`, (unknowns,); leaves `guess` unchanged if no
+    """Writes the predicted stage at time `c.time` into `guess`, (unknowns,); `guess` is unchanged if no
     extrapolation is possible."""
     if c.stages >= MAX_STAGES or not c.steps:
         return
@@ -120,10 +120,10 @@ def predict(c: Any, guess: Array) -> None:
     times = times_of(c)
     now = c.current * MAX_STAGES
     last = MAX_STAGES - now
-    # Beyond this ratio the last step is too short to extrapolate from, and PETSc's own guess stays.
+    # Beyond this ratio the last step is too short to extrapolate from, and PETSc's guess is used.
     if len(points) and c.length <= STAGE_PREDICTOR.largest_step_ratio * (times[now] - times[last]):
-        # Points count from the present half; those of the last step are MAX_STAGES on, which the modulus
-        # wraps.
+        # Indices start at the present half; indices of the last step are larger by MAX_STAGES, modulo
+        # 2 MAX_STAGES.
         extrapolate((points + now) % (2 * MAX_STAGES), times, states_of(c), c.time, guess)
 
 

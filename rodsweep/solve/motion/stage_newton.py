@@ -1,9 +1,9 @@
-"""Newton's method for a stage of a time step: the whole method as a SNESSHELL, or the stopping test of
+"""Newton's method for a stage of a time step: the complete method as a SNESSHELL, or the stopping test of
 PETSc's method.
 
-The C functions are called by PETSc, as in `rodsweep.solve.motion.callbacks`. PETSc's own Newton method, which
-options may select, takes three times as long per iteration: evaluation of f and solution of the linear system
-are cheap compared with PETSc's overhead.
+PETSc calls the C functions as in `rodsweep.solve.motion.callbacks`. PETSc's Newton method, which options may
+select, takes three times as long per iteration: evaluation of f and solution of the linear system are cheap
+compared with PETSc's overhead.
 """
 
 from dataclasses import dataclass
@@ -53,21 +53,22 @@ class StageNewtonSettings(CompiledSettings):
     Newton steps."""
 
     new_matrix_contraction: float = 0.3
-    """Contraction above which a new matrix is made at the iterate."""
+    """If the contraction exceeds this, a new matrix is computed at the present iterate."""
     stagnant: float = 0.5
-    """Contraction above which Newton steps as small as rounding error end the iteration, as converged."""
+    """If the contraction exceeds this and the Newton steps are as small as rounding error, the iteration ends
+    as converged."""
     diverging: float = 2.0
-    """Contraction above which a Newton step counts as growing."""
+    """A Newton step is growing if the contraction exceeds this."""
     max_growing: int = 2
     """Number of successive growing Newton steps after which the iteration has failed."""
     min_contraction_ratio: float = 0.3
-    """Smallest ratio of the newly stored contraction to the stored one, so that one lucky step does not lower
-    it too far."""
+    """Smallest ratio of the new contraction to the stored contraction, so that one exceptionally small step
+    does not reduce the stored contraction too much."""
     first_iteration_safety: float = 3.0
-    """Safety factor on the contraction of the stage before, at the first iteration of a stage; with 1 the
-    errors of a motion double."""
+    """Safety factor on the stored contraction, from the previous stage, at the first iteration of a stage;
+    with 1 the errors of a motion double."""
     iterations_before_giving_up: int = 3
-    """Number of iterations before which growing Newton steps do not end the iteration."""
+    """Growing Newton steps end the iteration only after more than this number of iterations."""
 
 
 STAGE_NEWTON = StageNewtonSettings()
@@ -78,11 +79,11 @@ ITERATING, STEP_SMALL, NOT_FINITE, NOT_CONTRACTING = 0, 4, -4, -5
 
 @compiled
 def linearise_at_start(c: Any) -> None:
-    """After a failed stage, requests Newton's matrix of the repeated, shorter step at the state at the start
+    """After a failed stage, requests that the matrix of the repeated, shorter step be evaluated at the start
     of the step.
 
-    The last matrix may belong to a diverged iterate and have entries that are not finite; all shorter steps
-    would fail with it.
+    The last matrix may belong to a diverged iterate and have entries that are not finite; with such a matrix
+    all shorter steps would fail.
     """
     floats(c.base, c.unknowns)[:] = states_of(c)[c.current * MAX_STAGES]
     c.matrix_due = AT_BASE
@@ -101,7 +102,7 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     if not np.isfinite(dx):
         linearise_at_start(c)
         return NOT_FINITE
-    # The first iteration has no step before it in this stage.
+    # The first iteration of a stage has no previous step.
     theta = dx / c.last_step if iteration > 1 and c.last_step > 0 else 0.0
     if iteration > 1:
         c.contraction = max(STAGE_NEWTON.min_contraction_ratio * c.contraction if c.measured else 0.0, theta)
@@ -125,7 +126,7 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
 def newton_test(  # noqa: PLR0913, PLR0917 - PETSc's signature
     snes: int, iteration: int, x: float, dx: float, size: float, reason: int, context: int
 ) -> int:
-    """Stopping test of PETSc's own Newton method, called after every iteration."""
+    """Stopping test for PETSc's Newton method, called after every iteration."""
     c = record_at(context, CONTEXT)
     answer = numba.carray(pointer(reason), (1,), np.int32)
     answer[0] = ITERATING
@@ -139,15 +140,15 @@ def newton_test(  # noqa: PLR0913, PLR0917 - PETSc's signature
 
 @compiled
 def state_equation(c: Any, at: int, snes: int, X: int) -> None:
-    """Gets the equation of a stage, shift x + constant - f(x) = 0, and its time from PETSc into the context
-    `c`.
+    """Determines the equation of a stage, shift x + constant - f(x) = 0, by calls of PETSc, and stores it in
+    the context `c`. at: address for outputs.
 
-    In every time scheme the slope dx/dt is affine in x. The residual without f at any x, and the shift, which
-    comes with the matrix, therefore determine the equation.
+    In every time scheme the slope dx/dt is affine in x. The residual without f at any x and the shift, which
+    PETSc passes with the matrix, therefore determine the equation.
     """
     n = c.unknowns
     outputs = integers(at, 3)
-    # PETSc's stage residual is affine in x but for f: one evaluation without f yields its constant.
+    # Without f, PETSc's stage residual is affine in x: one evaluation yields its constant.
     c.without_rate = 1
     c.error = stage_residual(snes, X, c.residual, c.ts)
     c.without_rate = 0
@@ -180,7 +181,8 @@ def norm(x: Array) -> float:
 
 @compiled
 def newton_step(c: Any, at: int, X: int) -> float:
-    """Makes one Newton step of the stage X in place; returns the 2-norm of the step."""
+    """Makes one Newton step from the stage X and writes the result to X; returns the 2-norm of the step. at:
+    address for outputs."""
     n = c.unknowns
     outputs = integers(at, 3)
     constant = floats(c.constant, n)

@@ -1,4 +1,4 @@
-"""Stores the time steps of a run in compiled code: a Python call after each step would take 1/7 of the
+"""Storage of the time steps of a run in compiled code: a Python call after each step would take 1/7 of the
 time."""
 
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ class StepRecordSettings(CompiledSettings):
     """Settings for the memory in which the time steps of a run are stored."""
 
     first_capacity: int = 256
-    """Number of time steps for which memory is allocated first; the memory doubles whenever it is full."""
+    """Number of time steps for which memory is allocated first; the memory is doubled whenever it is full."""
 
 
 STEP_RECORD = StepRecordSettings()
@@ -37,13 +37,13 @@ STEP_RECORD = StepRecordSettings()
 OUT_OF_MEMORY = 55
 """PETSc's error code for failed memory allocation, PETSC_ERR_MEM."""
 CONVERGED_USER = int(PETSc.TS.ConvergedReason.CONVERGED_USER)
-"""PETSc's TSConvergedReason with which a run is stopped before its end."""
+"""PETSc's TSConvergedReason for a run that is stopped before its end."""
 
 
 @compiled
 def store_step(c: Any, at: int, ts: int) -> int:
-    """Stores the time and the state of the `ts` as a row; ends the run if h1 <= 0 at a node, where the model
-    does not hold."""
+    """Stores time and state of `ts` as a row of the record; ends the run if h1 <= 0 at a node, where the
+    model is not valid. at: address for outputs."""
     n = c.unknowns
     outputs = integers(at, 3)
     if c.stored == c.capacity:
@@ -62,7 +62,7 @@ def store_step(c: Any, at: int, ts: int) -> int:
     row[1:] = z
     release_read(outputs[1], at + 16)
     c.stored += 1
-    # z1 is the first of three fields; h1 = 0 at its value in `crushed`.
+    # z1 is the first of three fields; h1 = 0 where z1 equals `crushed`.
     nodes = n // 3
     crushed = floats(c.crushed, nodes)
     for i in range(nodes):
@@ -74,7 +74,7 @@ def store_step(c: Any, at: int, ts: int) -> int:
 
 @c_function(POINTER)
 def end_step(ts: int) -> int:
-    """PETSc's post-step: stores the finished time step."""
+    """PETSc's post-step function: stores the finished time step."""
     address = np.empty(1, np.int64)
     context_of_ts(ts, address.ctypes.data)
     context = address[0]
@@ -92,7 +92,8 @@ def _freed(address: int) -> None:
 
 
 def take_steps(context: Any) -> Array:
-    """Rows (time, state) of the time steps stored in `context`, (steps, 1 + unknowns); frees their memory."""
+    """Rows (time, state) of the time steps stored in `context`, (steps, 1 + unknowns); frees the memory of
+    the stored steps."""
     address = int(context["rows"])
     kept = int(context["stored"])
     columns = int(context["unknowns"]) + 1

@@ -1,4 +1,4 @@
-"""Time scheme of the integration: PETSc's TS type, the tolerances, and the PETSc options for both."""
+"""Time scheme of the integration: PETSc's TS type, tolerances, and the corresponding PETSc options."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -25,27 +25,27 @@ EXTRAPOLATION_POINTS: Mapping[str, Mapping[int, tuple[tuple[int, ...], tuple[int
         7: ((0, 4, 6), (3,)),
     },
 }
-"""Extrapolation points of each stage, by variant of ARKIMEX: (stages of this step, stages of the last step).
-Stage 0 is the state at the start of a step. These sets had the smallest prediction errors of all sets of up
-to six points, in two dozen motions, mostly of stiff rods."""
+"""Extrapolation points of each stage, by ARKIMEX type: {stage: (stages of this step, stages of the last
+step)}. Stage 0 is the state at the start of a step. These sets had the smallest prediction errors of all sets
+of up to six points, in two dozen motions, mostly of stiff rods."""
 
 
 SNES_TYPES: Mapping[str, str] = {
     "rosw": "ksponly",
     **dict.fromkeys(("arkimex", "dirk", "bdf", "theta", "beuler", "cn"), "shell"),
 }
-"""PETSc's SNES type for each TS type; "newtonls" for all others. "shell" selects `stage_newton`, which
-requires that the unknown of a stage is the state at which f is evaluated; the TS type alpha, for example, has
-a different unknown."""
+"""PETSc's SNES type for each TS type; "newtonls" for TS types not in this table. "shell" selects
+`stage_newton`, which requires that the unknown of a stage is the state at which f is evaluated; the TS type
+alpha, for example, has a different unknown."""
 
 
 @dataclass(frozen=True, slots=True)
 class TimeScheme:
     """Time scheme: `family` is PETSc's TS type, `variant` its sub-type (for bdf: its order).
 
-    tolerance: local error per time step of each component of z, in units of the motion's size. newton: error
-    at which Newton's method for a stage stops, in units of `tolerance`. equal_steps: whether the step length
-    is constant. prefix: prefix of the PETSc options that override the scheme.
+    tolerance: local error per time step of each component of z, divided by the largest component of the
+    initial state. newton: Newton's method for a stage stops at the error newton * tolerance. equal_steps:
+    whether the step length is constant. prefix: prefix of the PETSc options that override the scheme.
     """
 
     family: str = "arkimex"
