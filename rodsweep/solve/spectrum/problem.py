@@ -114,7 +114,7 @@ class UniformProblem(TransverseProblem):
         return resolution_for(expected_wave_number(modes, self._wave), accuracy)
 
     def next_mesh_for(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
-        """The mesh for the largest wave number of `waves`, (modes,), at least as fine as the next finer mesh."""
+        """The mesh for the largest wave number of `waves`, (modes,), and finer than `mesh`."""
         asked = resolution_for(float(waves.max()), accuracy)
         return max(asked, finer_resolution(mesh), key=lambda each: each.unknowns)
 
