@@ -9,7 +9,7 @@ from surveyed import RODS
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum.path.arm_stretch import follow_stretch_of_arms
+from rodsweep.solve.spectrum.path.arm_points import follow_stretch_of_arms
 from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
 from rodsweep.solve.spectrum.path.stretch import Stretch, solve_stretch
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
