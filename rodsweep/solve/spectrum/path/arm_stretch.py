@@ -30,10 +30,10 @@ from ...backend.kept import forget_all
 from ...point import FAILURES
 from ..candidates import line_for_proof, lines_for_count
 from ..search import Search
-from ..spectrum import FollowedPoints, SpectrumRequest
+from ..spectrum import SpectrumRequest
 from .arm_following import follow_eigenvalues_of_arms
 from .arm_stretch_settings import ARM_STRETCH
-from .carried_count import assess_points, leading_eigenvalues
+from .carried_count import leading_eigenvalues
 from .prediction import Track, slice_track, start_track
 
 
@@ -58,19 +58,6 @@ class ArmInterval(NamedTuple):
         return int((self.proved_modes >= modes).sum())
 
 
-def follow_stretch_of_arms(path: Path, p: Array, request: SpectrumRequest) -> FollowedPoints | None:
-    """Spectra of the arms at p, (n,), from the first up to the last point reached; None if no point is
-    reached."""
-    found = follow_interval(path, p, request)
-    if found is None:
-        return None
-    for i in np.flatnonzero(found.proved_modes < request.modes).tolist():
-        here = slice_track(found.track, i, i + 1)
-        found.proved_modes[i] = count_at(path, found, float(found.p[i]), request.modes, here)
-    good, unstable = assess_points(found.track, found.proved_modes, request.modes, request.accuracy)
-    return FollowedPoints(*leading_eigenvalues(found.track, request.modes), unstable, good)
-
-
 def follow_interval(
     path: Path, p: Array, request: SpectrumRequest, before: ArmInterval | None = None
 ) -> ArmInterval | None:
@@ -85,7 +72,7 @@ def follow_interval(
     ):
         if best is not None and not (_too_few(best) or _proves_more(path, best, request, further)):
             break
-        found = _followed(path, p, request, further, before) if len(p) >= ARM_STRETCH.min_points else None
+        found = follow_with(path, p, request, further, before) if len(p) >= ARM_STRETCH.min_points else None
         if found is not None and (best is None or _is_better(found, best, request.modes)):
             best = found
         enough = best is not None and best.proved_points(
@@ -115,7 +102,11 @@ def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, furth
     """Whether following `further` additional modes would prove completeness at the middle one of the points
     without a proof."""
     left = np.flatnonzero(found.proved_modes < request.modes)
-    p = float(found.p[left[len(left) // 2]])
+    return proves_point(path, found, float(found.p[left[len(left) // 2]]), request, further)
+
+
+def proves_point(path: Path, found: ArmInterval, p: float, request: SpectrumRequest, further: int) -> bool:
+    """Whether following `further` modes would prove the arm at p, inside the interval `found`."""
     roots = _roots(path, p, request, further)
     if roots is None or len(roots.w) < request.modes:
         return False
@@ -127,10 +118,10 @@ def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, furth
         return False
 
 
-def _followed(
+def follow_with(
     path: Path, p: Array, request: SpectrumRequest, further: int, before: ArmInterval | None
 ) -> ArmInterval | None:
-    """As `follow_interval`, with exactly `further` modes followed in addition to the wanted modes."""
+    """As `follow_interval` of p, (n,), with exactly `further` modes in addition to the wanted modes."""
     first = _carried(before, float(p[0]), request, further)
     if first is None:
         first = first_eigenvalues(path, float(p[0]), request, further)
