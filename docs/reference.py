@@ -17,7 +17,7 @@ import numpy as np
 from pydantic.fields import FieldInfo
 
 from rodsweep.config.arm.section import ArmSection
-from rodsweep.config.document.refusals import what_is_allowed
+from rodsweep.config.document.refusals import allowed_values_text
 from rodsweep.config.json_schema import meanings_of
 from rodsweep.config.material import MaterialSection, ProfileTable
 from rodsweep.config.task.phase_diagram import PhaseDiagramConfig
@@ -300,7 +300,7 @@ def task_keys(task: str) -> str:
 def key_row(name: str, field: FieldInfo, meaning: str) -> list[str]:
     """A key as a row of a table."""
     default = "" if field.is_required() else yaml_of(field.default)
-    return [f"`{name}`", what_is_allowed(field), default, meaning]
+    return [f"`{name}`", allowed_values_text(field), default, meaning]
 
 
 def yaml_of(value: object) -> str:

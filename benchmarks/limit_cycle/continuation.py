@@ -16,7 +16,7 @@ import numpy as np
 from rodsweep.bench.limit_cycle.sweeping import (
     RODS,
     TIMED_POINT_COUNT,
-    ExactCycle,
+    AccurateCycle,
     rod_label,
     solve_from_neighbour,
     swept_rod,
@@ -139,7 +139,7 @@ def seconds_per_cycle(short: TimedRuns, long: TimedRuns) -> float:
     return (long.median - short.median) / (LONG_RUN_CYCLES - SHORT_RUN_CYCLES)
 
 
-def judged_measurement(exact: ExactCycle, m: Measurement, outcome: Any) -> Measurement:
+def judged_measurement(exact: AccurateCycle, m: Measurement, outcome: Any) -> Measurement:
     """The measurement `m` completed by the errors of its outcome, or by the reason of its failure.
 
     outcome: `AutoCycle` of AUTO, `Cycle` of rodsweep, or the exception raised.

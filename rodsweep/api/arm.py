@@ -168,7 +168,7 @@ class Arm(SlenderArm):
                 )
         options = dict(options)
         progress = options.pop("progress", None)
-        takes_load = "F" in CONFIGS[task].taken_of_a_rod(options)
+        takes_load = "F" in CONFIGS[task].rod_parameters_used(options)
         if takes_load and self.load is None:
             raise InputError(
                 f"{task} needs a load; give one, such as arm.replace(pressure='2 kPa') or "

@@ -19,7 +19,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import DRAGS
 from ..model.arm.quantities import LOADS, RELATIVE
 from ..model.material.build import STANDARD
-from ..solve.exclusive import signals_held
+from ..solve.exclusive import defer_signals
 from ..tasks.running.job import Job, job_of, machine_memory
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)
@@ -62,7 +62,7 @@ def _write_out_arm(task: str, tree: ConfigTree) -> None:
     parameters = tree.get("parameters", {})
     arm = parameters.get("arm")
     if isinstance(arm, SlenderArm):
-        loaded = "F" in CONFIGS[task].taken_of_a_rod(tree.get(task, {}))
+        loaded = "F" in CONFIGS[task].rod_parameters_used(tree.get(task, {}))
         names = [n for n in ArmSection.model_fields if n not in RELATIVE and (loaded or n not in LOADS)]
         known = with_load_in_si(arm) if loaded else arm
         given = {name: getattr(known, name) for name in names}
@@ -82,7 +82,7 @@ def with_load_in_si(arm: ArmKind) -> ArmKind:
     return with_known_load(arm)
 
 
-@signals_held
+@defer_signals
 def job_from(tree: ConfigTree) -> Job:
     """The validated job of a config tree; InputError, as on the command line, for bad input.
 
@@ -100,7 +100,7 @@ def job_from(tree: ConfigTree) -> Job:
     return job
 
 
-def refuse_unfit(tree: ConfigTree) -> None:
+def require_allowed_keys(tree: ConfigTree) -> None:
     """Raises InputError for a config tree that `job_from` refuses, before any rank of a run starts.
 
     For loads relative to flutter only the config is validated, because the points need a search for flutter,

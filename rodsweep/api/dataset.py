@@ -14,7 +14,12 @@ from ..config.values import short
 from ..errors import InputError
 from ..model.arm.quantities import ALL_QUANTITIES
 from ..results.file.content import SEAL_ATTRIBUTE, attribute_digests, variable_digest
-from ..results.file.recent import insert_records, journalled_points, journalled_reasons, read_unfolded
+from ..results.file.recent import (
+    insert_records,
+    journalled_points,
+    journalled_reasons,
+    read_file_and_journals,
+)
 from ..results.file.validation import ResultHeader, cleaned, open_whole, reading, reason_of
 from ..results.file.view import View
 from ..results.layouts import beside_points, layout_of
@@ -35,7 +40,7 @@ def open_result(path: str | Path) -> xr.Dataset:
     Raises InputError if the file is no result file, is damaged, or was changed by another program.
     """
     path = named_file_path(path, 'rs.open("RESULT.h5")')
-    return read_unfolded(path, lambda: _opened(path))
+    return read_file_and_journals(path, lambda: _opened(path))
 
 
 def named_file_path(given: object, example: str) -> Path:

@@ -181,7 +181,7 @@ class SoftRod:
                 raise unknown(name, known)
         options = dict(options)
         progress = options.pop("progress", None)
-        taken = CONFIGS[task].taken_of_a_rod(options)
+        taken = CONFIGS[task].rod_parameters_used(options)
         names = [name for name in (*taken, *OPTIONAL_PARAMETERS) if name in self._values]
         values: dict[str, Any] = {name: self._values[name] for name in names}
         tree = config_tree(task, values | self._given_material | options)

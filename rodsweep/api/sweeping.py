@@ -17,7 +17,7 @@ from ..config.document.call_arguments import in_sentences
 from ..config.document.reading import yaml_of
 from ..errors import EnvironmentIncomplete, InputError
 from ..tasks.running.unforeseen import describe_unforeseen, log_file
-from .asking import ConfigTree, config_tree, job_from, refuse_unfit
+from .asking import ConfigTree, config_tree, job_from, require_allowed_keys
 from .dataset import open_result
 from .solving import Display, progress_display, solve_here
 
@@ -58,7 +58,7 @@ def sweep(
         raise InputError(f"ranks = {ranks!r} is not allowed; it should be a whole number, 1 or above")
     tree = config_tree(task, keywords)
     if ranks is not None:
-        refuse_unfit(tree)
+        require_allowed_keys(tree)
         return _on_ranks(task, tree, ranks, strict, progress_display(progress, None, task))
     return solve_here(job_from(tree), None if strict else _warn, progress).dataset
 

@@ -156,7 +156,7 @@ def result_or_error(run: Callable[[Any], Outcome], case: Any) -> Outcome | Excep
         return error
 
 
-class JudgedCase(NamedTuple):
+class CaseWithErrorMeasure(NamedTuple):
     """A case on which methods are compared. judge: function from a result of a method to a dictionary with
     `error` and further fields of `Measurement`."""
 
@@ -168,13 +168,13 @@ class JudgedCase(NamedTuple):
 def measure_case(
     name: str, case: Any, contenders: Sequence[Contender], rounds: int, judge: Callable[[Any], dict[str, Any]]
 ) -> list[Measurement]:
-    """Measurements of all contenders on one case, timed in turn. name, case, judge: as in `JudgedCase`.
-    rounds: number of timed rounds."""
-    return measure_cases([JudgedCase(name, case, judge)], contenders, rounds)
+    """Measurements of all contenders on one case, timed in turn. name, case, judge: as in
+    `CaseWithErrorMeasure`. rounds: number of timed rounds."""
+    return measure_cases([CaseWithErrorMeasure(name, case, judge)], contenders, rounds)
 
 
 def measure_cases(
-    entries: Sequence[JudgedCase], contenders: Sequence[Contender], rounds: int
+    entries: Sequence[CaseWithErrorMeasure], contenders: Sequence[Contender], rounds: int
 ) -> list[Measurement]:
     """Measurements of all contenders on all cases `entries`, timed in turn. rounds: number of timed
     rounds."""

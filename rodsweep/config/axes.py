@@ -136,7 +136,7 @@ class Axes(LinearAxes):
 
         forced: whether F is a parameter of the task.
         """
-        arm.refuse_unfit()
+        arm.require_allowed_keys()
         arm.refuse_misuse(forced, self.given_axes)
         beside = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
         count = arm.count(math.prod(axis.size for axis in beside.values()))

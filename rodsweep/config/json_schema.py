@@ -51,12 +51,12 @@ def json_schema() -> dict[str, Any]:
         for section in sections_of(config):
             _describe_keys(definitions[section.__name__], section)
         if not config.others_may_be_needed:
-            condition = points_of(config.taken_of_a_rod({}), lists=not config.of_several_rods)
+            condition = points_of(config.rod_parameters_used({}), lists=not config.of_several_rods)
             schema["properties"]["parameters"] = {"allOf": [schema["properties"]["parameters"], condition]}
         tasks.append(schema)
     for section in definitions.values():
         with_bounds(section.get("properties", {}), definitions["Axis"])
-    restrict_arm(definitions["ArmSection"], definitions["Axis"])
+    add_arm_conditions(definitions["ArmSection"], definitions["Axis"])
     whole = {"oneOf": tasks, "definitions": definitions}
     for node in nodes_of(whole):
         for ours, theirs in BOUNDS.items():
@@ -152,7 +152,7 @@ def with_bounds(properties: Schema, axis: Schema) -> None:
             properties[name]["anyOf"] = [bounded(kind, parameter.allowed.bound, words) for kind in kinds]
 
 
-def restrict_arm(section: Schema, axis: Schema) -> None:
+def add_arm_conditions(section: Schema, axis: Schema) -> None:
     """Adds the conditions of an arm to its JSON schema `section`, in place: unit and sign of every quantity,
     exactly one kind of cross-section, and at most one load.
 

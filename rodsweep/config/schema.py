@@ -38,7 +38,7 @@ class Config(StrictSection):
 
     of_cycles: ClassVar[bool] = False
     """Whether the task solves the nonlinear motion of the rods."""
-    into_crushed: ClassVar[bool] = False
+    allows_crushed_rods: ClassVar[bool] = False
     """Whether a grid may contain crushed rods: True for tasks with the state `crushed`."""
 
     others_may_be_needed: ClassVar[bool] = False
@@ -51,7 +51,7 @@ class Config(StrictSection):
         """Names of the parameters of a point: the parameters that the task needs, and the optional parameters
         in the config.
         """
-        return (*self.taken_of_a_rod({}), *self.added)
+        return (*self.rod_parameters_used({}), *self.added)
 
     @property
     def added(self) -> tuple[str, ...]:
@@ -85,7 +85,7 @@ class Config(StrictSection):
         return self.build.standard and (tapers is None or bool((tapers.array() == 1).all()))
 
     @classmethod
-    def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
+    def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         """Names of the parameters of a rod that the task uses. options: options of the task, by name."""
         return NONLINEAR_PARAMETERS
 
@@ -155,7 +155,7 @@ class LinearConfig(Config):
     """Names of the parameters that only the nonlinear problem has but that some options of the task use."""
 
     @classmethod
-    def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
+    def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         return LINEAR_PARAMETERS
 
     @model_validator(mode="after")

@@ -122,7 +122,7 @@ class PageState:
 
     def yaml(self, task: str) -> str:
         """Config for `rodsweep run`, in YAML, with the rod or arm of the visible tab and the given task."""
-        taken = (*CONFIGS[task].taken_of_a_rod({}), *OPTIONAL_PARAMETERS)
+        taken = (*CONFIGS[task].rod_parameters_used({}), *OPTIONAL_PARAMETERS)
         values: dict[str, Any] = {n: v for n, v in self.parameters().items() if n in taken}
         if self.tab == "arm":
             values = {n: text for n, text in self.arm.items() if n != "pressure" or "F" in taken}

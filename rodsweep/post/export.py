@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..results.file.view import View
 from ..wording import counted
 from .tables import Table, Tables
-from .whole_file import written_whole
+from .whole_file import atomic_write
 
 SEPARATORS = {".csv": ",", ".tsv": "\t"}
 """Character between two columns, by the suffix of the output file."""
@@ -44,7 +44,7 @@ def export(view: View, output: Path, request: ExportRequest) -> str:
     if output.exists() and not request.replace:
         raise InputError(f"{output} exists already; --replace overwrites it, -o names another file")
     table = Tables(view).table(request.table, request.columns)
-    with written_whole(output) as stream:
+    with atomic_write(output) as stream:
         _write(table, SEPARATORS[output.suffix], request.units, stream)
     return _sentence(table, view)
 

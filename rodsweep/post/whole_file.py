@@ -24,7 +24,7 @@ def require_name(output: Path, endings: Sequence[str], noun: str, inputs: Sequen
 
 
 @contextmanager
-def written_whole(output: Path) -> Iterator[TextIO]:
+def atomic_write(output: Path) -> Iterator[TextIO]:
     """Context manager that opens a text file with a temporary name and, at the end, renames the file to
     `output`.
 

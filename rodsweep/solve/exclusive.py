@@ -40,20 +40,20 @@ def one_at_a_time(function: Callable[P, R]) -> Callable[P, R]:
     return call
 
 
-def signals_held(function: Callable[P, R]) -> Callable[P, R]:
+def defer_signals(function: Callable[P, R]) -> Callable[P, R]:
     """Decorator: while `function` runs, signal handlers run only at the solvers' progress reports; the
     handlers of the remaining signals run when `function` ends."""
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
-        with HeldSignals() as held, reporting_to(held.call_due):
+        with DeferredSignals() as held, reporting_to(held.call_due):
             return function(*values, **named)
 
     return call
 
 
 def solving(function: Callable[P, R]) -> Callable[P, R]:
-    """Decorator for a solve: combines `one_at_a_time` and `signals_held`.
+    """Decorator for a solve: combines `one_at_a_time` and `defer_signals`.
 
     An exception destroys all pooled solvers, because the exception may have interrupted a solver at work.
     """
@@ -66,10 +66,10 @@ def solving(function: Callable[P, R]) -> Callable[P, R]:
             forget_all()
             raise
 
-    return one_at_a_time(signals_held(call))
+    return one_at_a_time(defer_signals(call))
 
 
-class HeldSignals:
+class DeferredSignals:
     """Context in which Python's signal handlers wait for the next progress report or the end of the context.
 
     Python runs signal handlers in the main thread only; in another thread the context has no effect.

@@ -1,5 +1,5 @@
-"""Distribution of chunks of work items: the first rank takes chunks from the `Handout`, other ranks request
-chunks by messages.
+"""Distribution of chunks of work items: the first rank takes chunks from the `ChunkQueue`, other ranks
+request chunks by messages.
 
 The first rank solves points too. A thread of the first rank answers requests meanwhile, so that no rank waits
 for the end of a solve on the first rank. A solve may still delay the thread. Every rank therefore requests
@@ -14,7 +14,7 @@ from collections import deque
 from collections.abc import Callable
 
 from ..watch import SolvePosition
-from .handout import NO_WORK_LEFT, Handout, RankReport
+from .handout import NO_WORK_LEFT, ChunkQueue, RankReport
 from .points.ranges import IndexRange
 from .stop import StopRequest
 from .team import Team
@@ -45,10 +45,12 @@ WAIT_SECONDS = 0.05
 """Seconds for which an idle first rank waits for the handout to change before it polls for MPI messages."""
 
 
-class FirstRankClaims:
+class FirstRankRequests:
     """Claims chunks for the first rank, and answers the requests of all other ranks, also from a thread."""
 
-    def __init__(self, team: Team, handout: Handout, stop: StopRequest, show: Callable[[str, float], None]):
+    def __init__(
+        self, team: Team, handout: ChunkQueue, stop: StopRequest, show: Callable[[str, float], None]
+    ):
         """show: function (text on the progress of a long point, fractions of all unfinished points done,
         summed) that displays the progress.
         """

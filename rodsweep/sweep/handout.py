@@ -58,7 +58,7 @@ class RankReport:
     units."""
 
 
-class Handout:
+class ChunkQueue:
     """Queue of the unsolved units, on the first rank; safe to use from two threads. todo: ranges of units.
     ranks: number of ranks.
     """
@@ -131,8 +131,8 @@ class UnitChooser(Protocol):
     def wanted(self, results: Mapping[int, Any]) -> list[int]: ...
 
 
-class Pool(Handout):
-    """`Handout` whose units depend on the results of solved units, one unit in a chunk.
+class Pool(ChunkQueue):
+    """`ChunkQueue` whose units depend on the results of solved units, one unit in a chunk.
 
     work: chooses the next units from the results. results: by number of the unit, at first from an earlier
     run; reported results are added.

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..watch import SolveStopped, reporting_to
-from .claims import FirstRankClaims, OtherRankClaims
-from .handout import GIVE_BACK_AFTER, NO_WORK_LEFT, Handout, RankReport, chunk_seconds
+from .claims import FirstRankRequests, OtherRankClaims
+from .handout import GIVE_BACK_AFTER, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
 from .points.ranges import IndexRange
 from .stop import RankListener, StopRequest
 from .team import Team
@@ -75,14 +75,14 @@ class Loop:
     """Returns a description of a unit for the progress display."""
 
 
-def sweep(team: Team, todo: Handout, loop: Loop, shown: ProgressSink, stop: StopRequest) -> RankWork:
+def sweep(team: Team, todo: ChunkQueue, loop: Loop, shown: ProgressSink, stop: StopRequest) -> RankWork:
     """Solves every unit in `todo`, which is used on the first rank only; returns when all ranks have
     finished.
 
     An exception on any rank ends all ranks. After a stop request to any rank, each rank ends after the
     current point, or abandons the point after GRACE_SECONDS (see `stop`).
     """
-    claims = FirstRankClaims(team, todo, stop, shown.place) if team.first else OtherRankClaims(team, stop)
+    claims = FirstRankRequests(team, todo, stop, shown.place) if team.first else OtherRankClaims(team, stop)
     with suppress(SolveStopped), reporting_to(RankListener(claims, stop)):
         loop.prepare()
     shown(0)
@@ -95,7 +95,7 @@ class _RankLoop:
     def __init__(
         self,
         team: Team,
-        claims: FirstRankClaims | OtherRankClaims,
+        claims: FirstRankRequests | OtherRankClaims,
         loop: Loop,
         shown: ProgressSink,
         stop: StopRequest,
@@ -128,7 +128,7 @@ class _RankLoop:
                 results=self.loop.results(),
             )
             chunk = self.claims.claim(report)
-        if isinstance(self.claims, FirstRankClaims):
+        if isinstance(self.claims, FirstRankRequests):
             self.claims.close()
         self.team.wait_for_all()
         return RankWork(self.points, busy, time.monotonic() - started - busy, self.ended)
@@ -160,5 +160,5 @@ class _RankLoop:
             self.loop.keep(index, result)
             self.points += 1 if isinstance(index, int) else len(index)
             self.claims.between_points()
-            if isinstance(self.claims, FirstRankClaims):
+            if isinstance(self.claims, FirstRankRequests):
                 self.shown(self.claims.handout.points + self.points - before)

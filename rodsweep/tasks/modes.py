@@ -17,7 +17,7 @@ from ..results.layouts.variables import Filled, recorded
 from ..sweep.cost_estimate import Estimate, estimate_modes, estimate_spectra
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from .hopf.force_changes import force_changes
-from .parts import ProvedTask, points_text
+from .parts import CertifiedTask, points_text
 from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class ModesTask(ProvedTask):
+class ModesTask(CertifiedTask):
     """The task modes: leading modes and transient growth at every point."""
 
     config: ModesConfig

@@ -21,7 +21,7 @@ from .protocol import CheckRow, Task
 
 
 @dataclass(frozen=True, slots=True)
-class ProvedTask(Task):
+class CertifiedTask(Task):
     """Base class of tasks with a certificate, which proves that the list of modes or crossings is
     complete.
     """
@@ -103,7 +103,7 @@ class ProvedTask(Task):
 
 
 @dataclass(frozen=True, slots=True)
-class NonlinearTask(ProvedTask):
+class NonlinearTask(CertifiedTask):
     """Base class of tasks on cycles: near Hopf points, or on branches from Hopf points."""
 
     uncertified_risk: ClassVar[str] = "Hopf points may be missed"

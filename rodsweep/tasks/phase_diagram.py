@@ -11,7 +11,7 @@ from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
 from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_diagram
 from .diagram.curves import DiagramCurves
 from .diagram.records import cycles_record
-from .parts import ProvedTask
+from .parts import CertifiedTask
 from .protocol import CheckRow, Solver
 from .thresholds import crossing_values
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class PhaseDiagramTask(ProvedTask):
+class PhaseDiagramTask(CertifiedTask):
     """The task phase_diagram. A point of the task is a row: a line of rods over the first parameter."""
 
     config: PhaseDiagramConfig
@@ -76,7 +76,7 @@ class PhaseDiagramTask(ProvedTask):
         """Rows of `check`: the rows of a linear task and, if cycles are requested, a row on the nonlinear
         motion.
         """
-        linear = ProvedTask.check_rows(self)
+        linear = CertifiedTask.check_rows(self)
         if not self.config.phase_diagram.cycles:
             return linear
         nonlinear = ("nonlinear motion", True, "of the cycles; in the plane, geometrically exact")

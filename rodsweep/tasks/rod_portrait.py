@@ -48,7 +48,7 @@ class PortraitRequest:
         """Job of a task for this rod. options: options of the task, by name. F: force, None for tasks that
         vary the force.
         """
-        names = (*CONFIGS[task].taken_of_a_rod(options), *OPTIONAL_PARAMETERS)
+        names = (*CONFIGS[task].rod_parameters_used(options), *OPTIONAL_PARAMETERS)
         own = self.rod.parameters
         values: dict[str, Any] = {name: own[name] for name in names if name in own and name != "F"}
         values |= {"arm": dict(self.rod.arm)} if self.rod.arm else {}

@@ -23,7 +23,7 @@ from ..sweep.cost_estimate import Estimate, estimate_followed, estimate_spectra,
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.stretches import Stretches, StretchResult, stretches_along_longest_axis
 from .hopf.force_changes import force_changes
-from .parts import ProvedTask, points_text
+from .parts import CertifiedTask, points_text
 from .protocol import CheckRow, OrderedMap, Solver, on_this_rank
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class SpectrumTask(ProvedTask):
+class SpectrumTask(CertifiedTask):
     """The task spectrum: the leading eigenvalues of the straight rod at every point."""
 
     config: SpectrumConfig
@@ -130,7 +130,7 @@ class SpectrumTask(ProvedTask):
 
     def certificate(self) -> tuple[bool, str]:
         if self.config.spectrum.method == "determinant":
-            return ProvedTask.certificate(self)
+            return CertifiedTask.certificate(self)
         return False, f"spectrum.method: {self.config.spectrum.method}; {self.uncertified_risk}"
 
     def cost(self) -> Estimate:

@@ -11,7 +11,7 @@ from ..config.task.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_lines
-from .parts import ProvedTask, crushing_clause, points_clause
+from .parts import CertifiedTask, crushing_clause, points_clause
 from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ addition to F."""
 
 
 @dataclass(frozen=True, slots=True)
-class ThresholdsTask(ProvedTask):
+class ThresholdsTask(CertifiedTask):
     """The task thresholds: thresholds and all crossings of every rod along F."""
 
     config: ThresholdsConfig

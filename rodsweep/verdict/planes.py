@@ -10,7 +10,7 @@ from ..model.arm.quantities import UNITS
 from ..model.units import compact
 from ..solve.changes.unstable_modes import ChangeKind
 from .flutter import FlutterRange, flutter_range
-from .relative import quarter_turned
+from .relative import with_exchanged_sides
 
 A = TypeVar("A", bound=SlenderArm)
 
@@ -57,7 +57,7 @@ def planes_of(arm: SlenderArm) -> Planes:
     """
     if arm.isotropic:
         return Planes(PlaneOfMotion(arm, flutter_range(arm)))
-    other = quarter_turned(arm)
+    other = with_exchanged_sides(arm)
     own = PlaneOfMotion(arm, flutter_range(arm), "the plane of its height")
     across = PlaneOfMotion(other, flutter_range(other), "the plane of its width")
     if across.flutter_loads[0] < own.flutter_loads[0]:

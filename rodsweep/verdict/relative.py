@@ -46,7 +46,7 @@ class FlutterSearchFailed(InputError):
     """
 
 
-def quarter_turned(arm: A) -> A:
+def with_exchanged_sides(arm: A) -> A:
     """The arm turned by 90 degrees about its axis: width and height of its rectangular section
     are exchanged.
     """
@@ -64,7 +64,7 @@ def plane_rods(
     """
     planes = [(_in_its_plane(arm, build, taper), 1.0)]
     if not arm.isotropic:
-        other = quarter_turned(arm)
+        other = with_exchanged_sides(arm)
         scale = other.cross_section.second_moment / arm.cross_section.second_moment
         planes.append((_in_its_plane(other, build, taper), scale))
     return planes

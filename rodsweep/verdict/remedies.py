@@ -37,10 +37,10 @@ def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[st
 
 def effect_kinds_in_words(effects: Iterable[Effect]) -> str:
     """Distinct kinds of the neglected effects, joined by "and": "inertia and weight"."""
-    return " and ".join(dict.fromkeys(map(kind_of, effects)))
+    return " and ".join(dict.fromkeys(map(effect_kind, effects)))
 
 
-def kind_of(effect: Effect) -> str:
+def effect_kind(effect: Effect) -> str:
     """Kind of a neglected effect: the first word of the effect's name. Inertia of the arm and inertia of the
     fluid therefore have the same kind.
     """
@@ -55,15 +55,15 @@ def as_multiple(effect: Effect) -> str:
 
 def _one_of_a_kind(effects: list[Effect]) -> list[Effect]:
     """The first effect of each kind. effects: in decreasing order of the ratio to the limit."""
-    return list({kind_of(effect): effect for effect in reversed(effects)}.values())[::-1]
+    return list({effect_kind(effect): effect for effect in reversed(effects)}.values())[::-1]
 
 
 def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
     """Clause that names the change of arm, fluid or load by which the effect is reduced to its limit."""
     share = float(1 / effect.excess)
-    if kind_of(effect) == "inertia":
+    if effect_kind(effect) == "inertia":
         return _thicker_fluid_or_thinner_arm(arm, assessment)
-    if kind_of(effect) == "weight":
+    if effect_kind(effect) == "weight":
         si = UNITS["density_difference"][0]
         unit = unit_of(arm.density_difference, si)  # type: ignore[arg-type]
         most = rounded_down(written_in(abs(arm.si.density_difference) * share, unit, si))

@@ -146,7 +146,7 @@ def test_no_variable_hides_behind_an_attribute_of_answers():
     for task, config in CONFIGS.items():
         if config.of_several_rods:
             continue
-        tree = config_tree(task, {name: ROD[name] for name in config.taken_of_a_rod({}) if name in ROD})
+        tree = config_tree(task, {name: ROD[name] for name in config.rod_parameters_used({}) if name in ROD})
         layout = job_from(tree).layout
         names = {variable.name for variable in layout.variables}
         assert names & set(dir(rs.Answer)) == {"status"}

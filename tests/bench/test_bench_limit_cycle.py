@@ -20,7 +20,7 @@ from rodsweep.bench.limit_cycle.sweeping import (
     ACCURACY,
     QUICK_RODS,
     RODS,
-    ExactCycle,
+    AccurateCycle,
     SweptRod,
     measure_sweep_points,
     solve_from_neighbour,
@@ -103,7 +103,7 @@ def soft_rod():
 
 @cache
 def exact():
-    return ExactCycle.near(soft_rod())
+    return AccurateCycle.near(soft_rod())
 
 
 def test_the_reference_is_the_cycle_on_its_mesh():

@@ -26,7 +26,7 @@ from benchmarks.limit_cycle.continuation import (
 from benchmarks.limit_cycle.integrators import CVODE, CVODE_SKIPPED, installed_families
 from rodsweep.bench.limit_cycle.integrators import DEFAULT, IntegrationTask
 from rodsweep.bench.limit_cycle.study import FOLLOWING, WAITING
-from rodsweep.bench.limit_cycle.sweeping import ACCURACY, RODS, ExactCycle
+from rodsweep.bench.limit_cycle.sweeping import ACCURACY, RODS, AccurateCycle
 from rodsweep.bench.limit_cycle.tracking import (
     FOLLOWED_PERIODS,
     PERIOD_MAP,
@@ -125,7 +125,7 @@ def soft_rod():
 
 @cache
 def exact():
-    return ExactCycle.near(soft_rod())
+    return AccurateCycle.near(soft_rod())
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from surveyed import few
 import rodsweep as rs
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import Validity, effects_of, fastest_rate, worst_validity
-from rodsweep.solve.changes.thresholds import ThresholdStatus, nothing_found
+from rodsweep.solve.changes.thresholds import ThresholdStatus, empty_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.verdict.arm import arm_report
 from rodsweep.verdict.checks import THRESHOLD_DECREASE_BY_INERTIA, stiffening
@@ -262,7 +262,7 @@ def test_other_relative_loads_are_refused(given):
 
 def test_a_load_relative_to_no_flutter_is_refused():
     arm = SlenderArm(**THICK, pressure="1.2 of flutter")
-    none = FlutterForces(tau2=1.0, thresholds=nothing_found(ThresholdStatus.ok, 200.0))
+    none = FlutterForces(tau2=1.0, thresholds=empty_thresholds(ThresholdStatus.ok, 200.0))
     with pytest.raises(
         rs.InputError, match="^pressure = '1.2 of flutter' cannot be computed: .* up to 5560 Pa"
     ):

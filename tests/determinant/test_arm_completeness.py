@@ -8,8 +8,8 @@ from surveyed import RODS
 
 from rodsweep.determinant.arm.completeness import (
     COMPLETENESS,
-    none_is_missing,
     points_right_of_hull,
+    prove_complete,
     remainder_of_sum,
 )
 from rodsweep.determinant.arm.determinant import ArmDeterminant
@@ -36,10 +36,10 @@ def test_lists_are_proved_complete_and_none_that_lacks_an_eigenvalue(seed):
         determinant, hull = ArmDeterminant(rod), hull_of(rod)
         w, error = known_roots(rod, determinant, 8)
         line = min(np.sort(w.real)[-4] * (1 + 1e-6), 0.0)
-        proved += none_is_missing(line, w, error, determinant, hull)[0]
+        proved += prove_complete(line, w, error, determinant, hull)[0]
         for lacking in np.flatnonzero((w.real >= line) & (w.imag >= 0)):
             kept = (w != w[lacking]) & (w != w[lacking].conjugate())
-            assert not none_is_missing(line, w[kept], error[kept], determinant, hull)[0], (rod, rod.build)
+            assert not prove_complete(line, w[kept], error[kept], determinant, hull)[0], (rod, rod.build)
     assert proved >= 3
 
 
@@ -49,10 +49,10 @@ def test_a_number_that_is_no_eigenvalue_proves_nothing():
     determinant, hull = ArmDeterminant(rod), hull_of(rod)
     w, error = known_roots(rod, determinant, 8)
     line = np.sort(w.real)[-4] - 1.0
-    assert none_is_missing(line, w, error, determinant, hull)[0]
+    assert prove_complete(line, w, error, determinant, hull)[0]
     for false in (line + 2.0, -1.0, 0.5 * line):
         more = np.append(w, false)
-        assert not none_is_missing(line, more, np.append(error, 0.0), determinant, hull)[0]
+        assert not prove_complete(line, more, np.append(error, 0.0), determinant, hull)[0]
 
 
 @pytest.mark.parametrize("k", COMPLETENESS.point_counts)

@@ -9,7 +9,7 @@ from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.family import (
     determinant_in_family,
     eigenvalue_in_family,
-    family_of,
+    interpolated_family,
     propagators_at,
 )
 from rodsweep.determinant.arm.value import chain_along
@@ -35,7 +35,7 @@ def test_families_have_the_determinants_of_their_arms_and_their_slopes(name, see
     path = Path(random_arm(rng, pulled=0.0), name)
     p = path.variable(getattr(path.rod, name))
     low, high = sorted((p, p * (0.4 if name == "F" else 0.8)))
-    family = family_of(path, low, high, 4.0**6)
+    family = interpolated_family(path, low, high, 4.0**6)
     assert family is not None
     between = ArmAlongPath(path)
     for share in (0.0, 0.31, 0.77, 1.0):
@@ -57,7 +57,7 @@ def test_a_family_of_compressed_rubber_is_spaced_by_the_force():
     """Equal steps would need an interval of a tenth of the length."""
     rod = Rod(F=0.0, k1=20.0, k2=200.0, gamma3=1e-2, taper=0.9, build=Build("neo_hookean", "fixed"))
     path = Path(rod, "F")
-    family = family_of(path, 0.0, 60.0, 4.0**5)
+    family = interpolated_family(path, 0.0, 60.0, 4.0**5)
     assert family is not None
     assert family.scale < np.inf
     for p in (0.0, 0.3, 7.0, 31.0, 60.0):
@@ -72,7 +72,7 @@ def test_a_family_of_compressed_rubber_is_spaced_by_the_force():
 
 def test_eigenvalues_of_a_family_are_those_of_the_arm_within_their_errors():
     path = Path(Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5), "F")
-    family = family_of(path, 10.0, 20.0, 4.0**5)
+    family = interpolated_family(path, 10.0, 20.0, 4.0**5)
     w, slope, error = eigenvalue_in_family(family, -1.0 + 175j, 15.4627583986)
     assert abs(w - 175.530930682j) < 1e-8
     own = ArmAlongPath(path).eigenvalue(w, 15.4627583986)
@@ -83,8 +83,8 @@ def test_eigenvalues_of_a_family_are_those_of_the_arm_within_their_errors():
 def test_an_interval_too_long_for_polynomials_has_no_family():
     rod = Rod(F=1.0, k1=1.0, k2=1e3, gamma3=1e-3, taper=0.9, build=Build("neo_hookean", "swelling"))
     path = Path(rod, "F")
-    assert family_of(path, -30.0, 300.0, 4.0**5) is None
-    assert family_of(path, 1.0, 1.3, 4.0**5) is not None
+    assert interpolated_family(path, -30.0, 300.0, 4.0**5) is None
+    assert interpolated_family(path, 1.0, 1.3, 4.0**5) is not None
 
 
 def test_errors_of_double_eigenvalues_hold_where_minors_are_large_amid_the_arm():
@@ -94,7 +94,7 @@ def test_errors_of_double_eigenvalues_hold_where_minors_are_large_amid_the_arm()
     u = (0.0, 0.23, 0.23, 0.45, 0.45, 0.71, 0.71, 1.0)
     build = Build("neo_hookean", "fixed", Profile(u, tuple((*row, 1.0, 1.0, 1.0) for row in factors)))
     path = Path(Rod(F=20.0, k1=151.37, k2=10.358, gamma3=0.08934, build=build), "F")
-    family = family_of(path, 0.0, 60.0, 4.0**8)
+    family = interpolated_family(path, 0.0, 60.0, 4.0**8)
     of_family = ArmAlongPath(path, lambda p: family).double_eigenvalue(254.4652, 22.71770, 0.5)
     of_arms = ArmAlongPath(path).double_eigenvalue(254.4652, 22.71770, 0.5)
     assert abs(of_family.p - of_arms.p) <= of_family.error_of_p + of_arms.error_of_p < 1e-9

@@ -189,7 +189,9 @@ def config(rng: Random) -> str:
     """A small sweep as the text of a config."""
     task = rng.choice([*TASKS, "phase_diagram"])
     rod = drawn_rod(rng) | {"F": rng.uniform(5, 28)}
-    names = [*CONFIGS[task].taken_of_a_rod({})] if task != "phase_diagram" else ["F", "k1", "k2", "gamma3"]
+    names = (
+        [*CONFIGS[task].rod_parameters_used({})] if task != "phase_diagram" else ["F", "k1", "k2", "gamma3"]
+    )
     values: dict[str, Any] = {name: f"{rod.get(name, 1):.6g}" for name in names}
     values["k2"] = f"[{100 + 400 * rng.random():.4g}, {1e3 + 4e3 * rng.random():.5g}]"
     if task == "phase_diagram":

@@ -56,7 +56,7 @@ from rodsweep.solve.hopf.coefficient_errors import hopf_coefficients
 from rodsweep.solve.hopf.generalised import curve_criticality
 from rodsweep.solve.hopf.hopf_beside import subcritical_hopf_beside
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
-from rodsweep.solve.motion.held_tip import held_by_tip
+from rodsweep.solve.motion.held_tip import equilibrium_at_tip
 from rodsweep.solve.motion.integrator import RunEnding, forget_integrators, integrator
 from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -355,7 +355,7 @@ def longitudinal(accuracy: float) -> Answer:
 def held_tip(accuracy: float) -> Answer:
     """Energy and tip of a rod bent by its tip, which Newton's method places far better than asked here."""
     beam = Beam(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2), mesh(1, 16))
-    z = held_by_tip(beam, 0.5, 0.4)
+    z = equilibrium_at_tip(beam, 0.5, 0.4)
     x, y, _ = beam.tip(z)
     if np.hypot(x - 0.5, y - 0.4) > 1e-6:
         return None
@@ -574,7 +574,7 @@ CASES = {
     "ROOTS": SPECTRA,
     "DOMINANCE": SPECTRA,
     "REACH": SPECTRA,
-    "SPECTRUM_ERRORS": SPECTRA,
+    "SPECTRUM_ERROR_SETTINGS": SPECTRA,
     "KEPT": SPECTRA,
     "STABILITY_CHANGES": BETWEEN,
     "ROOT_NEWTON": THRESHOLDS,

@@ -120,7 +120,7 @@ def test_amplitudes_are_zero_where_straight_and_unknown_where_there_is_no_cycle(
             wanted = expected[line.parameters["gamma1"]]
             assert line.amplitude_y == pytest.approx(wanted, nan_ok=True)
             assert line.amplitude_x == pytest.approx(wanted, nan_ok=True)
-            x, y = line.broken_at_onset(line.amplitude_y)
+            x, y = line.with_gap_at_onset(line.amplitude_y)
             assert np.isnan([x[1], y[1]]).all()
             assert x[[0, 2]].tolist() == [20, 30]
 

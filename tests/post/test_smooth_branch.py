@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rodsweep.post.branch_curves import StoredBranch
-from rodsweep.post.figures.smooth_branch import corners_of, through_cycles
+from rodsweep.post.figures.smooth_branch import corners_of, smooth_curve_of_branch
 
 
 def branch_of(u, second_maximum):
@@ -23,7 +23,7 @@ def curve_through(u, second_maximum):
 
 def farthest(u, second_maximum):
     """The distance of the true branch from the drawn one, in units of the axes."""
-    at, y, period, stable = through_cycles(curve_through(u, second_maximum))
+    at, y, period, stable = smooth_curve_of_branch(curve_through(u, second_maximum))
     assert len(at) == len(y) == len(period) == len(stable) + 1
     true = branch_of(np.linspace(0, 1, 997), second_maximum)
     off = []
@@ -68,7 +68,7 @@ def test_a_corner_may_lie_behind_the_second_cycle_from_a_hopf_point():
     (corner,) = corners_of(places, np.ptp(places, axis=0)).items()
     assert corner[0] == 1
     assert corner[1] == pytest.approx([30 + 170 * 0.16, 0.16, -0.16], rel=1e-9)
-    x, drawn, drawn_period, _ = through_cycles(curve)
+    x, drawn, drawn_period, _ = smooth_curve_of_branch(curve)
     beyond = (x - 30) / 170 >= 0.16  # before, the branch leaves its mirror image at y = 0
     true = (x[beyond] - 30) / 170
     assert drawn[beyond] == pytest.approx(4 * true - 0.48, abs=1e-9)
@@ -85,7 +85,7 @@ def test_steps_that_grow_at_a_bend_make_no_waves():
     fine = np.linspace(at[0], at[-1], 2001)
     pieces = np.ones(len(at) - 1, dtype=int)
     curve = StoredBranch(at, 0.1 - 1e-4 * (at - 91) ** 2 / 3, np.exp(log_period(at)), pieces, pieces > 0, ())
-    x, _, period, _ = through_cycles(curve)
+    x, _, period, _ = smooth_curve_of_branch(curve)
     off = np.interp(fine, x, np.log(period)) - log_period(fine)
     assert np.abs(off).max() < 4e-3 * np.ptp(log_period(at))
 
@@ -97,7 +97,7 @@ def test_a_branch_that_ends_next_to_its_hopf_point_is_a_square_root_to_its_end()
     curve = StoredBranch(
         37.93 * (1 + 1.56 * y**2), y, 0.1 * np.exp(-0.5 * y**2), np.ones(11, int), np.ones(12, bool), ()
     )
-    at, drawn, _, _ = through_cycles(curve)
+    at, drawn, _, _ = smooth_curve_of_branch(curve)
     true = np.sqrt(np.maximum(at / 37.93 - 1, 0) / 1.56)
     off = np.abs(drawn - true)[np.append(False, np.diff(at) > 0)]
     assert off.max() < 1e-4 * sizes[-1]

@@ -12,7 +12,7 @@ from surveyed import few
 from rodsweep.api.dataset import open_result
 from rodsweep.errors import EnvironmentIncomplete
 from rodsweep.results.file import recent
-from rodsweep.results.file.recent import read_unfolded, write_snapshot
+from rodsweep.results.file.recent import read_file_and_journals, write_snapshot
 from rodsweep.results.file.view import read_view
 from rodsweep.results.run.journal import journal_directory
 
@@ -123,7 +123,7 @@ def test_file_that_never_stays_is_given_up(tmp_path):
     path.write_bytes(b"")
     journal_directory(path).mkdir()
     with pytest.raises(EnvironmentIncomplete, match="keeps replacing it"):
-        read_unfolded(path, lambda: path.write_bytes(path.read_bytes() + b" "))
+        read_file_and_journals(path, lambda: path.write_bytes(path.read_bytes() + b" "))
 
 
 def test_running_limit_cycles_can_be_looked_at(command):

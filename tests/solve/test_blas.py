@@ -5,7 +5,12 @@ import pytest
 from contents import content, same_spectra
 from kernels import other_kernels
 
-from rodsweep.results.file.provenance import KERNELS_ATTRIBUTE, kernels_of, kernels_sentence, united_kernels
+from rodsweep.results.file.provenance import (
+    KERNELS_ATTRIBUTE,
+    kernels_of,
+    kernels_sentence,
+    merged_blas_kernels,
+)
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.backend import blas_kernel as blas_module
 from rodsweep.solve.backend.blas_kernel import blas
@@ -59,7 +64,7 @@ def test_libraries_are_named_by_who_uses_them(monkeypatch, loaded, said):
 
 
 def test_kernels_of_several_runs_are_kept_once_each():
-    assert united_kernels(["b", "a"], ["a"]) == "a\nb"
+    assert merged_blas_kernels(["b", "a"], ["a"]) == "a\nb"
     assert kernels_of({KERNELS_ATTRIBUTE: "a\nb"}) == ["a", "b"]
     assert kernels_of({}) == ["unknown"], "an earlier version did not ask"
     assert kernels_sentence("a") == ""

@@ -14,7 +14,7 @@ import threading
 import pytest
 
 from rodsweep import watch
-from rodsweep.solve.exclusive import HeldSignals, one_at_a_time
+from rodsweep.solve.exclusive import DeferredSignals, one_at_a_time
 
 INTERRUPTS = int(os.environ.get("RODSWEEP_INTERRUPTS", "1"))
 TASKS = """
@@ -127,12 +127,12 @@ def test_a_handler_runs_at_a_safe_place_and_not_before():
 
     before = signal.signal(signal.SIGUSR2, handler)
     try:
-        with pytest.raises(TimeoutError), HeldSignals() as held, watch.reporting_to(held.call_due):
+        with pytest.raises(TimeoutError), DeferredSignals() as held, watch.reporting_to(held.call_due):
             signal.raise_signal(signal.SIGUSR2)
             assert place == []
             watch.report()
             pytest.fail("the handler's exception was lost")
-        with pytest.raises(TimeoutError), HeldSignals():
+        with pytest.raises(TimeoutError), DeferredSignals():
             signal.raise_signal(signal.SIGUSR2)
         assert place == [signal.SIGUSR2] * 2
         assert signal.getsignal(signal.SIGUSR2) == handler

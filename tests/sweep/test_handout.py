@@ -14,10 +14,10 @@ from rodsweep.sweep.claims import (
     PROGRESS_TAG,
     REQUEST_TAG,
     STOP_TAG,
-    FirstRankClaims,
+    FirstRankRequests,
     OtherRankClaims,
 )
-from rodsweep.sweep.handout import CHUNK_SECONDS, NO_WORK_LEFT, Handout, RankReport, chunk_seconds
+from rodsweep.sweep.handout import CHUNK_SECONDS, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
 from rodsweep.sweep.stop import StopRequest
 from rodsweep.watch import SolvePosition
 
@@ -29,7 +29,7 @@ def test_every_unit_is_done_once_whatever_ranks_give_back_and_none_ends_before(s
     ends = np.cumsum(np.array(sizes) + 1)  # a unit between two ranges is not to do
     todo = [(int(end) - size, int(end)) for size, end in zip(sizes, ends, strict=True)]
     units = [unit for start, stop in todo for unit in range(start, stop)]
-    handout, done = Handout(todo, ranks), []
+    handout, done = ChunkQueue(todo, ranks), []
     held = {rank: [] for rank in range(ranks)}
     while held:
         rank = rng.choice(list(held))
@@ -51,19 +51,19 @@ def test_every_unit_is_done_once_whatever_ranks_give_back_and_none_ends_before(s
 
 
 def test_chunks_follow_the_pace_and_shrink_towards_the_end():
-    handout = Handout([(0, 100_000)], ranks=4)
+    handout = ChunkQueue([(0, 100_000)], ranks=4)
     start, stop = handout.take(1)
     assert stop - start == 1
     handout.settle(1, RankReport(1, 1e-3))
     start, stop = handout.take(1)
     assert stop - start == pytest.approx(CHUNK_SECONDS / 1e-3, abs=1)
-    handout = Handout([(0, 16)], ranks=4)
+    handout = ChunkQueue([(0, 16)], ranks=4)
     handout.settle(1, RankReport(1, 1e-6))
     assert handout.take(1) == (0, 2)
 
 
 def test_rest_that_is_given_back_goes_to_the_next():
-    handout = Handout([(0, 3)], ranks=1)
+    handout = ChunkQueue([(0, 3)], ranks=1)
     handout.settle(0, RankReport(1, 1e-6))
     assert handout.take(0) == (0, 1)
     handout.settle(0, RankReport(0, 1.0, (0, 1)))
@@ -71,7 +71,7 @@ def test_rest_that_is_given_back_goes_to_the_next():
 
 
 def test_idle_rank_waits_while_another_may_give_back():
-    handout = Handout([(0, 1)], ranks=2)
+    handout = ChunkQueue([(0, 1)], ranks=2)
     assert handout.take(0) == (0, 1)
     assert handout.take(1) is None
     handout.settle(0, RankReport(0, 9.0, (0, 1)))
@@ -82,7 +82,7 @@ def test_idle_rank_waits_while_another_may_give_back():
 
 
 def test_two_threads_share_the_work_without_losing_any():
-    handout = Handout([(0, 5000)], ranks=2)
+    handout = ChunkQueue([(0, 5000)], ranks=2)
     seen: list[list[int]] = [[], []]
 
     def work(rank):
@@ -105,14 +105,14 @@ def test_two_threads_share_the_work_without_losing_any():
 
 
 def test_points_that_all_ranks_have_kept_are_counted():
-    handout = Handout([(0, 9)], ranks=2)
+    handout = ChunkQueue([(0, 9)], ranks=2)
     for rank, points in ((0, 2), (1, 3), (0, 1)):
         handout.settle(rank, RankReport(points=points))
     assert handout.points == 6
 
 
 def test_after_a_stop_nobody_gets_more_and_nobody_waits():
-    handout = Handout([(0, 100)], ranks=2)
+    handout = ChunkQueue([(0, 100)], ranks=2)
     assert handout.take(0) == (0, 1)
     handout.stop()
     assert handout.take(1) == NO_WORK_LEFT
@@ -123,14 +123,14 @@ def test_after_a_stop_nobody_gets_more_and_nobody_waits():
 def test_many_ranks_ask_the_first_no_more_than_a_thousand_times_a_second():
     assert chunk_seconds(2) == CHUNK_SECONDS
     for ranks in (200, 10_000):
-        handout = Handout([(0, 10**9)], ranks)
+        handout = ChunkQueue([(0, 10**9)], ranks)
         handout.settle(1, RankReport(1000, 1.0))
         start, stop = handout.take(1)
         assert ranks / ((stop - start) * 1e-3) <= 1001
 
 
 def test_next_chunk_is_given_ahead_while_plenty_is_left():
-    handout = Handout([(0, 9)], ranks=2)
+    handout = ChunkQueue([(0, 9)], ranks=2)
     assert handout.take(1) == (0, 1)
     assert handout.take_ahead(1) == (1, 2)
     assert handout.take_ahead(0) is None  # seven units left, fewer than four a rank
@@ -177,9 +177,9 @@ class Mail:
 
 def claims(mail, todo, monkeypatch, show=lambda words, begun: None):
     """The first rank's claims among two ranks, without a thread."""
-    monkeypatch.setattr(FirstRankClaims, "_serve_until_over", lambda self: None)
+    monkeypatch.setattr(FirstRankRequests, "_serve_until_over", lambda self: None)
     team = SimpleNamespace(MPI=mail, comm=mail, size=2, first=True)
-    return FirstRankClaims(team, Handout(todo, 2), StopRequest(), show)
+    return FirstRankRequests(team, ChunkQueue(todo, 2), StopRequest(), show)
 
 
 def test_each_chunk_is_answered_once_whether_asked_for_ahead_or_not(monkeypatch):

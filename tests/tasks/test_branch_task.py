@@ -16,7 +16,7 @@ from rodsweep.model.floquet import min_unstable_multipliers
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import RodBranches, intersection, stability_of_pieces, union
 from rodsweep.post.figures import draw
-from rodsweep.post.figures.smooth_branch import through_cycles
+from rodsweep.post.figures.smooth_branch import smooth_curve_of_branch
 from rodsweep.post.summary import branch as summary
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
@@ -349,7 +349,7 @@ def test_the_curve_in_the_figure_is_the_branch(k1, stop):
         for accuracy in (1e-3, FINER)
     )
     for curve, true in zip(coarse, fine, strict=True):
-        at, y, period, stable = through_cycles(curve)
+        at, y, period, stable = smooth_curve_of_branch(curve)
         assert len(stable) == len(at) - 1
         assert np.isin(curve.at.round(9), at.round(9)).all()
         for drawn, exact in (

@@ -14,7 +14,7 @@ from rodsweep.model.arm.section import Circle, Rectangle, Tube
 from rodsweep.model.rod import Rod
 from rodsweep.model.units import share_of_flutter
 from rodsweep.solve.changes.along_path import Transitions
-from rodsweep.solve.changes.thresholds import Thresholds, ThresholdStatus, nothing_found
+from rodsweep.solve.changes.thresholds import Thresholds, ThresholdStatus, empty_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind, Crossing
 from rodsweep.verdict import flutter
 from rodsweep.verdict.flutter import FlutterForces, FlutterRange
@@ -324,7 +324,7 @@ def test_arm_without_flutter_and_failed_search_are_told():
     assert none == [
         "The arm does not flutter up to 12.5 kPa, where the search ends: it stays straight at 2 kPa."
     ]
-    failed = FlutterForces(tau2=1.0, thresholds=nothing_found(ThresholdStatus.failed, 200.0, "no box"))
+    failed = FlutterForces(tau2=1.0, thresholds=empty_thresholds(ThresholdStatus.failed, 200.0, "no box"))
     assert verdict(arm(), failed) == ["For some drags the thresholds could not be found: no box."]
 
 

@@ -23,8 +23,8 @@ from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
 from ...solve.orbit.orbit_mesh import mesh_of
 from ..study import (
+    CaseWithErrorMeasure,
     Contender,
-    JudgedCase,
     Measurement,
     grouped_by_fields,
     markdown_table,
@@ -68,7 +68,7 @@ FAILED_COLUMNS = dict.fromkeys(
 
 
 @dataclass(frozen=True, eq=False)
-class ExactCycle:
+class AccurateCycle:
     """Reference cycle on a mesh with errors of REFERENCE_ACCURACY.
 
     period: in tau2. tip_y_max: largest y of the tip in L.
@@ -79,17 +79,17 @@ class ExactCycle:
     tip_y_max: float
 
     @classmethod
-    def near(cls, orbit: Orbit) -> "ExactCycle":
+    def near(cls, orbit: Orbit) -> "AccurateCycle":
         """The reference cycle near the orbit `orbit`, for the rod of this orbit."""
         found = refined_at_period(orbit, REFERENCE_ACCURACY, NewtonWorkspace())
         return cls(found.orbit, found.measures.period, found.measures.tip_y_max)
 
-    def at(self, F: float) -> "ExactCycle":
+    def at(self, F: float) -> "AccurateCycle":
         """The reference cycle of the same rod at the force F, which must be close to the present force."""
         form = self.orbit.form
         near = replace(self.orbit, form=replace(form, rod=replace(form.rod, F=F)))
         orbit = newton(near, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
-        return ExactCycle(orbit, orbit.period, CyclePath(orbit).extrema["tip_y_max"])
+        return AccurateCycle(orbit, orbit.period, CyclePath(orbit).extrema["tip_y_max"])
 
     def errors_of(self, period: float, tip_y_max: float) -> dict[str, float]:
         """Relative errors of a computed period, in tau2, and largest tip y, in L, by name of the column."""
@@ -106,7 +106,7 @@ class SweptRod:
     """
 
     rod: Rod
-    exact_cycle: ExactCycle
+    exact_cycle: AccurateCycle
     neighbours: dict[str, Neighbour | None]
     workspace: NewtonWorkspace
 
@@ -124,7 +124,7 @@ def swept_rod(point: Rod, accuracy: float) -> SweptRod:
             ).neighbour
         neighbours[axis] = before
     here = solve_cycle(point, cycle_request(accuracy), along=SWEPT_PARAMETERS[0])
-    return SweptRod(point, ExactCycle.near(orbit_of(here)), neighbours, workspace)
+    return SweptRod(point, AccurateCycle.near(orbit_of(here)), neighbours, workspace)
 
 
 def earlier_rod(point: Rod, axis: str, steps: int) -> Rod:
@@ -174,7 +174,9 @@ def cycle_contenders(accuracy: float) -> list[Contender]:
 def measure_sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement]:
     """Measurements of all `cycle_contenders` on all rods `points`, timed in turn."""
     rods = [swept_rod(point, ACCURACY) for point in points]
-    entries = [JudgedCase(rod_label(rod.rod), rod, partial(cycle_errors, rod.exact_cycle)) for rod in rods]
+    entries = [
+        CaseWithErrorMeasure(rod_label(rod.rod), rod, partial(cycle_errors, rod.exact_cycle)) for rod in rods
+    ]
     return measure_cases(entries, cycle_contenders(ACCURACY), rounds)
 
 
@@ -186,7 +188,7 @@ def rod_label(point: Rod) -> str:
     return ", ".join([*(f"{value:g}" for value in values), *further])
 
 
-def cycle_errors(exact: ExactCycle, cycle: Cycle) -> dict[str, Any]:
+def cycle_errors(exact: AccurateCycle, cycle: Cycle) -> dict[str, Any]:
     """Fields of `Measurement` for a cycle: errors, error estimate, mesh, and number of Floquet multipliers.
     Mesh and number are missing if there is no orbit."""
     errors = exact.errors_of(cycle.measures.period, cycle.measures.tip_y_max)

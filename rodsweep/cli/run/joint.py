@@ -11,7 +11,7 @@ from ...results.layouts.variables import Filled
 from ...results.run.checkpoints import UnitResults
 from ...results.run.journal import journal_directory
 from ...solve.backend.kept import forget_all
-from ...sweep.handout import Handout, Pool
+from ...sweep.handout import ChunkQueue, Pool
 from ...sweep.loop import Indices, Loop, RankWork, sweep
 from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.stop import NoClaims, RankListener, StopRequest
@@ -25,7 +25,7 @@ UNIT_NOUN = "halves of curves"
 
 
 @dataclass(frozen=True, slots=True)
-class JointDue:
+class PendingJointWork:
     """Variables that depend on all points. due: whether the file lacks these variables. units: the half
     curves to be followed; None if nothing is divided among the ranks.
     """
@@ -75,7 +75,7 @@ class JointWork:
             found.clear()
             return new
 
-        todo = Handout([], self.team.size)
+        todo = ChunkQueue([], self.team.size)
         if self.team.first:
             self.results = self.kept.read()
             todo = Pool(units, self.results, self.team.size)

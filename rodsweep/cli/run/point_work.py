@@ -14,7 +14,7 @@ from ...errors import EnvironmentIncomplete
 from ...results.file.creation import Plan
 from ...results.run.checkpoints import Checkpoints
 from ...results.run.journal import Journal, journal_directory, kept_sentence
-from ...sweep.handout import Handout
+from ...sweep.handout import ChunkQueue
 from ...sweep.loop import Indices, Loop, sweep
 from ...sweep.points.chains import ChainSolver
 from ...sweep.points.ranges import IndexRange, IndexSet, Shard, index_count
@@ -92,7 +92,7 @@ class PointWork:
             with closing(Journal(directory, self.team.rank, plan.layout, plan.fingerprint)) as journal:
                 solve = self._solve_unit(IndexSet(missing), directory)
                 loop = Loop(solve=solve, keep=keep, prepare=prepare, name=self._unit_name)
-                share = sweep(self.team, Handout(units, self.team.size), loop, shown, self.stop)
+                share = sweep(self.team, ChunkQueue(units, self.team.size), loop, shown, self.stop)
         except OSError as error:
             raise EnvironmentIncomplete(
                 f"cannot write beside {self.output}: {error.strerror or error}"

@@ -28,7 +28,7 @@ from .contribution import (
     last_run_attributes,
     run_history,
 )
-from .joint import JointDue, JointWork
+from .joint import JointWork, PendingJointWork
 from .options import RunOptions
 from .point_work import PointWork
 
@@ -72,7 +72,7 @@ class _RankRun:
         self.seconds = 0.0
         self.log = TracebackLog(output, team.rank, self._where, options.strict)
         self.solver = guarded_solver(job.solver(), job.layout, self.log)
-        self.kernels = provenance.united_kernels(team.gather(blas()) or [])
+        self.kernels = provenance.merged_blas_kernels(team.gather(blas()) or [])
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
         self.prepare = cache(self.solver.warm_up)
         self.work = PointWork(
@@ -128,7 +128,7 @@ class _RankRun:
         """
         return not missing and "finished" not in self.store.attributes()
 
-    def _fold(self, count: int, contributions: list[RunContribution]) -> JointDue:
+    def _fold(self, count: int, contributions: list[RunContribution]) -> PendingJointWork:
         """Writes the points of all journals into the file; returns whether variables that depend on all
         points are still missing, with their work items.
 
@@ -140,12 +140,12 @@ class _RankRun:
             started = {"started": self.started, "stopped": self.stop.name}
             self.store.fold(last_run_attributes(self.plan) | history | started)
         if not self._lacks_curves(index_count(self.store.missing())):
-            return JointDue(False)
+            return PendingJointWork(False)
         if not self.joint:
-            return JointDue(True)
+            return PendingJointWork(True)
         if not count:
             self._note_kernels()
-        return JointDue(True, self.joint.together.units(read_view(self.output)))
+        return PendingJointWork(True, self.joint.together.units(read_view(self.output)))
 
     def _say(self, text: str, amiss: bool = False) -> None:
         """Prints a text; in quiet mode only if `amiss`. amiss: whether the text reports a problem."""
@@ -169,7 +169,7 @@ class _RankRun:
     def _note_kernels(self) -> None:
         """Stores the names of the BLAS kernels of all ranks, and prints a warning if the kernels differ."""
         before = self.store.attributes()
-        kernels = provenance.united_kernels(provenance.kernels_of(before), self.kernels.splitlines())
+        kernels = provenance.merged_blas_kernels(provenance.kernels_of(before), self.kernels.splitlines())
         if kernels != before.get(provenance.KERNELS_ATTRIBUTE):
             self.store.fold({provenance.KERNELS_ATTRIBUTE: kernels})
         if sentence := provenance.kernels_sentence(kernels):
@@ -178,7 +178,7 @@ class _RankRun:
     def _where(self, index: int) -> str:
         return parameters_in_words(self.job.points.values(index))
 
-    def _finish_file(self, joint: JointDue) -> bool:
+    def _finish_file(self, joint: PendingJointWork) -> bool:
         """Writes the variables of all points into the file; returns whether these are still missing."""
         if not joint.due:
             return False
@@ -211,12 +211,12 @@ class _RankRun:
         self,
         count: int,
         contributions: list[RunContribution],
-        joint: JointDue,
+        joint: PendingJointWork,
         shares: list[RankWork],
         exceptions: int,
     ) -> int:
         """Completes the result file, prints how the run ended, and returns the exit status."""
-        lacks_curves = self._finish_file(joint)
+        lacks_joint_variables_in = self._finish_file(joint)
         missing = self.store.missing()
         self._tell_notes()
         counts = self.store.status_counts()
@@ -232,7 +232,7 @@ class _RankRun:
             curve_seconds=time.monotonic() - self.began - self.seconds,
             interrupted=sum(contribution.share.ended for contribution in contributions),
             followed_halves=sum(share.points for share in shares) if joint.due and self.joint else None,
-            stored_halves=len(self.joint.results) if self.joint and lacks_curves else None,
+            stored_halves=len(self.joint.results) if self.joint and lacks_joint_variables_in else None,
         )
         for sentence in ending.times() or [f"{part} is complete, nothing to do"]:
             self._say(sentence)
@@ -240,7 +240,7 @@ class _RankRun:
         amiss = not set(counts) <= expected
         self._say(f"{self.output}: {self._outcomes(counts, left)}", amiss)
         self._say_failures(contributions, exceptions)
-        if left or lacks_curves:
+        if left or lacks_joint_variables_in:
             how = f"stopped by {self.stop.name}" if self.stop else "not complete"
             click.echo(f"{how}; {ending.kept_words()}, the same command continues")
             return STOPPED_STATUS

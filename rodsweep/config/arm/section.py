@@ -146,7 +146,7 @@ class ArmSection(StrictSection):
         names = (*ALL_BUT_LOAD, *LOAD_AXES)
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
-    def refuse_unfit(self) -> None:
+    def require_allowed_keys(self) -> None:
         """Raises ValueError for a value out of range, or if the model does not cover a grid's first arm."""
         for name, axis in self.given.items():
             low = float(axis.array()[0])

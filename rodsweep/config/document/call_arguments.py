@@ -21,7 +21,7 @@ def in_sentences(example: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
         @wraps(function)
         def call(*values: P.args, **named: P.kwargs) -> R:
-            refuse_misfit(asked, example, values, named)
+            require_matching_arguments(asked, example, values, named)
             return function(*values, **named)
 
         return call
@@ -29,7 +29,7 @@ def in_sentences(example: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
     return decorated
 
 
-def refuse_misfit(
+def require_matching_arguments(
     asked: Signature, example: str, values: tuple[object, ...], named: Mapping[str, object]
 ) -> None:
     """Raises InputError for the first surplus, repeated, unknown or missing argument of a call.

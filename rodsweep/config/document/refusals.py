@@ -48,7 +48,7 @@ def sentence_of(config: type[Config], problem: Any) -> str:
         return f"{short(value)} is not a key; keys are words"
     key_alone = location[-1] if location else ""
     field = _section(config, location[:-1]).model_fields.get(key_alone)
-    allowed = what_is_allowed(field) if field else problem["msg"]
+    allowed = allowed_values_text(field) if field else problem["msg"]
     return f"{key} = {short(value)} is not allowed; it should be {allowed}"
 
 
@@ -142,7 +142,7 @@ def model_of(field: FieldInfo) -> Any:
     return kinds[0] if get_origin(field.annotation) is UnionType and len(kinds) == 1 else field.annotation
 
 
-def what_is_allowed(field: FieldInfo) -> str:
+def allowed_values_text(field: FieldInfo) -> str:
     """Phrase that describes the allowed values of a config key, from its type and bounds."""
     kind = field.annotation
     bounds = ("ge", "gt", "le", "lt", "max_length")

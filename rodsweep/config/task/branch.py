@@ -71,7 +71,7 @@ class BranchConfig(Config):
         return (*all_but(self.branch.along, NONLINEAR_PARAMETERS), *self.added)
 
     @classmethod
-    def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
+    def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         return all_but(options.get("along", "F"), NONLINEAR_PARAMETERS)
 
     @model_validator(mode="before")

@@ -40,7 +40,7 @@ class CriticalityConfig(Config):
     of_cycles: ClassVar[bool] = True
 
     @classmethod
-    def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
+    def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         return all_but("F", NONLINEAR_PARAMETERS)
 
     @model_validator(mode="after")

@@ -84,7 +84,7 @@ class PhaseDiagramConfig(LinearConfig):
     parameters: DiagramParameters
     phase_diagram: PhaseDiagramOptions = PhaseDiagramOptions()
 
-    into_crushed: ClassVar[bool] = True
+    allows_crushed_rods: ClassVar[bool] = True
     of_several_rods: ClassVar[bool] = True
     beyond: ClassVar[tuple[str, ...]] = ("gamma1",)
 

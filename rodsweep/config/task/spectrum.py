@@ -39,7 +39,7 @@ class SpectrumConfig(LinearConfig):
     beyond: ClassVar[tuple[str, ...]] = ("gamma1",)
 
     @classmethod
-    def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
+    def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         return (*LINEAR_PARAMETERS, *cls.beyond) if options.get("longitudinal") else LINEAR_PARAMETERS
 
     @property

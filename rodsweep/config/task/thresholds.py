@@ -32,7 +32,7 @@ class ThresholdsConfig(LinearConfig):
     thresholds: ThresholdsOptions = ThresholdsOptions()
 
     @classmethod
-    def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
+    def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         return all_but("F")
 
     @model_validator(mode="after")

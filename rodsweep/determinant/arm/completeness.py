@@ -80,7 +80,7 @@ class Remainder(NamedTuple):
     least_contribution: float
 
 
-def none_is_missing(
+def prove_complete(
     line: float, known: Complex, error: Array, determinant: ArmDeterminant, hull: Hull
 ) -> tuple[bool, int]:
     """(whether all eigenvalues with Re w >= line are proved to be known, number of evaluations of D).
@@ -113,7 +113,7 @@ def has_conjugate(known: Complex) -> Array:
 
 
 def largest_w_of_proof(line: float, hull: Hull, known: Complex) -> float:
-    """Largest |w| at which the first trial of `none_is_missing` evaluates D; inf if no trial is possible.
+    """Largest |w| at which the first trial of `prove_complete` evaluates D; inf if no trial is possible.
     known: (n,).
     """
     largest = float(np.abs(known).max())

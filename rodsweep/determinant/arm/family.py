@@ -75,7 +75,7 @@ class ArmFamily(NamedTuple):
     coefficients: Array
 
 
-def family_of(path: Path, low: float, high: float, W: float) -> ArmFamily | None:
+def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFamily | None:
     """The family of the arms of `path` with p from `low` to `high`, for |w| <= W.
 
     None if the arms are not smooth in p, or the propagators have too many entries. Raises ValueError at a p

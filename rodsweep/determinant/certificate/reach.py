@@ -43,7 +43,7 @@ class ReachSettings(CompiledSettings):
 REACH = ReachSettings()
 
 
-class ReachNode(NamedTuple):
+class ZeroFreeDiscNode(NamedTuple):
     """A point w with D exp(-S), L = D'/D, and the reach: the distance from w within which D has no zero."""
 
     w: complex
@@ -80,7 +80,7 @@ def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -
 
 
 @compiled
-def node_at(w: complex, coefficients: Coefficients) -> ReachNode:
+def node_at(w: complex, coefficients: Coefficients) -> ZeroFreeDiscNode:
     """The point w with its reach, for a uniform rod. Within the reach the phase of D exp(-L dw) changes by
     less than pi/2.
     """
@@ -88,7 +88,7 @@ def node_at(w: complex, coefficients: Coefficients) -> ReachNode:
     room = DISCS.clearance * abs(D) - DISCS.rounding_over_noise * noise
     # |D| below its rounding error proves nothing; the reach of 0 ends the walk.
     if not room > 0:
-        return ReachNode(w, D, 0j, 0.0)
+        return ZeroFreeDiscNode(w, D, 0j, 0.0)
     L = D_w / D
     centre = bidisc_centre(w, coefficients, ZERO_CHANGES, S)
     best = 0.0
@@ -100,4 +100,4 @@ def node_at(w: complex, coefficients: Coefficients) -> ReachNode:
         # disc.
         best = max(best, rho * (math.sqrt(q * q + 4 * q) - q) / 2)
         rho /= 2
-    return ReachNode(w, D, L, best)
+    return ZeroFreeDiscNode(w, D, L, best)

@@ -87,7 +87,7 @@ class StraightElements:
         WD, w = _weighted_derivative(self.form.mesh.order)
         return WD, w / (2 * self.form.mesh.elements)
 
-    def times_A(self, x: Values) -> Values:
+    def apply_A(self, x: Values) -> Values:
         """Product A x, (unknowns,)."""
         return self.assemble(self.gather(x) @ self.A.T)
 

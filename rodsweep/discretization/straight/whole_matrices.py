@@ -44,7 +44,7 @@ class WholeMatrices:
         """Diagonal of M for the given components, (n,)."""
         return self.form.M[self.state_indices]
 
-    def times_A(self, x: Values) -> Values:
+    def apply_A(self, x: Values) -> Values:
         """Product A x, (unknowns,)."""
         return self._spread(self.A @ x[self.state_indices])
 

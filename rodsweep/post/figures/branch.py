@@ -18,7 +18,7 @@ from ..branch_curves import Range, RodBranches, StoredBranch, ends_of, followed_
 from . import style
 from .cycle.selection import shared_and_own_of_points
 from .request import FigureRequest
-from .smooth_branch import through_cycles
+from .smooth_branch import smooth_curve_of_branch
 
 STABILITY_LINES = {1: ("-", "stable"), 0: ("--", "unstable"), -1: (":", "not known")}
 """(line style, legend entry) of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
@@ -99,7 +99,7 @@ def draw_curves(
     """
     marked: dict[str, Line2D] = {}
     for number, curve in enumerate(curves):
-        at, y, period, stable = through_cycles(curve)
+        at, y, period, stable = smooth_curve_of_branch(curve)
         for axes, values in ((upper, y), (lower, period)):
             _pieces(axes, at, values, stable, colours[number % len(colours)])
         _mark(upper, lower, curve, marked)

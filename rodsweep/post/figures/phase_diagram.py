@@ -16,7 +16,7 @@ from ...arrays import Array
 from ...config.axes import DEFAULTS
 from ...model.parameters import CRUSHING, LINEAR_PARAMETERS
 from ...results.file.view import View
-from ...results.layouts import lacks_curves
+from ...results.layouts import lacks_joint_variables_in
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ...results.layouts.rods import has_covering
 from ...results.layouts.variables import number_of
@@ -124,7 +124,9 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     handles += edge if (table == number_of("crushed", palette.words)).any() else []
     legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
     figure.suptitle(heading(view, _fixed(view, line, row)))
-    missing = "; curves are missing, the file is not finished" if lacks_curves(view.attributes) else ""
+    missing = (
+        "; curves are missing, the file is not finished" if lacks_joint_variables_in(view.attributes) else ""
+    )
     return request.write(figure, f"behaviour of the rod over {line} and {row}{missing}", MAP_ASPECT)
 
 

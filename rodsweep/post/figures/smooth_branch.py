@@ -44,7 +44,7 @@ SEGMENT_COUNT = 12
 """Number of straight segments that are drawn between two cycles."""
 
 
-def through_cycles(curve: StoredBranch) -> tuple[Array, Array, Array, NDArray[np.integer]]:
+def smooth_curve_of_branch(curve: StoredBranch) -> tuple[Array, Array, Array, NDArray[np.integer]]:
     """Returns (parameter, y, period, stable) of the smooth curve through the cycles of a branch; (n,) each,
     `stable` (n - 1,).
 

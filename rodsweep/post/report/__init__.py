@@ -19,7 +19,7 @@ from ...results.file.provenance import now
 from ...results.file.view import View
 from ...wording import counted
 from ..figures.request import Shapes
-from ..whole_file import require_name, written_whole
+from ..whole_file import atomic_write, require_name
 from .dark_colours import dark_page_colour
 from .page_tables import MAX_ROWS
 from .pictures import Pictures, pictures_of
@@ -48,7 +48,7 @@ def write_report(views: Sequence[View], output: Path, shapes: Shapes | None = No
     results = [report_contents(view, pictures_of([view], shapes, numbers)) for view in views]
     together = pictures_of(views, shapes, numbers) if views[1:] else Pictures(())
     text = page_text(results, together)
-    with written_whole(output) as stream:
+    with atomic_write(output) as stream:
         stream.write(text)
     pictures = sum(len(result.pictures.shown) for result in results) + len(together.shown)
     return f"wrote {output}: {counted(len(views), 'result')}, {counted(pictures, 'figure')}"

@@ -7,7 +7,7 @@ from ..report import rendered
 from ..report.page_tables import page_tables
 from ..report.pictures import CaptionedPicture, Pictures
 from ..report.vector_picture import vector_picture
-from ..whole_file import require_name, written_whole
+from ..whole_file import atomic_write, require_name
 from .paragraph import paragraph
 from .picture import portrait_figure
 from .results import RodResults
@@ -35,7 +35,7 @@ def write_portrait(results: RodResults, output: Path) -> str:
     """
     require_portrait(output)
     if output.suffix == PAGE_SUFFIX:
-        with written_whole(output) as stream:
+        with atomic_write(output) as stream:
             stream.write(portrait_page(results))
     else:
         portrait_figure(results).savefig(output)

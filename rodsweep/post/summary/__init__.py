@@ -16,7 +16,7 @@ from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.units import written_in
 from ...results.file.provenance import FAILURE_REASONS
 from ...results.file.view import View
-from ...results.layouts import lacks_curves
+from ...results.layouts import lacks_joint_variables_in
 from ...results.layouts.variables import DIMENSIONS, MISSING
 from ...wording import counted, is_or_are, plural
 from ..origin import origin_lines, rank_lines, time_lines
@@ -151,7 +151,7 @@ def _unfinished(view: View, missing: int, noun: str) -> list[str]:
             f"{counted(missing, noun)} {is_or_are(missing)} missing; if no run is in progress, the same "
             "command continues"
         )
-    elif lacks_curves(view.attributes):
+    elif lacks_joint_variables_in(view.attributes):
         lines.append(
             f"all {plural(noun)} are computed; the curves are missing; repeat the command to add the curves"
         )

@@ -36,7 +36,9 @@ def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
     if done.size == 1:
         details = cost_lines(view, done)
         of_arm = crossings_of_arm(view)
-        return SummaryLines(crossing_lines(view), trust_of_one(view), details, of_arm, crossing_table(view))
+        return SummaryLines(
+            crossing_lines(view), completeness_lines(view), details, of_arm, crossing_table(view)
+        )
     answer = [event_line(view, done, event) for event in FIRST_THRESHOLD_WORDS]
     trust = [*search_lines(view, done, "rod"), f"searched up to F = {span(view.variables['F_end'][done])}"]
     return SummaryLines(answer, trust, [*monotony_lines(view), *cost_lines(view, done)])
@@ -119,7 +121,7 @@ def crossing_table(view: View) -> TextTable | None:
     return TextTable(headings, tuple(rows)) if rows else None
 
 
-def trust_of_one(view: View) -> list[str]:
+def completeness_lines(view: View) -> list[str]:
     """Lines on the searched range and the completeness of the list of crossings, for the only rod in a
     file.
     """

@@ -41,7 +41,7 @@ Digests = dict[str, dict[str, str]]
 key `variables`."""
 
 
-def is_users(name: str) -> bool:
+def is_user_added(name: str) -> bool:
     """Whether a variable or attribute of this name was added by the user."""
     return name.startswith(USER_PREFIX)
 
@@ -115,7 +115,7 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
             raise ValueError(f"{shown} is a link, and a result has no links")
         data = file[name]
         if not isinstance(data, h5py.Dataset):
-            if is_users(name) and isinstance(data, h5py.Group):
+            if is_user_added(name) and isinstance(data, h5py.Group):
                 continue
             raise ValueError(f"{shown} is not a variable")
         if data.is_virtual or data.external:
@@ -124,7 +124,7 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
         if place in places:
             raise ValueError(f"{shown} is another name of a variable")
         places.add(place)
-        if not is_users(name):
+        if not is_user_added(name):
             yield name, data
 
 
@@ -173,7 +173,7 @@ def _blocks(data: h5py.Dataset) -> Iterator[Any]:
 
 def _plain_attributes(attributes: Mapping[str, Any]) -> dict[str, Any]:
     """Attributes as lists of numbers or texts by name, without attributes of HDF5, netCDF and the user."""
-    names = (name for name in attributes if name not in BOOKKEEPING and not is_users(name))
+    names = (name for name in attributes if name not in BOOKKEEPING and not is_user_added(name))
     plain = {name: _plain(attributes[name]) for name in names}
     return {name: value for name, value in plain.items() if (name, str(value)) != XARRAY_FILL_ATTRIBUTE}
 

@@ -63,7 +63,7 @@ def kernels_of(attributes: Mapping[str, Any]) -> list[str]:
     return str(attributes.get(KERNELS_ATTRIBUTE, KERNEL_NOT_RECORDED)).splitlines()
 
 
-def united_kernels(*several: Iterable[str]) -> str:
+def merged_blas_kernels(*several: Iterable[str]) -> str:
     """Value of KERNELS_ATTRIBUTE for a file with points computed by all these BLAS kernels."""
     return "\n".join(sorted({kernel for kernels in several for kernel in kernels}))
 
@@ -112,7 +112,7 @@ def merged_history(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """
     history: dict[str, Any] = {
         "shard": "",
-        KERNELS_ATTRIBUTE: united_kernels(*map(kernels_of, several))[:LONGEST_ATTRIBUTE],
+        KERNELS_ATTRIBUTE: merged_blas_kernels(*map(kernels_of, several))[:LONGEST_ATTRIBUTE],
     }
     history |= united_reasons(*(str(each.get(FAILURE_REASONS, "")) for each in several))
     runs = [attributes for attributes in several if "ranks" in attributes]

@@ -18,7 +18,7 @@ from ..run.journal import journal_directory, read_journals, read_reasons
 from .exchange import FileReplacement, disk_refusals, identity
 from .points import missing_ranges, write_points
 from .provenance import now, reasons_added
-from .validation import ResultHeader, is_ours, read_header, reading
+from .validation import ResultHeader, is_rodsweep_file, read_header, reading
 
 MAX_REREADS = 20
 """Maximum number of attempts to read a file that is replaced meanwhile. A run replaces its file every few
@@ -28,7 +28,7 @@ SNAPSHOT = "snapshot"
 Found = TypeVar("Found")
 
 
-def read_unfolded(path: Path, read: Callable[[], Found]) -> Found:
+def read_file_and_journals(path: Path, read: Callable[[], Found]) -> Found:
     """Result of the function `read`, which reads a file and its journals, and is called again if the file was
     replaced meanwhile.
 
@@ -92,7 +92,7 @@ def write_snapshot(path: Path, output: Path) -> tuple[int, int]:
     with disk_refusals(output):
         exchange = FileReplacement(output)
     try:
-        return read_unfolded(path, lambda: _copied(path, exchange))
+        return read_file_and_journals(path, lambda: _copied(path, exchange))
     finally:
         exchange.close()
 
@@ -116,7 +116,7 @@ def _is_snapshot(path: Path) -> bool:
     """Whether a file is a snapshot. A run that continues a snapshot turns the snapshot into an ordinary
     result file.
     """
-    if not is_ours(path):
+    if not is_rodsweep_file(path):
         return False
     with reading(path), h5py.File(path, "r") as file:
         return bool(file.attrs.get(SNAPSHOT))

@@ -28,7 +28,7 @@ def require_room(path: Path, plan: Plan) -> None:
         )
 
 
-def header_in_the_way(path: Path, plan: Plan, journals: Path) -> ResultHeader:
+def header_of_existing_file(path: Path, plan: Plan, journals: Path) -> ResultHeader:
     """Header of the existing file at `path`, where the file of a plan belongs.
 
     Raises InputError unless the existing file is a complete result. journals: journal directory of the file.
@@ -41,7 +41,7 @@ def header_in_the_way(path: Path, plan: Plan, journals: Path) -> ResultHeader:
         raise InputError(f"{error}; the file is left unchanged: {_ways_out(plan, journals)}") from None
 
 
-def refuse_other(header: ResultHeader, plan: Plan, journals: Path) -> None:
+def require_same_config(header: ResultHeader, plan: Plan, journals: Path) -> None:
     """Raises InputError for an existing file, described by `header`, whose config differs from the config of
     the plan. journals: journal directory of the file.
     """

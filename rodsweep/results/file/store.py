@@ -37,8 +37,8 @@ from .exchange import FileReplacement, disk_refusals, identity
 from .points import missing_ranges, parameters_of, statuses, write_points
 from .provenance import merged_history, reasons_added
 from .recent import SNAPSHOT
-from .refusals import header_in_the_way, refuse_other, require_room
-from .validation import ResultHeader, is_ours, reading
+from .refusals import header_of_existing_file, require_room, require_same_config
+from .validation import ResultHeader, is_rodsweep_file, reading
 
 BACKUPS = "before-*.h5"
 """Pattern of the names of copies of the file before an unfinished extension, in the journal directory."""
@@ -78,13 +78,13 @@ class Store:
             elif extend:
                 self._extend(header)
             else:
-                refuse_other(header, self.plan, self.journals)
+                require_same_config(header, self.plan, self.journals)
         self._set_aside(other_journals(self.journals, self.plan.fingerprint), "journals of other points")
         drop_files(self.journals, JOURNALS)  # the remaining journals have no points
 
     def _create(self, fresh: bool) -> None:
         """Creates the file of the plan, with the points of its journals unless `fresh`."""
-        if self.path.exists() and not is_ours(self.path):
+        if self.path.exists() and not is_rodsweep_file(self.path):
             raise InputError(f"{self.path} is not a result file, so --fresh leaves it alone")
         require_room(self.path, self.plan)
         own = journals_of(self.journals, self.plan.fingerprint)
@@ -187,7 +187,7 @@ class Store:
         try:
             header = self._header()
             if header.fingerprint != self.plan.fingerprint:
-                refuse_other(header, self.plan, self.journals)
+                require_same_config(header, self.plan, self.journals)
         except InputError as error:
             raise EnvironmentIncomplete(
                 f"the result file was changed or replaced during the run: {error}"
@@ -243,6 +243,6 @@ class Store:
     def _header(self) -> ResultHeader:
         """Header of the existing file; raises InputError if the file is not a complete result."""
         left = identity(self.path)
-        header = header_in_the_way(self.path, self.plan, self.journals)
+        header = header_of_existing_file(self.path, self.plan, self.journals)
         self.exchange.left = left
         return header

@@ -121,7 +121,7 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Result
     config = json.loads(attributes["config_resolved"])
     attributes.setdefault("task", config["task"])
     layout = layout_of(config)
-    refuse_misfit(file, layout)
+    require_matching_arguments(file, layout)
     fingerprint = fingerprint_of(config, points_in(file, layout).identity)
     return ResultHeader(path, attributes, config, fingerprint, layout, file["status"].size)
 
@@ -151,7 +151,7 @@ def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
         )
 
 
-def refuse_misfit(file: h5py.File, layout: Layout) -> None:
+def require_matching_arguments(file: h5py.File, layout: Layout) -> None:
     """Raises one of the exceptions DAMAGES unless the file has the variables of a layout.
 
     Every variable must be contiguous and have the type and shape of the layout.
@@ -167,7 +167,7 @@ def refuse_misfit(file: h5py.File, layout: Layout) -> None:
             raise ValueError(f"its variable {name} is not stored in one contiguous piece")
 
 
-def is_ours(path: Path) -> bool:
+def is_rodsweep_file(path: Path) -> bool:
     """Whether a file is a rodsweep result, or an HDF5 file that is too damaged to be identified."""
     if not path.is_file():
         return False

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import PARAMETERS
 from ..layouts.variables import TYPED_UNIT
-from .content import is_users
-from .recent import insert_records, journalled_points, journalled_reasons, read_unfolded
+from .content import is_user_added
+from .recent import insert_records, journalled_points, journalled_reasons, read_file_and_journals
 from .validation import cleaned, open_whole, reading, refuse_absent
 
 LARGEST_CHECKED = 10**9
@@ -43,10 +43,10 @@ class Variables(Mapping[str, np.ndarray]):
 
     def __contains__(self, name: object) -> bool:
         with reading(self.path):
-            return name in self.file and not is_users(str(name))
+            return name in self.file and not is_user_added(str(name))
 
     def __iter__(self) -> Iterator[str]:
-        return (name for name in self.file if not is_users(name))
+        return (name for name in self.file if not is_user_added(name))
 
     def __len__(self) -> int:
         return sum(1 for _ in self)
@@ -175,7 +175,7 @@ def read_view(path: Path) -> View:
 
     Raises InputError if the file is no result.
     """
-    return read_unfolded(path, lambda: _view(path))
+    return read_file_and_journals(path, lambda: _view(path))
 
 
 def _view(path: Path) -> View:

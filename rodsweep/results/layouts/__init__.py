@@ -8,7 +8,7 @@ from typing import Any
 from . import branch, criticality, limit_cycle, modes, phase_diagram, spectrum, thresholds
 from .arm import with_si
 from .rods import optional_in
-from .variables import IncreaseRule, Layout, Variable
+from .variables import ExtensionRule, Layout, Variable
 
 MODULES = {
     "spectrum": spectrum,
@@ -23,7 +23,7 @@ LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
     task: module.layout for task, module in MODULES.items()
 }
 """Function from a resolved config to the layout of the file, by task."""
-INCREASES: dict[str, dict[str, IncreaseRule]] = {task: module.INCREASES for task, module in MODULES.items()}
+INCREASES: dict[str, dict[str, ExtensionRule]] = {task: module.INCREASES for task, module in MODULES.items()}
 """Rules for the options of which a larger value requests more data of a point, by task and option. A file
 cannot be extended if any other option changes."""
 BESIDE_POINTS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
@@ -54,7 +54,7 @@ def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]
     return found(config, is_grid) if found else ()
 
 
-def lacks_curves(attributes: Mapping[str, Any]) -> bool:
+def lacks_joint_variables_in(attributes: Mapping[str, Any]) -> bool:
     """Whether a file with these attributes still lacks the curves of a phase diagram between its rows."""
     if "finished" in attributes or "config_resolved" not in attributes:
         return False

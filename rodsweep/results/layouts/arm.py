@@ -111,7 +111,7 @@ def with_si(layout: Layout, config: Mapping[str, Any]) -> Layout:
     if config.get("parameters", {}).get("arm") is None:
         return layout
     variables = (*layout.variables, *si_variables_of(layout, config).values(), *VALIDITY)
-    return replace(layout, variables=variables, over=over_of(config))
+    return replace(layout, variables=variables, over=arm_axis_names(config))
 
 
 def si_variables_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Variable]:
@@ -168,7 +168,7 @@ def si_variable(variable: Variable, values: Array, quantities: Mapping[str, Arra
     return si_variable, values * si.scale(quantities)
 
 
-def over_of(config: Mapping[str, Any]) -> tuple[str, ...]:
+def arm_axis_names(config: Mapping[str, Any]) -> tuple[str, ...]:
     """Names of the axes of a grid over an arm's quantities in a resolved config; else empty."""
     parameters = config["parameters"]
     axes = parameters["arm"] | {name: axis for name, axis in parameters.items() if name in PARAMETERS}
@@ -177,7 +177,7 @@ def over_of(config: Mapping[str, Any]) -> tuple[str, ...]:
     return names_over(sizes, makes_diagram(config["task"]))
 
 
-def quantities_of(parameters: Axes, points: Points) -> tuple[Filled, ...]:
+def arm_variables(parameters: Axes, points: Points) -> tuple[Filled, ...]:
     """(variable, values) of each quantity and unit of a config's arm; empty if the config has no arm.
 
     For a grid over the arm's quantities the axes come first, and every parameter is included, along the grid.

@@ -8,7 +8,7 @@ from .variables import (
     NEEDS_NEW_SOLVE,
     SECONDS,
     STATUS,
-    IncreaseRule,
+    ExtensionRule,
     Layout,
     Variable,
     along_dimension,
@@ -115,12 +115,12 @@ def special_variables(parameter: str) -> tuple[Variable, ...]:
     )
 
 
-def _has(name: str) -> IncreaseRule:
+def _has(name: str) -> ExtensionRule:
     """Rule for the maximum length of a list; the variable `name` is the number of its items.
 
     A stored list that is not full already has all items.
     """
-    return IncreaseRule(lambda records, before: records[name] < before)
+    return ExtensionRule(lambda records, before: records[name] < before)
 
 
 INCREASES = {"cycles": _has("point_count"), "special": _has("special_count"), "certify": NEEDS_NEW_SOLVE}

@@ -15,7 +15,7 @@ from .variables import (
     NOT_KNOWN,
     SECONDS,
     STATUS,
-    IncreaseRule,
+    ExtensionRule,
     Layout,
     Variable,
     along_dimension,
@@ -134,12 +134,12 @@ def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
     )
 
 
-NO_CYCLE = IncreaseRule(lambda records, before: np.isnan(records["period"]))
+NO_CYCLE = ExtensionRule(lambda records, before: np.isnan(records["period"]))
 """Rule for the options that set the stored data of a cycle: after an increase, every point with a cycle is
 solved again."""
 INCREASES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), NO_CYCLE) | {
     "transient": NEEDS_NEW_SOLVE,
-    "time": IncreaseRule(NO_CYCLE.has, ("tau2", "tau1")),
+    "time": ExtensionRule(NO_CYCLE.has, ("tau2", "tau1")),
 }
 
 

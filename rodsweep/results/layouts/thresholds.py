@@ -10,7 +10,7 @@ from .variables import (
     NEEDS_NEW_SOLVE,
     SECONDS,
     STATUS,
-    IncreaseRule,
+    ExtensionRule,
     Layout,
     Variable,
     boolean,
@@ -77,7 +77,7 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
     )
 
 
-MORE_CROSSINGS = IncreaseRule(lambda records, before: records["crossing_count"] <= before)
+MORE_CROSSINGS = ExtensionRule(lambda records, before: records["crossing_count"] <= before)
 """Rule for the maximum number of stored crossings; a stored list that is not full already has all
 crossings."""
 INCREASES = {"crossings": MORE_CROSSINGS, "certify": NEEDS_NEW_SOLVE}

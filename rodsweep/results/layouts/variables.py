@@ -173,7 +173,7 @@ def listed(
 
 
 @dataclass(frozen=True, slots=True)
-class IncreaseRule:
+class ExtensionRule:
     """Rule for an option of which a larger value only requests more data of every point of a file.
 
     The rule determines which stored points need no new solve when the option increases.
@@ -192,9 +192,9 @@ class IncreaseRule:
         return bool(now > before)
 
 
-NEEDS_NEW_SOLVE = IncreaseRule(lambda records, before: np.zeros(len(records), bool))
+NEEDS_NEW_SOLVE = ExtensionRule(lambda records, before: np.zeros(len(records), bool))
 """Rule for an option whose increase needs a new solve of every point."""
-NEEDS_NO_SOLVE = IncreaseRule(lambda records, before: np.ones(len(records), bool))
+NEEDS_NO_SOLVE = ExtensionRule(lambda records, before: np.ones(len(records), bool))
 """Rule for an option whose increase needs no new solve, because the additional data belong to all points
 together."""
 Filled = tuple[Variable, NDArray[Any]]

@@ -193,7 +193,9 @@ def _stepped(start: ArcPoint, accuracy: float, length: float) -> StepResult[ArcP
         )  # the error of the tangent predictor does not predict the error of the cubic
     tangent = tangent_at(found.orbit, start.scale, start.ahead, bordered_matrix_of(found))
     cosine = float(start.scale.moved(found.orbit, tangent) @ start.ahead)  # both have unit length
-    return StepResult(unmeasured_cycle(start, found, tangent, length, length, accuracy), off, cosine)
+    return StepResult(
+        cycle_with_calibrated_errors(start, found, tangent, length, length, accuracy), off, cosine
+    )
 
 
 def arc_length_between(start: ArcPoint, end: ArcPoint) -> float:
@@ -201,7 +203,7 @@ def arc_length_between(start: ArcPoint, end: ArcPoint) -> float:
     return float(start.ahead @ (start.scale.components(end.orbit) - start.scale.components(start.orbit)))
 
 
-def unmeasured_cycle(
+def cycle_with_calibrated_errors(
     start: ArcPoint, found: ConvergedOrbit, tangent: Array, length: float, ahead: float, accuracy: float
 ) -> ArcPoint:
     """The solved orbit `found` as the cycle of the branch at the arc length `length` from `start`, with

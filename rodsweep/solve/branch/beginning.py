@@ -37,8 +37,9 @@ class BeginningSettings:
     first_amplitudes: tuple[float, ...] = (0.02, 0.008, 0.003)
     """Amplitudes (largest tip y, in L) of the first cycle, tried in this order."""
     max_amplitude_share: float = 0.05
-    """Upper limit of the amplitude of the first cycle, divided by |`HopfBirth.amplitude_coefficient`|. At
-    larger amplitudes the third-order normal form is too inaccurate."""
+    """Upper limit of the amplitude of the first cycle, divided by
+    |`HopfBranchStart.amplitude_coefficient`|. At larger amplitudes the third-order normal form is too
+    inaccurate."""
     min_deflection_amplitude: float = 0.1
     """Amplitude (largest tip y, in L) of the cycle whose deflection is `min_deflection_unit` in a `Scale`."""
     amplitude_ratios: tuple[float, float] = 0.5, 2.0
@@ -56,7 +57,7 @@ ALONG_DEFLECTION = np.array([1.0, 0.0, 0.0])
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class HopfBirth:
+class HopfBranchStart:
     """A Hopf point along the continuation parameter `name`, with the normal form of the cycles that branch
     off."""
 
@@ -119,14 +120,14 @@ class HopfBirth:
         return change, self.crossing.frequency + self.slope.imag * change + c.imag * amplitude**2
 
 
-def hopf_point(path: Path, crossing: Crossing) -> HopfBirth:
+def hopf_point(path: Path, crossing: Crossing) -> HopfBranchStart:
     """The Hopf point with its normal form, at a crossing of the imaginary axis along the parameter path
     `path`; raises Unsolvable."""
     w = complex(0.0, crossing.frequency)
     at = path.at(path.variable(crossing.at))
     _, slope, _ = path_problem(path).eigenvalue(w, path.variable(crossing.at))
     normal = accurate_normal_form(at, w, HOPF_START.normal_form_accuracy)
-    return HopfBirth(
+    return HopfBranchStart(
         crossing=crossing,
         rod=at,
         name=path.name,
@@ -137,7 +138,7 @@ def hopf_point(path: Path, crossing: Crossing) -> HopfBirth:
     )
 
 
-def hopf_as_special_point(hopf: HopfBirth) -> SpecialPoint:
+def hopf_as_special_point(hopf: HopfBranchStart) -> SpecialPoint:
     """The Hopf point as a special point, for the start or the end of a branch."""
     return SpecialPoint(
         kind=SpecialKind.hopf,
@@ -152,7 +153,7 @@ def hopf_as_special_point(hopf: HopfBirth) -> SpecialPoint:
     )
 
 
-def first_cycle(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) -> ArcPoint:
+def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspace) -> ArcPoint:
     """The first cycle of the branch from the Hopf point `hopf`, to a relative accuracy; raises Unsolvable.
 
     workspace: memory of Newton's matrices.
@@ -171,7 +172,12 @@ def first_cycle(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) ->
 
 
 def _cycle_of(
-    hopf: HopfBirth, amplitude: float, aim: float, finer: bool, accuracy: float, workspace: NewtonWorkspace
+    hopf: HopfBranchStart,
+    amplitude: float,
+    aim: float,
+    finer: bool,
+    accuracy: float,
+    workspace: NewtonWorkspace,
 ) -> ArcPoint:
     """The cycle near the normal form's cycle with the largest tip y `amplitude`, in L, to a relative
     accuracy; raises Unsolvable.
@@ -200,7 +206,7 @@ def _cycle_of(
     return first_measured_cycle(first, scale, border, born, accuracy)
 
 
-def predicted_cycle(hopf: HopfBirth, amplitude: float) -> Orbit:
+def predicted_cycle(hopf: HopfBranchStart, amplitude: float) -> Orbit:
     """The normal form's cycle with the largest tip y `amplitude`, in L, on the normal form's mesh in space
     and a coarse mesh in time; raises Unsolvable."""
     change, frequency = hopf.moved_by(amplitude)

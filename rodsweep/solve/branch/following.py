@@ -12,7 +12,7 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable
 from .arc import ARC_STEPS, ArcPoint, arc_length_between, cycle_at_length, next_point
-from .beginning import HopfBirth, first_cycle, hopf_as_special_point
+from .beginning import HopfBranchStart, first_cycle, hopf_as_special_point
 from .branch_curve import BranchCurve, BranchEnd
 from .range_end import cycle_at_range_end, range_end_condition
 from .settling import measurement_due
@@ -35,7 +35,7 @@ from .work import fraction_done
 class BranchLimits:
     """Limits of the branches of a rod: range, number of cycles, and special points where a branch may end."""
 
-    hopfs: Sequence[HopfBirth]
+    hopfs: Sequence[HopfBranchStart]
     """Hopf points of the rod within the range."""
     ends: tuple[float, float]
     """Smallest and largest coordinate of the continuation parameter, at which branches end."""

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..continuation.follower import zero_along_step
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
-from .arc import ArcPoint, tangent_at, unmeasured_cycle
+from .arc import ArcPoint, cycle_with_calibrated_errors, tangent_at
 from .bordered.condition import BorderCondition
 from .bordered.matrix import bordered_matrix_of
 from .special.segment import BranchSegment
@@ -38,4 +38,4 @@ def cycle_at_range_end(
     predicted = segment.predicted(length)
     found = range_end.solved(predicted, tolerance, start.workspace, matrix_distance(accuracy))
     tangent = tangent_at(found.orbit, scale, start.ahead, bordered_matrix_of(found))
-    return unmeasured_cycle(start, found, tangent, length, length, accuracy)
+    return cycle_with_calibrated_errors(start, found, tangent, length, length, accuracy)

@@ -67,7 +67,7 @@ def first_measured_cycle(
     derivatives = replace(derivatives, curvature=derivatives.rate / born, multiplier_rate=2 * lost / born)
     calibration = measured_errors(found, derivatives, accuracy, None)
     cycle = with_calibrated_errors(calibration.at_parameter, found, accuracy)
-    return on_sufficient_mesh(
+    return solve_on_sufficient_mesh(
         ArcPoint(
             cycle=cycle, derivatives=derivatives, length=ARC_STEPS.first_length, calibration=calibration
         ),
@@ -96,7 +96,7 @@ def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: 
     return replace(point, cycle=cycle, calibration=calibration, unmeasured=0, arc_since_measured=0.0)
 
 
-def on_sufficient_mesh(
+def solve_on_sufficient_mesh(
     point: ArcPoint, accuracy: float, condition: BorderCondition | None = None
 ) -> ArcPoint:
     """The same cycle with measured errors within the accuracy, on a mesh chosen for this accuracy; raises
@@ -159,7 +159,7 @@ def with_errors_in_accuracy(
         for point in between
     ]
     # Only after the interpolation, because the interpolated errors belong to the old mesh.
-    end = on_sufficient_mesh(end, accuracy, condition)
+    end = solve_on_sufficient_mesh(end, accuracy, condition)
     again = [
         point if point.calibration.largest(accuracy) <= accuracy else _on_mesh_of(end, point, accuracy)
         for point in known
@@ -173,7 +173,7 @@ def _on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
     solved = solved_on_mesh(point, mesh_of(end.orbit), point.condition(0.0), accuracy)
     # With share 1 the errors are the errors of `end`, because the cycle now has the mesh of `end`.
     solved = _with_errors_between(end, solved, end, 1.0, accuracy)
-    return on_sufficient_mesh(solved, accuracy)
+    return solve_on_sufficient_mesh(solved, accuracy)
 
 
 def _with_errors_between(

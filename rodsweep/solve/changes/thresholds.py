@@ -82,10 +82,10 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
         found = transitions(Path(rod, "F"), 0.0, end, request.certify, request.crossings)
         return judged(found, request.accuracy, request.certify, request.crossings)
 
-    return solved(search, lambda cause: nothing_found(ThresholdStatus.failed, end, cause))
+    return solved(search, lambda cause: empty_thresholds(ThresholdStatus.failed, end, cause))
 
 
-def nothing_found(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:
+def empty_thresholds(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:
     """A result without changes, for a rod that needs no search or whose search failed. end: parameter value
     at the end of the search."""
     found = Transitions(proved=status == ThresholdStatus.ok)

@@ -15,7 +15,7 @@ Curve = TypeVar("Curve")
 
 
 class BoundaryProblem(Protocol[Curve]):
-    """Interface of `boundary_search` to the curves through seed points, which are identified by their
+    """Interface of `trace_boundaries` to the curves through seed points, which are identified by their
     index."""
 
     def next_seed(self, left: Sequence[int]) -> int:
@@ -68,7 +68,7 @@ class BoundarySearch(Generic[Curve]):
         return Boundaries(tuple(self.curves), max(found, default=0.0), len(self.distances) - len(found))
 
 
-def boundary_search(
+def trace_boundaries(
     problem: BoundaryProblem[Curve], seeds: Iterable[int], agree: float
 ) -> BoundarySearch[Curve]:
     """Traces curves until every seed point lies on a curve or was tried, or until the result of a unit of

@@ -17,7 +17,7 @@ import numpy as np
 
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
-from ..motion.held_tip import held_by_tip
+from ..motion.held_tip import equilibrium_at_tip
 from ..motion.integrator import forget_integrators
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import Unsolvable, solved
@@ -27,7 +27,7 @@ from .cycle import Cycle, CycleRequest, MotionShapes, padded_or_cut, with_measur
 from .hopf_start import hopf_point_below, orbit_from_hopf
 from .neighbour import Neighbour, cycle_from_neighbour
 from .second_state import second_state
-from .small_motion import reason_for_decay, small_cycle
+from .small_motion import reason_for_decay, stable_cycle_near_hopf
 from .status import CycleStatus
 from .straight_rod import StraightRod, eigenvalues_to_follow, straight_rod
 from .transient.motion_mesh import MOTION_MESH, motion_mesh
@@ -101,7 +101,7 @@ def _solve(
         with suppress(Unsolvable):
             found = cycle_from_neighbour(neighbour, form, along, request.accuracy, workspace)
     elif neighbour is None and not request.is_traced:
-        found = small_cycle(_form_of_motion(rod), w, request, along, workspace)
+        found = stable_cycle_near_hopf(_form_of_motion(rod), w, request, along, workspace)
     if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
         cycle = _with_numbers(replace(straight, status=CycleStatus.cycle), found, request)
         return _with_chain_state(cycle, found, neighbour, along, request.accuracy, stability)
@@ -211,7 +211,7 @@ def _from_motion(
     of the neighbour's cycle."""
     beam = transient.beam
     if request.tip is not None:
-        start = held_by_tip(beam, *request.tip)
+        start = equilibrium_at_tip(beam, *request.tip)
     elif neighbour is None:
         start = request.amplitude * transient.mode.z.real
     else:

@@ -33,7 +33,7 @@ class SmallMotionSettings:
 SMALL_MOTION = SmallMotionSettings()
 
 
-def small_cycle(
+def stable_cycle_near_hopf(
     form: StressForm, w: complex, request: CycleRequest, along: str | None, workspace: NewtonWorkspace
 ) -> RefinedCycle | None:
     """The stable small cycle near a Hopf point to which the motion from the requested start converges; None

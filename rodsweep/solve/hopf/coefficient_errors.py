@@ -17,7 +17,7 @@ from ...discretization.straight.whole_matrices import straight_matrices
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
 from ..changes.unstable_modes import Crossing
-from .normal_form import NORMAL_FORM, NormalForm, a_third_finer, elements_for, normal_form_on
+from .normal_form import NORMAL_FORM, NormalForm, elements_for, finer_by_a_third, normal_form_on
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,7 +103,9 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
     rounding = 0.0
     for number in range(COEFFICIENT.max_refinements):
         here = Elements(fine.form.mesh.edges, fine.form.mesh.order)
-        more = a_third_finer(here) if number else Elements(here.edges, here.order + COEFFICIENT.more_orders)
+        more = (
+            finer_by_a_third(here) if number else Elements(here.edges, here.order + COEFFICIENT.more_orders)
+        )
         coarse = fine
         fine = normal_form_on(more, rod, w, accuracy)
         change = abs(fine.c - coarse.c) / abs(fine.c)

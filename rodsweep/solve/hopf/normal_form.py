@@ -170,7 +170,7 @@ def of_odd_order(elements: Elements) -> Elements:
     return Elements(elements.edges, elements.order | 1)
 
 
-def a_third_finer(elements: Elements) -> Elements:
+def finer_by_a_third(elements: Elements) -> Elements:
     """Elements with about a third more unknowns than `elements`, of odd order."""
     order = ceil(elements.order * RESOLUTION.refinement_ratio)
     if order <= RESOLUTION.max_order:
@@ -218,7 +218,7 @@ def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[
             q = q / np.abs(q).max()
             p = p / np.abs(p).max()
         Mq = elements.times_M(q)
-        w = complex(np.vdot(p, elements.times_A(q)) / np.vdot(p, Mq))
+        w = complex(np.vdot(p, elements.apply_A(q)) / np.vdot(p, Mq))
         if abs(w - shift) <= NORMAL_FORM.found * abs(w):
             break
     else:

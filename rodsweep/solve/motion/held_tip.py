@@ -48,7 +48,7 @@ class HeldTipSettings:
 HELD_TIP = HeldTipSettings()
 
 
-def held_by_tip(beam: Beam, x: float, y: float) -> Array:
+def equilibrium_at_tip(beam: Beam, x: float, y: float) -> Array:
     """The state z, (unknowns,), of the rod bent until the tip is at (x, y), in L.
 
     A target beyond `HeldTipSettings.reach` is moved towards the clamp. If Newton's method fails on the path

@@ -35,7 +35,7 @@ class TailSettings(CompiledSettings):
     """Coefficients smaller than this number times the largest coefficient are replaced by this limit in the
     measurement of the decay."""
     last_coefficients: int = 4
-    """Number of last coefficients in space whose norm is the tail of `lasting_tails`; the norm of this many
+    """Number of last coefficients in space whose norm is the tail of `smooth_tails`; the norm of this many
     coefficients changes smoothly along a branch."""
 
 
@@ -123,7 +123,7 @@ def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array
     return largest
 
 
-def lasting_tails(orbit: Orbit) -> Array:
+def smooth_tails(orbit: Orbit) -> Array:
     """Tails in space and in time, (2,), divided by the largest values. These tails change smoothly along a
     branch, because the tail in space is the norm of `TAILS.last_coefficients` coefficients: a single
     coefficient may vanish."""

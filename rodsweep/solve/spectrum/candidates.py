@@ -127,7 +127,7 @@ def compare_with_count(problem: TransverseProblem, found: Roots, modes: int) -> 
     w: Any = found.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = found.error.tolist()
     line = line_for_proof(w[modes - 1], errors[modes - 1])
-    complete, evaluations = problem.none_is_missing(line, found)
+    complete, evaluations = problem.prove_complete(line, found)
     if complete:
         here, clear = _right_of(line, w, errors)
         return CountComparison(EigenvalueCount(here, evaluations), here, clear)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.arm.completeness import COMPLETENESS, cheapest_proof, none_is_missing
+from ...determinant.arm.completeness import COMPLETENESS, cheapest_proof, prove_complete
 from ...determinant.arm.count.count import count_right_of as count_of_arm
 from ...determinant.arm.count.count import is_countable, largest_w_of_count
 from ...determinant.arm.determinant import arm_determinant
@@ -84,7 +84,7 @@ class TransverseProblem(ABC):
         arm faster.
         """
 
-    def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
+    def prove_complete(self, line: float, found: Roots) -> tuple[bool, int]:
         """Returns (proved, evaluations). proved: whether it is proved that `found` contains all eigenvalues
         to the right of `line`. evaluations: number of evaluations of D.
 
@@ -180,8 +180,8 @@ class ArmProblem(TransverseProblem):
     def is_countable(self) -> bool:
         return is_countable(self._determinant, self._hull)
 
-    def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
-        return none_is_missing(line, found.w, found.error, self._determinant, self._hull)
+    def prove_complete(self, line: float, found: Roots) -> tuple[bool, int]:
+        return prove_complete(line, found.w, found.error, self._determinant, self._hull)
 
 
 def transverse_problem(rod: Rod, to_prove: int = 0) -> TransverseProblem:

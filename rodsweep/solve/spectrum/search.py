@@ -23,7 +23,7 @@ __all__ = ["Search", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
 
 
 @dataclass(frozen=True, slots=True)
-class JudgedCandidates:
+class CheckedCandidates:
     """Candidates, with the comparison with a count if requested, and with their largest error."""
 
     candidates: Candidates
@@ -79,7 +79,7 @@ class Search:
         self.aim = mesh_accuracy(request.accuracy, self.with_vectors) if bounded else request.accuracy
         self.mesh = self.problem.mesh_for(request.modes, self.aim)
         self.wanted = request.modes + self.problem.spare_eigenvalues if wanted is None else wanted
-        self.best: JudgedCandidates | None = None
+        self.best: CheckedCandidates | None = None
         self.stalled = self.failures = 0
         self.disagreement: CountComparison | None = None
         """The comparison of the last count that disagrees with the eigenvalues found."""
@@ -97,7 +97,7 @@ class Search:
             judged = self.judge(found)
             if judged is None:
                 continue
-            self.keep_if_better(judged)
+            self.update_best(judged)
             if (
                 judged.error_over_limit <= SEARCH.max_error_over_limit
                 or self.stalled >= SEARCH.max_stalled_refinements
@@ -108,7 +108,7 @@ class Search:
             )
         return self.conclude()
 
-    def judge(self, found: Candidates) -> JudgedCandidates | None:
+    def judge(self, found: Candidates) -> CheckedCandidates | None:
         """The candidates if no eigenvalue is missing; else None, after a finer mesh or more eigenvalues were
         chosen for the next attempt."""
         if len(found.roots.w) < self.modes:
@@ -134,7 +134,7 @@ class Search:
             self.disagreement = comparison
             self.request_missing(comparison.count.number, comparison.found_count)
             return None
-        return JudgedCandidates(found, comparison, self.error_over_limit(found, comparison))
+        return CheckedCandidates(found, comparison, self.error_over_limit(found, comparison))
 
     def error_over_limit(self, found: Candidates, comparison: CountComparison | None) -> float:
         """The largest ratio of an error of the candidates to the allowed error.
@@ -188,7 +188,7 @@ class Search:
             self.mesh = self.problem.finer_mesh(self.mesh)
         self.wanted = wanted
 
-    def keep_if_better(self, judged: JudgedCandidates) -> None:
+    def update_best(self, judged: CheckedCandidates) -> None:
         """Stores the candidates if they are the best so far; counts successive attempts without progress."""
         best = self.best
         better = best is None or judged.grade < (best.grade[0], SEARCH.progress_ratio * best.error_over_limit)
@@ -215,7 +215,7 @@ class Search:
         return failed_spectrum(SpectrumStatus.failed, self.request, self.why)
 
 
-def _result(best: JudgedCandidates, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:
+def _result(best: CheckedCandidates, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:
     """The spectrum of the best candidates, with its status and whether it is proved complete."""
     found = best.candidates.roots
     comparison = best.comparison

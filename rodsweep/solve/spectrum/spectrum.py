@@ -43,7 +43,7 @@ class SpectrumErrorSettings:
     digits, the largest error is 1.6 times the stated error."""
 
 
-SPECTRUM_ERRORS = SpectrumErrorSettings()
+SPECTRUM_ERROR_SETTINGS = SpectrumErrorSettings()
 
 NumberPerRod = Any
 """A number of one rod, or an array, (n,), of the numbers of n rods solved together."""
@@ -124,7 +124,7 @@ def errors_with_rounding(w: Complex, error: Array, rod: Rod) -> Array:
 
     w, error: of any equal shape. rod: the rod, or any rod of the path of these eigenvalues.
     """
-    rounding = SPECTRUM_ERRORS.rounding if rod.standard else SPECTRUM_ERRORS.rounding_of_arms
+    rounding = SPECTRUM_ERROR_SETTINGS.rounding if rod.standard else SPECTRUM_ERROR_SETTINGS.rounding_of_arms
     return error + rounding * ROUND_OFF * np.abs(w)
 
 

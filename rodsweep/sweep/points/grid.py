@@ -55,7 +55,7 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
             raise InputError(str(error)) from None
     named = {name: axes[name] for name in config.names}
     coverage = None if parameters.arm is None else _partly_crushed(named, config.build)
-    refuse_axes(axes, config.into_crushed or coverage is not None, config.build)
+    refuse_axes(axes, config.allows_crushed_rods or coverage is not None, config.build)
     return Points(config.names, tuple(named.values()), is_grid=True, coverage=coverage)
 
 
@@ -101,11 +101,11 @@ def refuse_outside(
         )
 
 
-def refuse_axes(axes: dict[str, Array], into_crushed: bool = False, build: Build = STANDARD) -> None:
+def refuse_axes(axes: dict[str, Array], allows_crushed_rods: bool = False, build: Build = STANDARD) -> None:
     """Raises InputError if a value on an axis is outside the range of its parameter, or if rods are crushed.
 
-    axes: values, (n,), by name of the parameter. into_crushed: whether some rods, but not all rods, of the
-    grid may be crushed.
+    axes: values, (n,), by name of the parameter. allows_crushed_rods: whether some rods, but not all rods, of
+    the grid may be crushed.
     """
     for name, column in axes.items():
         refuse_outside(PARAMETERS[name].allowed, name, column)
@@ -113,13 +113,13 @@ def refuse_axes(axes: dict[str, Array], into_crushed: bool = False, build: Build
         return
     shares = build.relative_crushing_forces(axes.get("taper", np.ones(1)))
     if (shares == 1).all():
-        _refuse_crushed(axes["F"], axes["k1"], into_crushed)
-    elif into_crushed and axes["F"].min() >= axes["k1"].max() * shares.max():
+        _refuse_crushed(axes["F"], axes["k1"], allows_crushed_rods)
+    elif allows_crushed_rods and axes["F"].min() >= axes["k1"].max() * shares.max():
         raise InputError(
             f"parameters.F starts at {axes['F'].min():.15g}, but the weakest section of all arms is crushed "
             f"at {axes['k1'].max() * shares.max():.15g}; F must start below"
         )
-    elif not into_crushed and axes["F"].max() >= axes["k1"].min() * shares.min():
+    elif not allows_crushed_rods and axes["F"].max() >= axes["k1"].min() * shares.min():
         raise InputError(
             f"parameters.F reaches {axes['F'].max():.15g}, but the weakest section of the arms is crushed at "
             f"{axes['k1'].min() * shares.min():.15g}; F must stay below"

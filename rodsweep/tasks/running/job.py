@@ -15,7 +15,7 @@ from ...errors import InputError
 from ...results.file import provenance
 from ...results.file.creation import Plan
 from ...results.layouts import LAYOUTS, layout_of
-from ...results.layouts.arm import at_points, quantities_of, si_record
+from ...results.layouts.arm import arm_variables, at_points, si_record
 from ...results.layouts.variables import Filled, Layout
 from ...solve.status import PointStatus
 from ...sweep.points.flutter_forces import FlutterForces
@@ -65,7 +65,7 @@ class Job:
     @property
     def quantities(self) -> tuple[Filled, ...]:
         """Quantities of the config's arm as coordinates of the points; empty if the config has no arm."""
-        return quantities_of(self.config.parameters, self.points)
+        return arm_variables(self.config.parameters, self.points)
 
     def solver(self) -> Solver:
         """The solver of the task; for an arm, the results also contain values in SI units and the validity of

@@ -18,7 +18,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc import cycle_at_length, next_point
 from rodsweep.solve.branch.beginning import first_cycle, hopf_point
 from rodsweep.solve.branch.range_end import cycle_at_range_end, range_end_condition
-from rodsweep.solve.branch.settling import measurement_due, on_sufficient_mesh
+from rodsweep.solve.branch.settling import measurement_due, solve_on_sufficient_mesh
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.branch.special.points import special_points
 from rodsweep.solve.changes.along_path import pair_crossings
@@ -77,10 +77,10 @@ def branch_of_this(rod, kind, F):
                 special = point
         if special is not None and (there.at - F) * (here.at - F) <= 0:
             edge = range_end_condition(here, F)
-            return special, on_sufficient_mesh(
+            return special, solve_on_sufficient_mesh(
                 cycle_at_range_end(here, there, edge, ACCURACY), ACCURACY, edge
             )
-        here = on_sufficient_mesh(there, ACCURACY) if measurement_due(there) else there
+        here = solve_on_sufficient_mesh(there, ACCURACY) if measurement_due(there) else there
 
 
 def test_auto_has_the_same_fold_and_the_same_unstable_cycle_beyond(auto, tmp_path):

@@ -23,7 +23,7 @@ from rodsweep.solve.branch.following import (
     follow_branch,
     follow_from_cycle,
 )
-from rodsweep.solve.branch.settling import on_sufficient_mesh
+from rodsweep.solve.branch.settling import solve_on_sufficient_mesh
 from rodsweep.solve.branch.special import locating
 from rodsweep.solve.branch.special.point import SPECIAL_POINT, EndReason, SpecialKind
 from rodsweep.solve.branch.special.points import special_kinds_between
@@ -138,7 +138,9 @@ def test_followed_back_the_branch_ends_where_it_was_born(known):
     here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     for _ in range(2):
         here = next_point(here, ROUGH)
-    curve = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(on_sufficient_mesh(here, ROUGH)), known)
+    curve = follow_from_cycle(
+        BranchCurve(start_hopf=-1), turned_back(solve_on_sufficient_mesh(here, ROUGH)), known
+    )
     assert curve.complete
     assert curve.end_breaking is known.breakings[0]
     assert kinds(curve) == ["symmetry_breaking"]

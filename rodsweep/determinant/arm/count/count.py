@@ -38,7 +38,7 @@ class PhaseLost(ArithmeticError):
         self.nodes = nodes
 
 
-class BoxWalk(NamedTuple):
+class BoundaryTraversal(NamedTuple):
     """State of a walk along the contour of a count: on side number `side`, at a distance from its start.
 
     phase_change: of arg D so far. node: the last of `nodes` nodes. reach_growth: change of the reach per
@@ -129,7 +129,7 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
     unit = determinant.length(corners[0])
     trial = unit, min(ARM_COUNT.first_radius * unit, level[0] - abs(corners[0]))
     first = phase_node(corners[0], known, trial, hull, (samples[1], level))
-    walk = BoxWalk(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
+    walk = BoundaryTraversal(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
     while True:
         walk = _advance(walk, (corners, largest), known, hull, samples, level)
         if walk.needed_size == 0:
@@ -142,13 +142,13 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
 
 @compiled
 def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
-    walk: BoxWalk,
+    walk: BoundaryTraversal,
     box: tuple[Complex, float],
     known: Complex,
     hull: Hull,
     samples: tuple[ArmSamples, ArmSamples],
     level: BoundedPropagators,
-) -> BoxWalk:
+) -> BoundaryTraversal:
     """Continues a walk along the box until its end, or until propagators for a larger or smaller |w| are
     needed.
 
@@ -164,7 +164,7 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
             side, t, growth = side + 1, 0.0, 0.0
             continue
         if not here.reach > ARM_COUNT.min_reach * abs(here.w) or nodes > ARM_COUNT.max_nodes:
-            return BoxWalk(side, t, total, nodes, here, growth, ahead, math.inf)
+            return BoundaryTraversal(side, t, total, nodes, here, growth, ahead, math.inf)
         if ahead == 0:
             ahead = min(_stride(here.reach, growth), length - t)
         w = end if ahead == length - t else corners[side] + (end - corners[side]) / length * (t + ahead)
@@ -175,7 +175,7 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
         enough = max(first, min(ARM_COUNT.max_wave_radius * w.imag, largest - abs(w)))
         needed = abs(w) + min(radius, enough)
         if not needed <= level[0] <= ARM_COUNT.max_level_ratio * max(needed, ARM_ELEMENTS.smallest_level):
-            return BoxWalk(side, t, total, nodes, here, growth, ahead, needed)
+            return BoundaryTraversal(side, t, total, nodes, here, growth, ahead, needed)
         there = phase_node(w, known, (unit, min(radius, level[0] - abs(w))), hull, (samples[1], level))
         nodes += 1
         growth = (there.reach - here.reach) / ahead
@@ -186,7 +186,7 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
             ahead = 0.0
         else:
             ahead = _nearer(here.reach, growth, ahead)
-    return BoxWalk(side, t, total, nodes, here, growth, ahead, 0.0)
+    return BoundaryTraversal(side, t, total, nodes, here, growth, ahead, 0.0)
 
 
 @compiled

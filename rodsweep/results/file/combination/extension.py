@@ -21,7 +21,7 @@ from ....errors import InputError
 from ....sweep.points.points import Points
 from ....sweep.points.stretches import STRETCH_POINTS, stretches_along_longest_axis
 from ...layouts import INCREASES
-from ...layouts.variables import IncreaseRule, Layout
+from ...layouts.variables import ExtensionRule, Layout
 from ..creation import Plan
 from ..points import stored_points
 from ..validation import ResultHeader
@@ -67,7 +67,7 @@ class Extension:
     old: Layout
     new: Layout
     places: StoredPointMap
-    grown: tuple[tuple[IncreaseRule, Any], ...]
+    grown: tuple[tuple[ExtensionRule, Any], ...]
     """(rule, old value) for every option that the new config increases."""
     nothing_stays: bool
     """Whether every stored point is computed again."""

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from ....determinant.parameter_plane import PlaneAxis
-from ...continuation.boundaries import Boundaries, BoundarySearch, boundary_search
+from ...continuation.boundaries import Boundaries, BoundarySearch, trace_boundaries
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import FAILURES, Unsolvable
 from .curves import CYCLE_CURVES, SpecialCurveProblem
@@ -71,7 +71,7 @@ class SpecialBoundaries:
         for kind in FOLLOWED_KINDS:
             curves = _CurvesOfKind(kind, self.line, self.rows, self.special, results)
             seeds = (i for i, one in enumerate(self.special) if one.kind == kind)
-            yield curves, boundary_search(curves, seeds, CURVE_IDENTITY.max_distance)
+            yield curves, trace_boundaries(curves, seeds, CURVE_IDENTITY.max_distance)
 
     def solve(
         self, unit: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
@@ -106,7 +106,7 @@ class _TracedCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvesOfKind:
-    """Problem of `boundary_search` for one kind of special points, with the results of the solved units."""
+    """Problem of `trace_boundaries` for one kind of special points, with the results of the solved units."""
 
     kind: SpecialKind
     line: PlaneAxis

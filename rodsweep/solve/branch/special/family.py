@@ -19,7 +19,7 @@ from ....determinant.parameter_plane import PlaneAxis
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import mesh_of
-from ...orbit.tails import lasting_tails
+from ...orbit.tails import smooth_tails
 from ...point import Unsolvable
 from ..arc import tangent_at
 from ..bordered.condition import BorderCondition, moved_orbit
@@ -133,9 +133,7 @@ class CycleFamily:
             off = abs(fine.at - last.at - slope * (fine.place - last.place))
             error = ACROSS_CURVE.error_factor * off + ACROSS_CURVE.secant_error * abs(fine.at)
             if error <= ACROSS_CURVE.accuracy * abs(fine.at):
-                return replace(
-                    last, errors=CurveErrors(error / abs(last.at), lasting_tails(last.orbit), mesh)
-                )
+                return replace(last, errors=CurveErrors(error / abs(last.at), smooth_tails(last.orbit), mesh))
             last = fine
         raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
 

@@ -10,7 +10,7 @@ import numpy as np
 from ....arrays import Array
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
-from ...orbit.tails import lasting_tails
+from ...orbit.tails import smooth_tails
 from ...point import Unsolvable
 from ..bordered.scale import Scale
 
@@ -108,7 +108,7 @@ class CurveErrors:
     def at(self, point: "SolvedPoint") -> float:
         """Absolute error of the parameter along a row at a neighbouring point with the same mesh."""
         # Errors are of second order in the tails.
-        growth = float((lasting_tails(point.orbit) / self.tails).max()) ** 2
+        growth = float((smooth_tails(point.orbit) / self.tails).max()) ** 2
         return max(growth, 1.0) * self.measured * abs(point.at)
 
     def hold_at(self, point: "SolvedPoint") -> bool:

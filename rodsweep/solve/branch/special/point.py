@@ -125,7 +125,7 @@ class SpecialPoint:
     orbit: Orbit | None = field(default=None, repr=False, compare=False)
     """The cycle at a located special point; None if the point was not located."""
     amplitude_coefficient: float = nan
-    """At a Hopf point the amplitude coefficient of the branch, in L, as in `HopfBirth`; NaN at other
+    """At a Hopf point the amplitude coefficient of the branch, in L, as in `HopfBranchStart`; NaN at other
     points."""
     coefficient_error: float = nan
     """Relative error of `amplitude_coefficient`."""

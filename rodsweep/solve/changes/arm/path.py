@@ -11,7 +11,7 @@ from ....arrays import Array, Complex
 from ....determinant.arm.along_path import ArmAlongPath
 from ....determinant.arm.count.beside_axis import modes_near_axis
 from ....determinant.arm.determinant import arm_determinant
-from ....determinant.arm.family import ArmFamily, family_of
+from ....determinant.arm.family import ArmFamily, interpolated_family
 from ....determinant.arm.hull.hull import hull_of
 from ....determinant.certificate.winding_number import EigenvalueCount
 from ....determinant.parameter_path import Path
@@ -82,7 +82,7 @@ class ArmPath(PathProblem):
         if any(one.low <= low and high <= one.high and highest * 2 <= one.W for one in self._families):
             return
         with suppress(ValueError, FloatingPointError):
-            family = family_of(self.path, low, high, W)
+            family = interpolated_family(self.path, low, high, W)
             self._families += [family] if family is not None else []
 
     def edges(self, low: float, high: float) -> list[float]:

@@ -12,7 +12,7 @@ import numpy as np
 from ....arrays import Array
 from ....determinant.boundary import Boundary
 from ....determinant.parameter_plane import Plane
-from ...continuation.boundaries import Boundaries, boundary_search
+from ...continuation.boundaries import Boundaries, trace_boundaries
 from ..unstable_modes import ChangeKind
 from .boundary_curves import BoundaryCurve, trace
 
@@ -64,7 +64,7 @@ def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rat
 
 @dataclass(frozen=True, slots=True)
 class _ChangeBoundaries:
-    """The boundary curves through the changes of all rows of a plane, as a problem for `boundary_search`."""
+    """The boundary curves through the changes of all rows of a plane, as a problem for `trace_boundaries`."""
 
     plane: Plane
     seeds: list[Seed]
@@ -102,7 +102,7 @@ def curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries[BoundaryCurve]
     """Boundary curves through all changes; each curve is followed once, and the changes on the curve start no
     further curve."""
     problem = _ChangeBoundaries(plane, seeds)
-    return boundary_search(problem, range(len(seeds)), CHANGE_BOUNDARIES.change_distance).boundaries
+    return trace_boundaries(problem, range(len(seeds)), CHANGE_BOUNDARIES.change_distance).boundaries
 
 
 def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:

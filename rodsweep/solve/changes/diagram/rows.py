@@ -16,7 +16,7 @@ from ....determinant.parameter_path import Path
 from ....model.rod import Rod
 from ...point import solved
 from ..along_path import Transitions, transitions
-from ..thresholds import Thresholds, ThresholdStatus, judged, nothing_found
+from ..thresholds import Thresholds, ThresholdStatus, empty_thresholds, judged
 from ..unstable_modes import CHANGE_COUNTS
 
 
@@ -115,7 +115,7 @@ def _uniform(status: ThresholdStatus, values: Array, motion: Motion, message: st
     return DiagramRow(
         motion=np.full(len(values), motion, dtype=np.int8),
         unstable_count=np.full(len(values), -1, dtype=np.int32),
-        changes=nothing_found(status, float(values[-1]), message),
+        changes=empty_thresholds(status, float(values[-1]), message),
     )
 
 

@@ -17,7 +17,7 @@ from ....discretization.elements.resolution import RESOLUTION
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH, OrbitMesh
 from ...orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM
-from ...orbit.tails import lasting_tails, tails_of
+from ...orbit.tails import smooth_tails, tails_of
 from .calibration_settings import CALIBRATION
 from .cycle_errors import CYCLE_ERRORS, CycleErrors, largest_error
 
@@ -45,7 +45,7 @@ class Calibration:
     power: Array
     """Order of convergence of the errors in time, (5,)."""
     tails: Array
-    """Coefficient tails in space and time (`lasting_tails`) and size of the measured orbit, (3,)."""
+    """Coefficient tails in space and time (`smooth_tails`) and size of the measured orbit, (3,)."""
     reach: float
     """Sum of the relative changes of the parameter since the measurement; inf if the errors no longer
     apply."""
@@ -171,7 +171,7 @@ def _stated(space: Array, time: Array, accuracy: float) -> Array:
 
 def _tails(orbit: Orbit) -> Array:
     """Tails of an orbit in space and in time, not below `min_tail`, and its size, (3,)."""
-    return np.append(np.maximum(lasting_tails(orbit), CALIBRATION.min_tail), orbit.size)
+    return np.append(np.maximum(smooth_tails(orbit), CALIBRATION.min_tail), orbit.size)
 
 
 def _growth(before: Array, after: Array) -> Array:

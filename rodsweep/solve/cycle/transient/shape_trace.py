@@ -45,7 +45,7 @@ class ShapeTrace:
         """Whether the maximum number of time steps is recorded; later steps are ignored."""
         return self.steps >= SHAPE_TRACE.max_steps
 
-    def records_on(self, z: Array) -> bool:
+    def needs_more_motion(self, z: Array) -> bool:
         """Whether to integrate the motion further from the state z, (unknowns,), although its outcome is
         known: until the arm is at rest or the record is full."""
         return not self.is_full and abs(float(self.beam.tip(z)[1])) > SHAPE_TRACE.max_rest_deflection

@@ -24,7 +24,7 @@ class TipTrace:
     is_full = False
     """Always False: the record has no maximum length."""
 
-    def records_on(self, z: Array) -> bool:
+    def needs_more_motion(self, z: Array) -> bool:
         """Always False: unlike an animation, the path ends as soon as the outcome of the motion is known. z:
         state, (unknowns,)."""
         return False

@@ -117,7 +117,7 @@ class Transient:
             first = False
             if len(times) < 3 or (early and self.small.slow(times, states)):
                 continue
-            shown = self.trace is not None and self.trace.records_on(z)
+            shown = self.trace is not None and self.trace.needs_more_motion(z)
             if not early and not shown and self.small.decays_as_linear(times, states):
                 return self._ended(CycleStatus.straight, "decays at the rate of the leading mode")
             factor = None if early or self.jumps >= TRANSIENT.max_jumps else self.small.jump(times, states)

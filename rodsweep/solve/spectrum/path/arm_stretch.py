@@ -16,12 +16,12 @@ from ....arrays import Array, Complex
 from ....determinant.arm.completeness import (
     COMPLETENESS,
     has_conjugate,
-    none_is_missing,
     points_right_of_hull,
+    prove_complete,
 )
 from ....determinant.arm.count.count import count_right_of
 from ....determinant.arm.determinant import ArmDeterminant, arm_determinant
-from ....determinant.arm.family import ArmFamily, family_of, is_smooth, propagators_in_family
+from ....determinant.arm.family import ArmFamily, interpolated_family, is_smooth, propagators_in_family
 from ....determinant.arm.hull.hull import hulls_along
 from ....determinant.arm.hull.region import PathHulls, hull_at
 from ....determinant.parameter_path import Path
@@ -113,7 +113,7 @@ def proves_point(path: Path, found: ArmInterval, p: float, request: SpectrumRequ
     arm = arm_determinant(path.at(p))
     line = line_for_proof(complex(roots.w[request.modes - 1]), float(roots.error[request.modes - 1]))
     try:
-        return none_is_missing(line, roots.w, roots.error, arm, hull_at(found.hulls, p))[0]
+        return prove_complete(line, roots.w, roots.error, arm, hull_at(found.hulls, p))[0]
     except FloatingPointError:
         return False
 
@@ -179,7 +179,7 @@ def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[
             if len(points := points_right_of_hull(line, *hull, k))
         ]
         near = [end for end in ends if end <= ARM_STRETCH.headroom * W]
-        family = family_of(path, low, high, max([W, *near]))
+        family = interpolated_family(path, low, high, max([W, *near]))
     except (ValueError, FloatingPointError):
         return None
     return None if family is None else (family, hulls)

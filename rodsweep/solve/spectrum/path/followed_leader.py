@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Complex
-from ....determinant.arm.completeness import largest_w_of_proof, none_is_missing
+from ....determinant.arm.completeness import largest_w_of_proof, prove_complete
 from ....determinant.arm.count.count import count_right_of as count_of_arm
 from ....determinant.arm.count.count import largest_w_of_count
 from ....determinant.arm.determinant import arm_determinant
@@ -95,7 +95,7 @@ def _of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | Non
         return None
     pairs = w.imag != 0
     known = KnownRoots(np.append(w, w[pairs].conj()), np.append(error, error[pairs]))
-    complete, _ = none_is_missing(line_for_proof(leader, float(error[0])), *known, determinant, hull)
+    complete, _ = prove_complete(line_for_proof(leader, float(error[0])), *known, determinant, hull)
     leads = complete or any(
         count_of_arm(line, determinant, hull, *known).number == (known.w.real > line).sum()
         for line in _lines(leader)

@@ -172,7 +172,7 @@ def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str
     unstable = branch.words == "unstable"
     lost: set[str] = set()
     for axes, values in zip(panels, branch.measures, strict=True):
-        axes.plot(*branch.broken_at_onset(values), **look)
+        axes.plot(*branch.with_gap_at_onset(values), **look)
         if unstable.any():
             axes.plot(branch.x[unstable], values[unstable], **look | UNSTABLE_LOOK)
         lost |= _mark_unknown(axes, branch, look["color"])

@@ -51,7 +51,7 @@ class AmplitudeBranch:
         """Square-root laws of the largest y of the tip near the Hopf points."""
         return square_root_laws(self.x, self.amplitude_y, self.hopf)
 
-    def broken_at_onset(self, values: Array) -> tuple[Array, Array]:
+    def with_gap_at_onset(self, values: Array) -> tuple[Array, Array]:
         """Returns (x, values) with NaN inserted between neighbouring points of which one is straight and one
         is not, because a line between these points would suggest a slope.
         """
