@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 NEEDED = ("chromium", "chromedriver")
-LONGEST = 60.0
+LONGEST = 180.0
 """Seconds that a loaded machine may need for anything."""
 needs_browser = pytest.mark.skipif(
     not all(map(shutil.which, NEEDED)), reason="Debian's chromium and chromium-driver are not installed"
