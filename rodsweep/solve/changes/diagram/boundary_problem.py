@@ -34,7 +34,7 @@ class ChangeCurveSettings:
     """Settings for points, ends and folds of a boundary curve."""
 
     beside_an_edge: float = 1e-9
-    """A point on an edge may lie beyond a second edge of the plane by at most this."""
+    """Largest distance by which a point on one edge of the plane may lie beyond another edge."""
     coincident_points: float = 1e-9
     """Two neighbouring points of a curve at a smaller distance are merged, as at a start on an edge of the
     plane."""
