@@ -100,8 +100,8 @@ def squared_amplification_over(path: Path, start: float, stop: float) -> float:
 
 @compiled
 def squared_amplification_between(first: Coefficients, last: Coefficients) -> float:
-    """An upper bound of `squared_amplification` over all rods between two rods of a path; inf without a
-    bound.
+    """An upper bound of `squared_amplification` over all rods between two rods of a path; inf if no
+    bound is known.
 
     Every factor of the bound is monotone along a path, so its extremes are at the two rods; nu g is not, and
     not used.
