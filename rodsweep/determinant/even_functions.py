@@ -18,14 +18,14 @@ from .exponents import ROUND_OFF, HyperbolicFunctions, hyperbolic_functions, mod
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvenFunctionSettings(CompiledSettings):
-    """Settings that choose the method by which s and d are computed."""
+    """Limits that select the formula for the even functions s and d of the exponents, see the module."""
 
     series_terms: int = 13
     """Number of terms of the series of s and d."""
     by_series_below: float = 1.5
-    """|M| + 2 |P| below which `even_functions_by_series` computes s and d."""
+    """If |M| + 2 |P| is smaller, `even_functions_by_series` computes s and d."""
     by_squares_below: float = 0.1
-    """|z+ z-|, in units of |M|^2 + 4 |P|^2, below which `even_sum_by_squares` computes s and d."""
+    """If |z+ z-| / (|M|^2 + 4 |P|^2) is smaller, `even_sum_by_squares` computes s and d."""
 
     def __post_init__(self) -> None:
         n = self.series_terms

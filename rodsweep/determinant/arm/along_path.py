@@ -134,8 +134,8 @@ class ArmAlongPath:
         return FAILED
 
     def _spread(self, x: float, p: float, S: float) -> float:
-        """Estimated rounding error of D exp(-S) at real w = x: the spread of D over different elements, times
-        a factor.
+        """Estimated rounding error of D exp(-S) at real w = x: a factor times the differences of D between
+        different elements.
 
         Minors that are large in the middle of an arm have rounding errors that the `noise` of D
         does not contain.

@@ -77,8 +77,8 @@ class EigenvalueCount:
 
 @compiled
 def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
-    """(change of arg D along the segment from start to end, number of nodes), by dominance or from node to
-    node.
+    """(change of arg D along the segment from start to end, number of nodes), by long steps where one
+    exponential of D dominates, elsewhere from node to node.
 
     The number of nodes is negative after a failure.
     """

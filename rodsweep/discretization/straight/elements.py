@@ -83,7 +83,8 @@ class StraightElements:
 
     @property
     def _reference(self) -> tuple[Array, Array]:
-        """(W D, W) of an element on the rod, (nodes, nodes) and (nodes,)."""
+        """Returns (W D, W) of one element: quadrature weights W, (nodes,), and their product with the
+        differentiation matrix D, (nodes, nodes), for the length of the element."""
         WD, w = _weighted_derivative(self.form.mesh.order)
         return WD, w / (2 * self.form.mesh.elements)
 

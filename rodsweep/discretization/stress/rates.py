@@ -15,9 +15,9 @@ from ..state_layout import stress_index
 
 @compiled_for_vectors
 def write_rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes dz/dt, with time in tau2, into out; z, out: (unknowns,).
+    """Writes dz/dt into `out`. z, out: scaled states, (unknowns,), with time in tau2.
 
-    roots: square roots of C, positive, (d, nodes + 1).
+    roots: positive square roots of the compliances C at the nodes, (d, nodes + 1).
     """
     d, size = c.drag.shape
     V = np.empty((d, size))

@@ -41,8 +41,8 @@ class HopfStartSettings:
     """Force, in k3/L^2, at which the search for a Hopf point ends: no rod oscillates below, because F nu (nu
     + F c2) must exceed the order of pi^2."""
     hopf_tolerance: float = 1e-6
-    """Tolerance of a Hopf point: largest growth rate of the leading mode in units of its frequency, and
-    smallest relative bracket of the force."""
+    """Tolerance of a Hopf point. Newton's method stops when |Re w| < hopf_tolerance |Im w|; an interval of
+    the force with the Hopf point is not divided below the relative width hopf_tolerance."""
     max_newton_steps: int = 15
     """Maximum number of Newton steps to a Hopf point."""
     converged_growth: float = 4.0

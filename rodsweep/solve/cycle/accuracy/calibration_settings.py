@@ -58,9 +58,9 @@ class CalibrationSettings:
     again. Near the Hopf point where the cycles end, the error of the largest y may change sign and then
     grow fast."""
     min_repeated_share: float = 0.5
-    """Smallest error by a repeated measurement on the same mesh, in units of the previous error scaled with
-    the tails. An error that changes sign is small at one cycle only, and as large as before three cycles
-    later."""
+    """Lower limit of an error that is measured again on the same mesh, divided by the previous error scaled
+    with the tails. Where an error changes its sign, the error is small at one cycle, and as large as before
+    three cycles later."""
     min_tail: float = 1e-15
     """Smallest coefficient tail by which errors are scaled; smaller tails are rounding errors."""
 

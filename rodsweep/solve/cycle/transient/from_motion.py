@@ -32,11 +32,11 @@ FROM_MOTION = NewtonFromMotionSettings()
 
 
 def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: float, turns: int) -> Orbit:
-    """The last period of an integrated run as an approximate orbit of the rod in `form`, on the mesh of the
+    """Approximate orbit of the rod in `form` from the last period of an integrated motion, on the mesh of the
     integrated beam.
 
-    period: in tau2. turns: number of returns of the tip per period. If the rod in `form` is in a limit, the
-    beam is a rod near this limit.
+    period: in tau2. turns: number of returns of the tip to theta = 0 per period. If the rod in `form` is a
+    limit, for example inextensible, the integrated beam is a nearby rod.
     """
     from scipy.interpolate import CubicSpline  # slow import: 0.1 s, for few runs
 

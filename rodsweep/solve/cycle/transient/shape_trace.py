@@ -46,8 +46,8 @@ class ShapeTrace:
         return self.steps >= SHAPE_TRACE.max_steps
 
     def needs_more_motion(self, z: Array) -> bool:
-        """Whether to integrate the motion further from the state z, (unknowns,), although its outcome is
-        known: until the arm is at rest or the record is full."""
+        """True until the recorded motion is complete, that is, the arm is at rest or the record is full, even
+        if the outcome is known. z: present state, (unknowns,)."""
         return not self.is_full and abs(float(self.beam.tip(z)[1])) > SHAPE_TRACE.max_rest_deflection
 
     def begin(self, z: Array, relaxed: Array, duration: float) -> None:
