@@ -9,6 +9,8 @@ WINDOW = 80
 """Width of the window, in characters."""
 MOST_LINES = 12
 """Largest number of lines of an answer at a prompt, besides further lines of its folded heading."""
+ROUNDING = 1e-9
+"""Below this a number on a page is an estimate of rounding, of which only the size is alike elsewhere."""
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*(?:e[-+]?\d+)?|inf)")
 ERRORS = {
     "growth_rate": ("error_estimate", False),

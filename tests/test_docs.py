@@ -14,6 +14,7 @@ import h5py
 import numpy as np
 import pytest
 from conftest import ROOT
+from printed import ROUNDING
 
 from rodsweep.cli import commands
 from rodsweep.config import load_config
@@ -224,8 +225,6 @@ def test_every_attribute_of_a_file_is_explained(command):
 PRINTED = re.compile(r"^```python\n(.*?)^```\n(?:\n```text\n(.*?)^```)?", re.MULTILINE | re.DOTALL)
 """A block of Python and, where one follows, the block of what it prints."""
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?")
-ROUNDING = 1e-9
-"""Below this a number on the page is an estimate of rounding, of which only the size is alike elsewhere."""
 
 
 def test_python_page_prints_what_it_says(tmp_path, monkeypatch, capsys):

@@ -15,7 +15,8 @@ from ..model.material.build import Build
 from ..model.material.profile import Profile
 from ..model.rod import Rod
 from .changes.thresholds import ThresholdsRequest, solve_thresholds
-from .cycle.limit_cycle import CycleRequest, solve_cycle
+from .cycle.limit_cycle import solve_cycle
+from .cycle.reference_rod import REFERENCE_REQUEST
 from .orbit.matrix.linearisation import change_along, reduced_variations
 from .orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from .orbit.orbit import Orbit
@@ -27,6 +28,7 @@ from .spectrum.spectrum import SpectrumRequest
 
 SAMPLE_ROD = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2)
 SAMPLE_CONE = Rod(F=6.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5)
+"""An arm whose properties vary smoothly."""
 SAMPLE_SEGMENTS = Rod(
     F=30.0,
     k1=1e4,
@@ -34,7 +36,9 @@ SAMPLE_SEGMENTS = Rod(
     gamma3=1e-2,
     build=Build(profile=Profile((0.0, 0.5, 0.5, 1.0), ((1.0,) * 6,) * 2 + ((0.8,) * 6,) * 2)),
 )
+"""An arm whose properties jump at its middle."""
 SAMPLE_ACCURACY = 1e-4
+"""Accuracy of the spectra and thresholds of both arms."""
 SAMPLE_INTERVALS = 2
 """Number of time intervals of the sample orbit: the smallest number for which an orbit has a mesh."""
 SAMPLE_STAGES = 3
@@ -55,7 +59,7 @@ def warm_up_arms() -> None:
     search = ThresholdsRequest(SAMPLE_SEGMENTS.F, SAMPLE_ACCURACY, certify=True, crossings=1)
     for arm in (SAMPLE_CONE, SAMPLE_SEGMENTS):
         solve_thresholds(arm, search)
-    solve_cycle(SAMPLE_SEGMENTS, CycleRequest(1e-3, 0.1, 1, 4, 1, 4, 50), None, "F")
+    solve_cycle(SAMPLE_SEGMENTS, REFERENCE_REQUEST, None, "F")
 
 
 def warm_up_uniform() -> None:

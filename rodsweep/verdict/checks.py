@@ -167,7 +167,7 @@ def reynolds(number: Effect) -> list[Check]:
         return []
     validity = _validity(number)
     ending = (
-        "the drag equals the drag in slow flow",
+        "the drag law of slow flow applies",
         "at wide beating the drag is somewhat larger than in the model",
         "at wide beating the drag is larger than in the model, and the beating slower",
     )[validity]

@@ -12,6 +12,7 @@ from io import StringIO
 import numpy as np
 import pytest
 from conftest import ROOT
+from printed import ROUNDING
 from surveyed import survey_only
 
 DOCS = ROOT / "docs"
@@ -32,8 +33,6 @@ BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?")
 
 
-ROUNDING = 1e-9
-"""Below this a number is an estimate of rounding, which depends on the processor."""
 ERROR = re.compile(r" \(\+- [^)]*\)")
 """An error estimate beside a number, of which rounding decides."""
 

@@ -263,7 +263,7 @@ def threshold_sentences(view, page):
         begin = line.index(": ") + 2 if not along else line.index(f"at {name}: ") + len(name) + 5
         places = line[begin:].split(", frequency")[0]
         error = re.search(rf"\(\+- ({NUMBER})\)", places)
-        true = [(rod, at, w) for rod, effect_kind, at, w in changes_of(view, name) if effect_kind == kind]
+        true = [(rod, at, w) for rod, kind_of, at, w in changes_of(view, name) if kind_of == kind]
         why = []
         for match in re.finditer(PLACE, f"{places} "):
             why.append(_misplaced(match, error, true, name, kind))

@@ -88,9 +88,9 @@ def settling_table(waits: Sequence[SettlingMethod], raced: Sequence[TimedRuns]) 
     """Table of the methods `waits`, with returns, times and errors. raced: times of each method."""
     return (
         f"From a start of {START_DEFLECTION:g} L to the limit cycle. Waiting ends when two successive "
-        "returns "
-        f"agree to {SETTLED_WITHIN:.0e}. Its tolerance is the loosest with which the error is no larger; "
-        "the user is assumed to know this tolerance. solve_cycle has the same accuracy; its time includes "
+        f"returns agree to {SETTLED_WITHIN:.0e}. The integrator has the loosest tolerance with which they do "
+        "and the errors of the period and of y are no larger; the user is assumed to know this tolerance. "
+        "solve_cycle has the same accuracy; its time includes "
         f"the choice of mesh and the proof of stability. At F = {NEAR_HOPF_F:g} the number of periods is a "
         f"lower bound, ln({SETTLED_WITHIN:.0e})/ln(largest multiplier), and the time follows from the time "
         "per period; the error is the estimate of solve_cycle and, for waiting, the required accuracy.\n\n"

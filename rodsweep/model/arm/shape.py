@@ -146,10 +146,8 @@ class Shape:
         of the operator is positive, and the next eigenvalue of a uniform arm is a seventh of the largest.
         """
         h, area, stiffness = self._at_midpoints()
-        if weight == 0:
-            return 0.0
         # Integrals up to a midpoint include half of its own interval.
-        own = weight * area * h
+        own = area * h
         beyond = np.cumsum(own[::-1])[::-1] - own / 2
         theta = np.ones(len(h))
         ratio = before = 0.0
@@ -161,7 +159,7 @@ class Shape:
             theta /= ratio
             if abs(ratio - before) <= BUCKLING_TOLERANCE * ratio:
                 break
-        return ratio
+        return weight * ratio
 
     def _at_midpoints(self) -> tuple[Array, Array, Array]:
         """(length, A, E I) of the subintervals of the quadrature, each (subintervals,), in m, m^2, N m^2."""

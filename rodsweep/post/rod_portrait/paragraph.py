@@ -62,7 +62,7 @@ def _rod(results: RodResults) -> Iterator[str]:
     elif reached != wanted:
         early = results.views["thresholds"].with_status("ended_early").all()
         ends = "the search ended early: the list was full, or modes could not be counted"
-        searched += f", not to {wanted}: {ends if early else f'above this load the {kind} is crushed'}"
+        searched += f", not to {wanted}: {ends if early else f'just above {reached} the {kind} is crushed'}"
     yield f"The {kind} with {results.rod.words} {searched}."
     if results.rod.arm:
         yield from _arm(results)

@@ -108,7 +108,7 @@ def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
     unknowns = 3 * v["elements"][done].astype(int) * v["order"][done]
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
         return ["no mesh: the eigenvalues of all points were followed along the sweep, or not found"]
-    without = f"; no mesh at the {followed} followed or failed" if followed else ""
+    without = f"; no mesh at {counted(followed, 'point')}, followed or failed" if followed else ""
     return [f"unknowns per point: {span(unknowns[unknowns > 0])}{without}"]
 
 

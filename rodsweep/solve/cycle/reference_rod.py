@@ -13,6 +13,8 @@ from .status import CycleStatus
 REFERENCE_PERIOD = 0.04204870
 """Period, in tau2, of the cycle of the reference rod F, k1, k2, gamma3, gamma1 = 40, 1e4, 1e2, 1e-2, 1; an
 independent displacement-form code confirms all digits."""
+REFERENCE_REQUEST = CycleRequest(1e-3, 0.1, 1, 4, 1, 4, 50)
+"""Request for the cycle of the reference rod: a coarse accuracy, with samples, shapes and a transient."""
 
 
 def warm_up() -> None:
@@ -22,7 +24,7 @@ def warm_up() -> None:
     Raises EnvironmentIncomplete if the period is wrong and PETSc options with the prefix cycle_ are set.
     """
     rod = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
-    request = CycleRequest(1e-3, 0.1, 1, 4, 1, 4, 50)
+    request = REFERENCE_REQUEST
     cycle = solve_cycle(rod, request, None, "F")
     if cycle.neighbour is not None:
         solve_cycle(replace(rod, F=1.01 * rod.F), request, cycle.neighbour, "F")

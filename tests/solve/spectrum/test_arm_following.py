@@ -9,8 +9,8 @@ from surveyed import RODS
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum.path import arm_points
-from rodsweep.solve.spectrum.path.arm_points import follow_stretch_of_arms
+from rodsweep.solve.spectrum.path import arm_spectra
+from rodsweep.solve.spectrum.path.arm_spectra import follow_stretch_of_arms
 from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
 from rodsweep.solve.spectrum.path.stretch import Stretch, solve_stretch
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -68,8 +68,8 @@ def test_a_cone_is_followed_and_proved_without_single_points():
 def test_points_that_are_followed_again_with_more_modes_have_their_own_spectra(monkeypatch):
     """Beyond F = 12 four modes and few more do not prove the cone; more modes do, up to F = 34."""
     counted = []
-    count = arm_points.count_at
-    monkeypatch.setattr(arm_points, "count_at", lambda *words: counted.append(words[2]) or count(*words))
+    count = arm_spectra.count_at
+    monkeypatch.setattr(arm_spectra, "count_at", lambda *words: counted.append(words[2]) or count(*words))
     path, values = Path(Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5), "F"), np.linspace(0, 25, 160)
     followed = follow_stretch_of_arms(path, values, REQUEST)
     assert len(followed.accepted) == len(values)

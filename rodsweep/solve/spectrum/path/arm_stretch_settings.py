@@ -15,17 +15,17 @@ class ArmStretchSettings:
     min_proved_fraction: float = 0.5
     """If a smaller fraction of the points is proved complete, more modes are followed, provided that more
     modes prove a further point."""
-    further_modes_of_rest: tuple[int, ...] = (9, 20)
+    further_modes_for_unproved: tuple[int, ...] = (9, 20)
     """Numbers of modes, in addition to the wanted modes, that are tried one after the other at points without
     a proof."""
-    min_points_of_rest: int = 64
+    min_unproved_points: int = 64
     """Minimum number of points without a proof for which more modes are followed; fewer points are counted
     one by one, which costs less than a new family."""
-    parts_of_rest: int = 16
+    unproved_parts: int = 16
     """The range of points that more modes prove is located to one part in this number of all points without
     a proof."""
-    hull_arms_of_rest: int = 49
-    """Number of arms at which hulls are computed again, if at least `min_points_of_rest` points have no
+    hull_arms_for_unproved: int = 49
+    """Number of arms at which hulls are computed again, if at least `min_unproved_points` points have no
     proof."""
     headroom: float = 2.0
     """The propagators of a new family are valid up to W = headroom * (largest |w| at the first point)."""

@@ -22,7 +22,7 @@ from ..search import Search, SpectrumRequest, solve_spectrum
 from ..search import warm_up as warm_up_search
 from ..spectrum import FollowedPoints, Spectrum, errors_with_rounding
 from ..status import SpectrumStatus
-from .arm_points import follow_stretch_of_arms
+from .arm_spectra import follow_stretch_of_arms
 from .carried_count import assess_points, carry_count, leading_eigenvalues, line_in_gap, widest_gap
 from .following import follow_eigenvalues
 from .prediction import Track, slice_track, start_track

@@ -24,7 +24,7 @@ def follow_stretch_of_arms(path: Path, p: Array, request: SpectrumRequest) -> Fo
     found = follow_interval(path, p, request)
     if found is None:
         return None
-    if (found.proved_modes < request.modes).sum() >= ARM_STRETCH.min_points_of_rest:
+    if (found.proved_modes < request.modes).sum() >= ARM_STRETCH.min_unproved_points:
         found = _with_finer_hulls(path, found)
     again = _followed_again(path, found, request)
     counted = found.proved_modes < request.modes
@@ -43,7 +43,7 @@ def follow_stretch_of_arms(path: Path, p: Array, request: SpectrumRequest) -> Fo
 
 def _with_finer_hulls(path: Path, found: ArmInterval) -> ArmInterval:
     """The interval `found` with hulls at more arms, hence closer to the hull of each arm."""
-    places = np.linspace(found.family.low, found.family.high, ARM_STRETCH.hull_arms_of_rest)
+    places = np.linspace(found.family.low, found.family.high, ARM_STRETCH.hull_arms_for_unproved)
     return found._replace(hulls=hulls_along([path.at(x) for x in places.tolist()], places))
 
 
@@ -62,11 +62,11 @@ def _followed_again(
     followed again with more modes."""
     again: list[tuple[int, ArmInterval]] = []
     left = np.flatnonzero(found.proved_modes < request.modes)
-    for further in ARM_STRETCH.further_modes_of_rest:
-        if further <= found.further_modes or len(left) < ARM_STRETCH.min_points_of_rest:
+    for further in ARM_STRETCH.further_modes_for_unproved:
+        if further <= found.further_modes or len(left) < ARM_STRETCH.min_unproved_points:
             continue
         start, stop = _provable(path, found, left, request, further)
-        if stop - start < ARM_STRETCH.min_points_of_rest:
+        if stop - start < ARM_STRETCH.min_unproved_points:
             continue
         interval = follow_with(path, found.p[start:stop], request, further, None)
         if interval is not None:
@@ -89,7 +89,7 @@ def _provable(
         good, bad = 0, len(order)
         if proves_point(path, found, float(found.p[order[-1]]), request, further):
             good = bad - 1
-        while bad - good > max(1, len(order) // ARM_STRETCH.parts_of_rest):
+        while bad - good > max(1, len(order) // ARM_STRETCH.unproved_parts):
             middle = (good + bad) // 2
             if proves_point(path, found, float(found.p[order[middle]]), request, further):
                 good = middle
