@@ -41,8 +41,8 @@ FIRST_POINT_COST = 2.0
 """Time of the first point of a segment of the sweep, divided by the time of a point that is solved alone."""
 FOLLOWED_MS = 0.006
 """Time per point of a segment, in which eigenvalues are continued from a neighbouring point, in ms."""
-FOLLOWED_ARM_MS = 0.4
-"""Time per point, including the first point, of a segment of arms that are not uniform, in ms: median over 24
+FOLLOWED_ARM_MS = 0.25
+"""Time per point, including the first point, of a stretch of arms that are not uniform, in ms: median over 30
 random arms."""
 SEARCH_MS = 24.0
 """Time to search one rod for crossings along one parameter, in ms: mean over 72 rods, of which a few take

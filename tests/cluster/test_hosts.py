@@ -17,7 +17,7 @@ from rodsweep.results.file.view import read_view
 SPECTRA = """
 task: spectrum
 parameters:
-  F: {start: 0, stop: 60, num: 100}
+  F: {start: 0, stop: 60, num: 200}
   k1: [100, 1.0e4, .inf]
   k2: [50, 1.0e4]
   gamma3: [0, 1.0e-4]
@@ -147,7 +147,7 @@ def test_sweep_over_two_hosts_gives_the_content_of_a_plain_run(hosts, command):
     attributes = read_view(command.directory / "c.h5").attributes
     assert attributes["hosts"].split() == ["host-a", "host-b"]
     points = attributes["rank_points"]
-    assert points.sum() == 1200
+    assert points.sum() == 2400
     assert points.min() > 0
     assert len(attributes["blas_kernels"].splitlines()) == 1
     assert "BLAS kernels" not in run.stdout

@@ -32,7 +32,7 @@ HEADER = len(JOURNAL_HEAD) + 65
 SPECTRA = """
 task: spectrum
 parameters:
-  F: {start: 0, stop: 60, num: 100}
+  F: {start: 0, stop: 60, num: 200}
   k1: [100, 1.0e4, .inf]
   k2: [50, 1.0e4]
   gamma3: [0, 1.0e-4]

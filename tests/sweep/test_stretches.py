@@ -26,13 +26,15 @@ from rodsweep.sweep.points.stretches import (
 SPECTRA = """
 task: spectrum
 parameters:
-  F: {start: 0, stop: 60, num: 100}
+  F: {start: 0, stop: 60, num: 200}
   k1: [100, 1.0e4, .inf]
   k2: [50, 1.0e4]
   gamma3: [0, 1.0e-4]
 """
+LAST_POINTS = 200 - STRETCH_POINTS
+"""Number of points of the second and last stretch of each line of SPECTRA."""
 EVERY = ("F", "k1", "k2", "gamma3")
-SHAPES = [(100, 3, 2, 2), (3, 130, 2, 1), (2, 2, 64, 5), (1, 1, 1, 9)]
+SHAPES = [(200, 3, 2, 2), (3, 258, 2, 1), (2, 2, 64, 5), (1, 1, 1, 9)]
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -111,11 +113,11 @@ def test_followed_spectra_are_as_accurate_as_those_of_points_alone(command):
 
 @pytest.mark.parametrize("whole_job", few([True, False], 1), ids=few(["all ranks", "one rank"], 1))
 def test_resume_after_a_kill_gives_the_same_spectra(command, whole_job):
-    """Killed while ranks wait behind their third stretch, of 64 or 36 points: what is journalled stays."""
+    """Killed while ranks wait behind their third stretch, of 128 or 72 points: what is journalled stays."""
     command.write("c.yaml", SPECTRA)
     path = command.directory / "c.h5"
     process = command.started("run", "c.yaml", ranks=2, patch=slowly(FOR_EVER, 3))
-    pause_until_journalled(process, path, 6 * 36)
+    pause_until_journalled(process, path, 6 * LAST_POINTS)
     ranks = ranks_in(command.directory)
     kill(*([process.pid, *ranks.values()] if whole_job else [ranks[1]]))
     process.communicate(timeout=PATIENCE)
@@ -123,7 +125,7 @@ def test_resume_after_a_kill_gives_the_same_spectra(command, whole_job):
     kept = read_view(path).journalled
     again = command("run", "c.yaml", ranks=2)
     assert again.returncode == 0, again.stderr
-    assert f"{1200 - kept} of 1200 points to do, {kept} kept" in again.stdout
+    assert f"{2400 - kept} of 2400 points to do, {kept} kept" in again.stdout
     assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
     assert same(content(path), content(command.directory / "whole.h5"))
 
@@ -133,19 +135,19 @@ def test_a_stretch_of_which_a_part_was_written_is_redone_and_its_rest_kept(comma
     command.write("c.yaml", SPECTRA)
     path = command.directory / "c.h5"
     process = command.started("run", "c.yaml", patch=slowly(FOR_EVER, 2))
-    pause_until_journalled(process, path, 128)
+    pause_until_journalled(process, path, 2 * STRETCH_POINTS)
     process.kill()
     process.communicate(timeout=PATIENCE)
     (journal,) = (command.directory / "c.h5.journal").glob("rank-*")
-    record = (journal.stat().st_size - 100) // 128
+    record = (journal.stat().st_size - 100) // (2 * STRETCH_POINTS)
     with journal.open("r+b") as file:
         file.truncate(journal.stat().st_size - 20 * record - 7)
     kept = read_view(path).journalled
-    assert 100 < kept < 110
+    assert 2 * STRETCH_POINTS - 28 < kept < 2 * STRETCH_POINTS - 18
     again = command("run", "c.yaml")
     assert again.returncode == 0, again.stderr
-    assert f"{1200 - kept} of 1200 points to do, {kept} kept" in again.stdout
-    assert re.search(rf"^{1200 - kept} points in", again.stdout, re.M)
+    assert f"{2400 - kept} of 2400 points to do, {kept} kept" in again.stdout
+    assert re.search(rf"^{2400 - kept} points in", again.stdout, re.M)
     assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
     assert same(content(path), content(command.directory / "whole.h5"))
 
@@ -159,10 +161,10 @@ def test_stopped_run_ends_with_whole_stretches_and_goes_on(command):
     assert process.returncode == 75, err
     done = int(re.search(r"stopped by SIGTERM; (\d+) points? kept", out)[1])
     with h5py.File(command.directory / "c.h5") as file:
-        kept = (file["status"][...] == 0).reshape(100, -1)
+        kept = (file["status"][...] == 0).reshape(200, -1)
     assert kept.sum() == done
-    assert set(kept[:64].sum(axis=0)) <= {0, 64}
-    assert set(kept[64:].sum(axis=0)) <= {0, 36}
+    assert set(kept[:STRETCH_POINTS].sum(axis=0)) <= {0, STRETCH_POINTS}
+    assert set(kept[STRETCH_POINTS:].sum(axis=0)) <= {0, LAST_POINTS}
     assert command("run", "c.yaml").returncode == 0
     assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
     assert same(content(command.directory / "c.h5"), content(command.directory / "whole.h5"))
@@ -204,7 +206,7 @@ def test_python_gives_the_numbers_of_the_command(command):
     assert command("run", "c.yaml").returncode == 0
     with rs.open(command.directory / "c.h5") as file:
         here = rs.sweep(
-            "spectrum", F=rs.linspace(0, 60, 100), k1=[100, 1e4, math.inf], k2=[50, 1e4], gamma3=[0, 1e-4]
+            "spectrum", F=rs.linspace(0, 60, 200), k1=[100, 1e4, math.inf], k2=[50, 1e4], gamma3=[0, 1e-4]
         )
         for name in here.data_vars:
             assert name == "seconds" or np.array_equal(here[name], file[name], equal_nan=True), name
@@ -213,16 +215,16 @@ def test_python_gives_the_numbers_of_the_command(command):
 @pytest.mark.parametrize(
     ("larger", "kept"),
     [
-        ("F: {start: 0, stop: 66, num: 133}", 64),
-        ("F: {start: 0, stop: 49.5, num: 100}\n  k1: [100, 200, 1.0e4, .inf]", 100),
-        ("F: {start: 0, stop: 49.5, num: 100}\n  k2: {start: 50, stop: 600, num: 111}", 0),
-        ("F: {start: -0.5, stop: 49.5, num: 101}", 0),
+        ("F: {start: 0, stop: 66.25, num: 266}", STRETCH_POINTS),
+        ("F: {start: 0, stop: 49.75, num: 200}\n  k1: [100, 200, 1.0e4, .inf]", 200),
+        ("F: {start: 0, stop: 49.75, num: 200}\n  k2: {start: 50, stop: 600, num: 211}", 0),
+        ("F: {start: -0.25, stop: 49.75, num: 201}", 0),
     ],
     ids=["longer", "another line", "along another axis", "shifted"],
 )
 def test_extended_grid_keeps_what_a_run_of_the_whole_gives_to_the_last_bit(command, larger, kept):
     """Of each of the three lines as many points as are in stretches of the same points."""
-    parameters = {"F": "{start: 0, stop: 49.5, num: 100}", "k1": "[100, 1.0e4, .inf]"}
+    parameters = {"F": "{start: 0, stop: 49.75, num: 200}", "k1": "[100, 1.0e4, .inf]"}
     parameters |= {"k2": "50", "gamma3": "1.0e-4"}
     texts = []
     for more in ("", larger):

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from .ranges import IndexRange, IndexSet, index_count, indices_along, merged_ranges
 
-STRETCH_POINTS = 64
-"""Maximum number of points in a stretch."""
+STRETCH_POINTS = 128
+"""Maximum number of points in a stretch. Arms along a path share what is computed once per stretch; longer
+stretches would leave fewer work items to the ranks."""
 SHORTEST_AXIS = 8
 """Minimum number of values on the axis of stretches. On a shorter axis, neighbouring points differ too much
 to follow eigenvalues."""
