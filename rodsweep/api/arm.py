@@ -12,7 +12,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import LOADS, SECTION_SIDES
 from ..model.units import Given
 from .answers.answer import Answer
-from .asking import config_tree, job_from, with_load_in_si
+from .keyword_arguments import config_tree, job_from, with_load_in_si
 from .options import (
     BranchKeywords,
     CriticalityKeywords,

@@ -14,7 +14,7 @@ from ..config.values import short
 from ..errors import InputError
 from ..model.arm.quantities import ALL_QUANTITIES
 from ..results.file.content import SEAL_ATTRIBUTE, attribute_digests, variable_digest
-from ..results.file.recent import (
+from ..results.file.current_state import (
     insert_records,
     journalled_points,
     journalled_reasons,

@@ -22,7 +22,7 @@ from ..model.material.build import STANDARD
 from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_axes
 from .answers.answer import Answer
-from .asking import config_tree, job_from, plain_keyword, plain_value, with_load_in_si
+from .keyword_arguments import config_tree, job_from, plain_keyword, plain_value, with_load_in_si
 from .options import (
     BranchKeywords,
     CriticalityKeywords,

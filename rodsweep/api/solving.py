@@ -14,7 +14,7 @@ from ..results.file.provenance import now, united_reasons
 from ..results.file.view import View
 from ..results.layouts.variables import Filled
 from ..solve.backend.availability import require_solvers
-from ..solve.backend.kept import forget_all
+from ..solve.backend.solver_pools import forget_all
 from ..solve.exclusive import solving
 from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
 from ..sweep.stop import NoClaims, RankListener, StopRequest
@@ -22,7 +22,7 @@ from ..tasks.protocol import JointVariables, NamedArrays, Solver
 from ..tasks.running.failures import FailureReasons, parameters_in_words
 from ..tasks.running.in_memory import blas_pool, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
-from ..tasks.running.unforeseen import PointNote, guarded_solver
+from ..tasks.running.unforeseen_exceptions import PointNote, guarded_solver
 from ..watch import reporting_to, solve_part
 from .solved import SolvedPoints
 

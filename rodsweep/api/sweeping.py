@@ -16,9 +16,9 @@ import xarray as xr
 from ..config.document.call_arguments import in_sentences
 from ..config.document.reading import yaml_of
 from ..errors import EnvironmentIncomplete, InputError
-from ..tasks.running.unforeseen import describe_unforeseen, log_file
-from .asking import ConfigTree, config_tree, job_from, require_allowed_keys
+from ..tasks.running.unforeseen_exceptions import describe_unforeseen, log_file
 from .dataset import open_result
+from .keyword_arguments import ConfigTree, config_tree, job_from, require_allowed_keys
 from .solving import Display, progress_display, solve_here
 
 COMPLETE_STATUSES = (0, 1)

@@ -19,7 +19,7 @@ from types import FrameType
 from typing import Any, ParamSpec, Self, TypeVar
 
 from ..watch import MakePosition, reporting_to
-from .backend.kept import forget_all
+from .backend.solver_pools import forget_all
 
 P = ParamSpec("P")
 R = TypeVar("R")

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..watch import SolveStopped, reporting_to
-from .claims import FirstRankRequests, OtherRankClaims
-from .handout import GIVE_BACK_AFTER, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
+from .chunk_queue import GIVE_BACK_AFTER, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
+from .chunk_requests import FirstRankRequests, OtherRankClaims
 from .points.ranges import IndexRange
 from .stop import RankListener, StopRequest
 from .team import Team

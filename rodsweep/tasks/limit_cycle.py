@@ -185,7 +185,7 @@ class LimitCycleTask(Task):
         )
         if self.config.limit_cycle.method == "collocation":
             return by_collocation
-        from ..solve.cycle.marched import solve_by_integration
+        from ..solve.cycle.by_integration import solve_by_integration
         from ..solve.cycle.status import MarchedStatus
 
         return replace(

@@ -20,7 +20,7 @@ from surveyed import only
 import rodsweep as rs
 from rodsweep.api import options
 from rodsweep.api.answers.picture import SolvedShapes, as_python_arguments
-from rodsweep.api.asking import config_tree, job_from
+from rodsweep.api.keyword_arguments import config_tree, job_from
 from rodsweep.cli import commands
 from rodsweep.config.document.reading import yaml_of
 from rodsweep.config.schema import Config

@@ -21,7 +21,7 @@ from rodsweep.bench.spectrum import arms
 from rodsweep.bench.spectrum import study as spectrum
 from rodsweep.bench.spectrum.arms import ARMS, UnsolvedArms, arm_spectra, arm_table, exact_arm_spectrum
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
-from rodsweep.bench.spectrum.own import (
+from rodsweep.bench.spectrum.rodsweep_spectrum import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
     MODE_COUNT,

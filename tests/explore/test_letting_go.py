@@ -11,8 +11,8 @@ import rodsweep as rs
 from rodsweep.explore.page import INSTANT_KINDS, Page
 from rodsweep.explore.pictures.beating import PERIOD_SECONDS
 from rodsweep.explore.pictures.card import NO_TITLE
-from rodsweep.explore.solving.letting_go import filmed
 from rodsweep.explore.solving.questions import SHAPE_COUNT, Question, Reply, answer_to
+from rodsweep.explore.solving.tip_release import filmed
 from rodsweep.explore.state import PageState
 from rodsweep.post.figures.cycle.motion_film import motion_film
 

@@ -40,7 +40,7 @@ from rodsweep.model.compiled.settings import CompiledSettings
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
-from rodsweep.solve.backend.kept import forget_all
+from rodsweep.solve.backend.solver_pools import forget_all
 from rodsweep.solve.branch.branches import BranchRequest, solve_branches
 from rodsweep.solve.branch.special.curves import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import SpecialKind
@@ -49,14 +49,14 @@ from rodsweep.solve.changes.diagram.boundaries import curves_through, seed_of
 from rodsweep.solve.changes.diagram.boundary_curves import trace
 from rodsweep.solve.changes.diagram.rows import RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
+from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.limit_cycle import Cycle, CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.cycle.marched import solve_by_integration
 from rodsweep.solve.hopf.bautin_curves import BautinSpace, bautin_curve, on_curve
 from rodsweep.solve.hopf.coefficient_errors import hopf_coefficients
 from rodsweep.solve.hopf.generalised import curve_criticality
-from rodsweep.solve.hopf.hopf_beside import subcritical_hopf_beside
+from rodsweep.solve.hopf.subcritical_hopf import subcritical_hopf_beside
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
-from rodsweep.solve.motion.held_tip import equilibrium_at_tip
+from rodsweep.solve.motion.fixed_tip import equilibrium_at_tip
 from rodsweep.solve.motion.integrator import RunEnding, forget_integrators, integrator
 from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace

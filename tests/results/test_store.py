@@ -13,8 +13,8 @@ from rodsweep.results.file import exchange, points, validation
 from rodsweep.results.file.combination.identity import config_difference
 from rodsweep.results.file.combination.merge import merge
 from rodsweep.results.file.creation import Plan
+from rodsweep.results.file.current_state import write_snapshot
 from rodsweep.results.file.provenance import FAILURE_REASONS
-from rodsweep.results.file.recent import write_snapshot
 from rodsweep.results.file.seal import seal
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.validation import read_header

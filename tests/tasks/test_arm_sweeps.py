@@ -12,7 +12,7 @@ from pint import UnitRegistry
 from surveyed import only
 
 import rodsweep as rs
-from rodsweep.api.asking import config_tree, job_from
+from rodsweep.api.keyword_arguments import config_tree, job_from
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.post.figures import draw
 from rodsweep.results.file.view import read_view

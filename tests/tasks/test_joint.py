@@ -16,7 +16,7 @@ from rodsweep.results.run.checkpoints import UnitResults
 from rodsweep.solve.branch.special.boundaries import RowSpecialPoint, SpecialBoundaries
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalfCurve
 from rodsweep.solve.branch.special.point import SpecialKind
-from rodsweep.sweep.handout import NO_WORK_LEFT, Pool, RankReport
+from rodsweep.sweep.chunk_queue import NO_WORK_LEFT, Pool, RankReport
 
 DIAGRAM = """
 task: phase_diagram

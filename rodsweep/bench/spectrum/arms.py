@@ -18,7 +18,7 @@ from ...solve.spectrum.arm_solver import arm_solver
 from ...solve.spectrum.problem import ArmProblem
 from ..study import Contender, Measurement, count_text, grouped_by_fields, markdown_table, measure_case
 from .exact import relative_error
-from .own import (
+from .rodsweep_spectrum import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
     MODE_COUNT,

@@ -10,14 +10,14 @@ from ...results.file.view import read_view
 from ...results.layouts.variables import Filled
 from ...results.run.checkpoints import UnitResults
 from ...results.run.journal import journal_directory
-from ...solve.backend.kept import forget_all
-from ...sweep.handout import ChunkQueue, Pool
+from ...solve.backend.solver_pools import forget_all
+from ...sweep.chunk_queue import ChunkQueue, Pool
 from ...sweep.loop import Indices, Loop, RankWork, sweep
 from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.stop import NoClaims, RankListener, StopRequest
 from ...sweep.team import Team
 from ...tasks.protocol import JointVariables, NamedArrays
-from ...tasks.running.unforeseen import RUN_ENDING_EXCEPTIONS, UnitNote
+from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, UnitNote
 from ...watch import SolveStopped, reporting_to
 
 UNIT_NOUN = "halves of curves"

@@ -14,7 +14,7 @@ from ...errors import EnvironmentIncomplete
 from ...results.file.creation import Plan
 from ...results.run.checkpoints import Checkpoints
 from ...results.run.journal import Journal, journal_directory, kept_sentence
-from ...sweep.handout import ChunkQueue
+from ...sweep.chunk_queue import ChunkQueue
 from ...sweep.loop import Indices, Loop, sweep
 from ...sweep.points.chains import ChainSolver
 from ...sweep.points.ranges import IndexRange, IndexSet, Shard, index_count

@@ -18,9 +18,9 @@ from ...sweep.stop import StopRequest
 from ...sweep.team import Team
 from ...tasks.running.failures import parameters_in_words
 from ...tasks.running.job import Job, job_of, plan_of
-from ...tasks.running.unforeseen import TracebackLog, guarded_solver
+from ...tasks.running.unforeseen_exceptions import TracebackLog, guarded_solver
 from ...wording import counted
-from ..beforehand import report_stop, shared_flutter_forces, with_shared_constants
+from ..shared_computations import report_stop, shared_flutter_forces, with_shared_constants
 from .contribution import (
     MAX_FAILURES_PRINTED,
     RunContribution,

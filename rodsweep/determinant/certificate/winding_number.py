@@ -22,7 +22,7 @@ from ...model.rod import Coefficients, Rod
 from ..value import scaled_determinant
 from .box import eigenvalue_box, zero_free_radius_of_rod
 from .dominance import phase_over_dominated_segment
-from .reach import node_at
+from .zero_free_disc import node_at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

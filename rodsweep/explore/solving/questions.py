@@ -21,7 +21,7 @@ from ...post.branch_curves import RodBranches
 from ..state import LAWS, PageState, rod_of
 from .branches import drawn_branches
 from .diagrams import Dataset, cycle_diagram, diagram, words_of
-from .letting_go import Tip, bent, motion, motion_film_answer
+from .tip_release import Tip, bent, motion, motion_film_answer
 
 AnswerVariables = dict[str, Any]
 """Variables of an answer, by name: arrays, and texts such as `status`, `sentence` and `message`."""

@@ -19,11 +19,11 @@ from ...results.file.provenance import now
 from ...results.file.view import View
 from ...wording import counted
 from ..figures.request import Shapes
-from ..whole_file import atomic_write, require_name
+from ..output_files import atomic_write, require_name
 from .dark_colours import dark_page_colour
 from .page_tables import MAX_ROWS
 from .pictures import Pictures, pictures_of
-from .reported import ReportContents, report_contents
+from .report_contents import ReportContents, report_contents
 from .vector_picture import VectorPicture
 
 QUOTED = re.compile("`([^`]*)`")

@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from ..origin import origin_lines
+from ..cost_and_provenance import origin_lines
+from ..output_files import atomic_write, require_name
 from ..report import rendered
 from ..report.page_tables import page_tables
 from ..report.pictures import CaptionedPicture, Pictures
 from ..report.vector_picture import vector_picture
-from ..whole_file import atomic_write, require_name
 from .paragraph import paragraph
 from .picture import portrait_figure
 from .results import RodResults

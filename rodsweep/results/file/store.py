@@ -33,10 +33,10 @@ from ..run.journal import (
 )
 from .combination.extension import extension_of
 from .creation import Plan, add_variables, create_file
+from .current_state import SNAPSHOT
 from .exchange import FileReplacement, disk_refusals, identity
 from .points import missing_ranges, parameters_of, statuses, write_points
 from .provenance import merged_history, reasons_added
-from .recent import SNAPSHOT
 from .refusals import header_of_existing_file, require_room, require_same_config
 from .validation import ResultHeader, is_rodsweep_file, reading
 

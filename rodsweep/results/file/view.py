@@ -14,7 +14,7 @@ from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import PARAMETERS
 from ..layouts.variables import TYPED_UNIT
 from .content import is_user_added
-from .recent import insert_records, journalled_points, journalled_reasons, read_file_and_journals
+from .current_state import insert_records, journalled_points, journalled_reasons, read_file_and_journals
 from .validation import cleaned, open_whole, reading, refuse_absent
 
 LARGEST_CHECKED = 10**9

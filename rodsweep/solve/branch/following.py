@@ -12,10 +12,12 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable
 from .arc import ARC_STEPS, ArcPoint, arc_length_between, cycle_at_length, next_point
-from .beginning import HopfBranchStart, first_cycle, hopf_as_special_point
 from .branch_curve import BranchCurve, BranchEnd
+from .branch_record import BranchRecord, end_point
+from .branch_start import HopfBranchStart, first_cycle, hopf_as_special_point
+from .computing_time import fraction_done
+from .mesh_choice import measurement_due
 from .range_end import cycle_at_range_end, range_end_condition
-from .settling import measurement_due
 from .special.least_stretch import least_stretch_of_cycle
 from .special.locating import special_point_between
 from .special.point import EndReason, SpecialKind, SpecialPoint
@@ -27,8 +29,6 @@ from .symmetry import (
     reaches_symmetric_cycle,
     symmetry_breaking_between,
 )
-from .trail import BranchRecord, end_point
-from .work import fraction_done
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,11 +24,11 @@ from ..orbit.orbit_mesh import stages_for, wanted_mesh
 from ..orbit.symmetry import NO_SYMMETRY
 from ..point import Unsolvable
 from .arc import ARC_STEPS, ArcPoint, arc_length_between
-from .beginning import ALONG_DEFLECTION
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import BorderedMatrix
 from .bordered.scale import Scale, deflection_of
-from .settling import first_measured_cycle
+from .branch_start import ALONG_DEFLECTION
+from .mesh_choice import first_measured_cycle
 from .special.point import SpecialKind, SpecialPoint
 
 

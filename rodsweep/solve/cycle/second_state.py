@@ -9,7 +9,7 @@ from enum import IntEnum
 from math import nan
 
 from ...model.rod import Rod
-from ..hopf.hopf_beside import SubcriticalHopf, subcritical_hopf_beside
+from ..hopf.subcritical_hopf import SubcriticalHopf, subcritical_hopf_beside
 from ..point import FAILURES
 from ..status import PointStatus
 from .status import CycleStatus

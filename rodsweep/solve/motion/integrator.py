@@ -18,8 +18,8 @@ from ...discretization.beam import Beam
 from ...discretization.elements.mesh import Mesh
 from ...discretization.state_layout import plane_layout
 from ..backend.c_functions import call
-from ..backend.kept import LruPool
 from ..backend.petsc import PETSc
+from ..backend.solver_pools import LruPool
 from .callbacks import Workspace
 from .step_record import end_step, take_steps
 from .time_scheme import TimeScheme

@@ -15,8 +15,8 @@ from ...determinant.certificate.winding_number import EigenvalueCount
 from ...determinant.roots.roots import Roots
 from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.compiled.settings import CompiledSettings
-from ..backend.kept import forget_all
 from ..backend.petsc import PETSC_ERRORS
+from ..backend.solver_pools import forget_all
 from ..point import cause_of
 from .problem import TransverseProblem
 

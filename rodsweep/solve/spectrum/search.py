@@ -11,7 +11,7 @@ from typing import Any
 
 from ...discretization.elements.resolution import RESOLUTION, mesh_accuracy
 from ...model.rod import Rod
-from ..backend.kept import forget_all
+from ..backend.solver_pools import forget_all
 from ..point import solved
 from .candidates import Candidates, CountComparison, candidates_on, compare_with_count
 from .problem import TransverseProblem, transverse_problem

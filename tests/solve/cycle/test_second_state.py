@@ -9,7 +9,7 @@ from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.limit_cycle import SECOND_STATES
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.second_state import SecondState, second_state
-from rodsweep.solve.hopf.hopf_beside import subcritical_hopf_beside
+from rodsweep.solve.hopf.subcritical_hopf import subcritical_hopf_beside
 
 FIG_2C = (200.0, 1e4, 1e-4)
 SUBCRITICAL = (100.0, 1e4, 0.1)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.state_layout import plane_layout
-from rodsweep.solve.orbit.matrix.legs import Legs
 from rodsweep.solve.orbit.matrix.multipliers import MULTIPLIERS, compressed, nonzero_eigenvalues
+from rodsweep.solve.orbit.matrix.shooting_intervals import Legs
 from rodsweep.solve.orbit.newton import multiplier_change
 from rodsweep.solve.orbit.symmetry import REFLECTION
 

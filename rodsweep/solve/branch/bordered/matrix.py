@@ -9,7 +9,6 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ...orbit.matrix.elimination import eliminate
-from ...orbit.matrix.legs import legs_of
 from ...orbit.matrix.linearisation import (
     change_along,
     jump_of,
@@ -20,6 +19,7 @@ from ...orbit.matrix.linearisation import (
 )
 from ...orbit.matrix.phase import phase, phase_change, phase_row
 from ...orbit.matrix.right_sides import right_sides
+from ...orbit.matrix.shooting_intervals import legs_of
 from ...orbit.matrix.substitution import substitute
 from ...orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from ...orbit.newton import ConvergedOrbit

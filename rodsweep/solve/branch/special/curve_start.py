@@ -11,9 +11,9 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit_mesh import mesh_of, stages_for
 from ...point import Unsolvable
 from ..arc import tangent_at
-from ..beginning import ALONG_DEFLECTION, BEGINNING
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import Scale, deflection_of
+from ..branch_start import ALONG_DEFLECTION, BEGINNING
 from .family import CycleFamily
 from .on_curve import ACROSS_CURVE, SolvedPoint
 from .point import SpecialPoint

@@ -13,7 +13,7 @@ import numpy as np
 from ...point import Unsolvable
 from ..search_range import SearchedIntervals, SearchEnd
 from ..unstable_modes import ChangeKind, Crossing
-from .axis_place import AxisPlace, AxisPlaces, next_count_place
+from .axis_modes import AxisPlace, AxisPlaces, next_count_place
 from .path import ArmPath
 
 

@@ -16,7 +16,7 @@ from ....arrays import Array, Complex
 from ....determinant.certificate.winding_number import count_right_of
 from ....determinant.parameter_path import Path
 from ....model.rod import Rod, coefficients_of
-from ...backend.kept import forget_all
+from ...backend.solver_pools import forget_all
 from ...point import FAILURES
 from ..search import Search, SpectrumRequest, solve_spectrum
 from ..search import warm_up as warm_up_search

@@ -26,7 +26,7 @@ from ..point import Unsolvable
 from .arc import ArcPoint
 from .bordered.condition import BorderCondition
 from .bordered.scale import Scale, deflection_of
-from .settling import first_measured_cycle
+from .mesh_choice import first_measured_cycle
 from .special.point import SpecialKind, SpecialPoint
 
 

@@ -2,7 +2,7 @@
 
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.model.rod import Rod
-from rodsweep.solve.backend.kept import KEPT, LruPool
+from rodsweep.solve.backend.solver_pools import KEPT, LruPool
 from rodsweep.solve.spectrum.krylov_schur import UniformSolver
 
 

@@ -20,7 +20,7 @@ from ... import __version__
 from ...errors import Refusal
 from ...results.file.provenance import now
 from ...results.layouts.variables import SECONDS, STATUS, Layout
-from ...solve.backend.kept import forget_all
+from ...solve.backend.solver_pools import forget_all
 from ...solve.status import PointStatus
 from ...sweep.points.chains import State
 from ...sweep.points.stretches import StretchResult

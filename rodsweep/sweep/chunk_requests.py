@@ -14,7 +14,7 @@ from collections import deque
 from collections.abc import Callable
 
 from ..watch import SolvePosition
-from .handout import NO_WORK_LEFT, ChunkQueue, RankReport
+from .chunk_queue import NO_WORK_LEFT, ChunkQueue, RankReport
 from .points.ranges import IndexRange
 from .stop import StopRequest
 from .team import Team

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rodsweep.sweep.claims import (
+from rodsweep.sweep.chunk_queue import CHUNK_SECONDS, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
+from rodsweep.sweep.chunk_requests import (
     ANSWER_TAG,
     PROGRESS_TAG,
     REQUEST_TAG,
@@ -17,7 +18,6 @@ from rodsweep.sweep.claims import (
     FirstRankRequests,
     OtherRankClaims,
 )
-from rodsweep.sweep.handout import CHUNK_SECONDS, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
 from rodsweep.sweep.stop import StopRequest
 from rodsweep.watch import SolvePosition
 

@@ -10,7 +10,7 @@ from ..point import Unsolvable
 from .arc import ArcPoint
 from .bordered.condition import BorderCondition
 from .branch_curve import BranchCurve, BranchEnd, BranchPoint
-from .settling import with_errors_in_accuracy
+from .mesh_choice import with_errors_in_accuracy
 from .special.point import EndReason, SpecialKind, SpecialPoint
 
 

@@ -7,7 +7,7 @@ from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
-from rodsweep.solve.motion.held_tip import HELD_TIP, equilibrium_at_tip
+from rodsweep.solve.motion.fixed_tip import HELD_TIP, equilibrium_at_tip
 
 RODS = {
     "flutter": Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2),
