@@ -134,7 +134,7 @@ def curve_of_folds(accuracy: float) -> Answer:
     except FAILURES:
         return None
     last = points[-1]
-    return {f"{end.name} at": (last.at, last.error), "row": (last.row, ROUNDING)}
+    return {f"{end.name} at": (last.parameter, last.error), "row": (last.row_parameter, ROUNDING)}
 
 
 def coefficients(accuracy: float) -> Answer:
@@ -480,9 +480,9 @@ CASES = {
     "BRANCH_ERRORS": BRANCH,
     "BRANCH_END": LOPSIDED,
     "ASYMMETRIC_START": LOPSIDED,
-    "BEGINNING": BRANCH,
+    "BRANCH_START": BRANCH,
     "BRANCHES": BRANCH,
-    "BRANCH_WORK": BRANCH,
+    "COMPUTING_TIME": BRANCH,
     "SPECIAL_POINT": BRANCH,
     "LEGS": UNSTABLE,
     "LEAST_STRETCH": BRANCH,
@@ -493,7 +493,7 @@ CASES = {
     "MULTIPLIERS": BRANCH,
     "CURVE_START": CURVE,
     "CURVE_IDENTITY": CURVE,
-    "ACROSS_CURVE": CURVE,
+    "CURVE_SECANT": CURVE,
     "AUGMENTED": CURVE,
     "CYCLE_CURVES": CURVE,
     "CURVE_STEPS": CURVE,

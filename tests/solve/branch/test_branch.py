@@ -191,9 +191,9 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
         SpecialKind.torus, PlaneAxis("F", 150.0, 220.0), PlaneAxis("k2", 97.0, 103.0), NewtonWorkspace(), -1.0
     ).followed(torus, 100.0)
     assert end is CurveEnd.edge
-    assert points[0].at == pytest.approx(torus.at, abs=points[0].error + torus.error)
+    assert points[0].parameter == pytest.approx(torus.at, abs=points[0].error + torus.error)
     for point in points:
-        assert point.error <= 1e-7 * point.at
+        assert point.error <= 1e-7 * point.parameter
         # By the eigenvalues of a matrix of its own, where the curve has the eigenvector of one near by.
         pair = pair_nearest_unit_circle(BorderedMatrix(point.orbit, point.scale, NewtonWorkspace()))
         assert abs(pair) == pytest.approx(1.0, abs=1e-7)
@@ -309,9 +309,9 @@ def test_a_fold_close_to_crushing_is_located_from_both_ends_of_its_branch():
 
 def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkeypatch):
     """The sixth Hopf point of a rod that is soft in shear; the mesh's own one lies beyond."""
-    smallest = branch_start.BEGINNING.first_amplitudes[-1]
-    beginning = replace(branch_start.BEGINNING, first_amplitudes=(smallest,))
-    monkeypatch.setattr(branch_start, "BEGINNING", beginning)
+    smallest = branch_start.BRANCH_START.first_amplitudes[-1]
+    beginning = replace(branch_start.BRANCH_START, first_amplitudes=(smallest,))
+    monkeypatch.setattr(branch_start, "BRANCH_START", beginning)
     monkeypatch.setattr(branch_start, "first_measured_cycle", lambda first, *others: first.orbit)
     path = Path(Rod(F=159.0, k1=1597.4434592561727, k2=19.205853519589944, gamma3=2.45e-8, gamma1=0.72), "F")
     (crossing,) = pair_crossings(path, 159.0, 161.0, False).crossings

@@ -154,11 +154,13 @@ def test_rise_along_a_branch_is_known_with_the_factors_of_a_cycle_near_by():
     (fold,) = [point for point in row.special if point.kind == SpecialKind.fold]
     scale = Scale.of(fold.orbit, "F", 0.0)
     own = BorderedMatrix(fold.orbit, scale, NewtonWorkspace())
-    ahead = scale.moved(fold.orbit, own.direction(np.array([1.0, 0.0, 0.0])))
+    ahead = scale.directional_derivative(fold.orbit, own.direction(np.array([1.0, 0.0, 0.0])))
     border = ahead / np.linalg.norm(ahead)
     truth = FoldFunction(own, border, small=False).value(fold.orbit)
     other = (
-        BorderCondition.at(scale, border, fold.orbit, 1e-4).solved(fold.orbit, 1e-10, NewtonWorkspace()).orbit
+        BorderCondition.at_arc_length(scale, border, fold.orbit, 1e-4)
+        .solve_cycle(fold.orbit, 1e-10, NewtonWorkspace())
+        .orbit
     )
     function = FoldFunction(BorderedMatrix(other, scale, NewtonWorkspace()), border, small=False)
     before = abs(function.value(fold.orbit) - truth)

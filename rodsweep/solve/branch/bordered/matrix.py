@@ -62,7 +62,7 @@ class BorderedMatrix:
                 self._matrix[rows, :n] -= p.symmetry
         for place, c in ((-2, 0), (-1, 2)):
             own = slice(c, c + 1)
-            self._matrix[:-2, place] = -self.closing(np.zeros(n), self._columns[:, :, own], ends[own])
+            self._matrix[:-2, place] = -self.border_sides(np.zeros(n), self._columns[:, :, own], ends[own])
         row = np.empty(n)
         phase_row(orbit.start, p.rod, p.matrices, row)
         self._matrix[-2, :n] = row
@@ -73,7 +73,7 @@ class BorderedMatrix:
     def step(self, border: Array, length: float) -> Array:
         """Newton's step at the orbit, (N + 1,), under the condition that `border` . `Scale.components`,
         border: (3,), grows by `length`."""
-        return self.solved(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
+        return self.solve(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
 
     def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
         """Approximate Newton's step, (N + 1,), at a neighbouring `orbit` with a similar parameter, from the
@@ -82,14 +82,14 @@ class BorderedMatrix:
         p = self.orbit.semidiscrete
         columns, ends = reduced_residuals(orbit.points, orbit.duration, orbit.semidiscrete, p, factors)
         right = np.append(self._jump(orbit, columns, ends), length)
-        return self.solved(border, right, columns[:, :, 0], 1.0)
+        return self.solve(border, right, columns[:, :, 0], 1.0)
 
     def direction(self, border: Array) -> Array:
         """Tangent of the branch, (N + 1,), of unit arc length, at an acute angle to `border`, (3,)."""
         # The null vector of all rows except the last, normalised by the border; residuals are not needed.
         right = np.append(np.zeros(len(self._right)), 1.0)
-        change = self.solved(border, right, self._columns[:, :, 1], 0.0)
-        return change / np.linalg.norm(self.scale.moved(self.orbit, change))
+        change = self.solve(border, right, self._columns[:, :, 1], 0.0)
+        return change / np.linalg.norm(self.scale.directional_derivative(self.orbit, change))
 
     def residual_variations(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
         """Returns (stages, ends): derivatives of the eliminated stage residuals, (K, s, m, n), and of the end
@@ -143,7 +143,7 @@ class BorderedMatrix:
         matrix[-1, -1] = 1.0
         return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._columns[:, :, 1], 0.0)
 
-    def closing(self, jump: Array, columns: Array, ends: Array) -> Array:
+    def border_sides(self, jump: Array, columns: Array, ends: Array) -> Array:
         """Right-hand sides, (m n,), of the closing conditions: each leg (interval of multiple shooting) ends
         where the next leg starts.
 
@@ -157,12 +157,12 @@ class BorderedMatrix:
 
     def _jump(self, orbit: Orbit, columns: Array, ends: Array) -> Array:
         """Right-hand sides of the closing conditions of an orbit and of the phase condition, (m n + 1,);
-        columns, ends: as in `closing`."""
+        columns, ends: as in `border_sides`."""
         p = orbit.semidiscrete
-        right = self.closing(jump_of(orbit.points, p), columns, ends)
+        right = self.border_sides(jump_of(orbit.points, p), columns, ends)
         return np.append(right, -phase(orbit.start, p.rod, p.matrices))
 
-    def solved(self, border: Array, right: Array, sides: Array, share: float) -> Array:
+    def solve(self, border: Array, right: Array, sides: Array, share: float) -> Array:
         """Solution of the bordered linear system, (N + 1,). border: last row, in components (deflection, log
         period, parameter), (3,).
 

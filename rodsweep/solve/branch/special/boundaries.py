@@ -229,21 +229,23 @@ def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: R
     best = math.inf
     at = limits.line.scaled(one.at)
     for a, b in zip(points[:-1], points[1:], strict=True):
-        if not min(a.place, b.place) <= place <= max(a.place, b.place) or not _near(limits, a, b, one):
+        if not min(a.row_coordinate, b.row_coordinate) <= place <= max(
+            a.row_coordinate, b.row_coordinate
+        ) or not _near(limits, a, b, one):
             continue
         try:
             crossing = limits.on_row(a, b, place)
         except Unsolvable:
             continue
         if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY.max_period_difference:
-            best = min(best, abs(limits.line.scaled(crossing.at) - at))
+            best = min(best, abs(limits.line.scaled(crossing.parameter) - at))
     return best
 
 
 def _near(limits: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
     """Whether the special point `one` may lie on a curve between its successive points `a` and `b`."""
     x = limits.line.scaled(one.at)
-    ends = sorted(limits.line.scaled(p.at) for p in (a, b))
+    ends = sorted(limits.line.scaled(p.parameter) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
     on_line = ends[0] - CURVE_IDENTITY.max_chord_distance <= x <= ends[1] + CURVE_IDENTITY.max_chord_distance
     ratio = 1 + CURVE_IDENTITY.max_period_change
