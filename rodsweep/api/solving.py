@@ -14,10 +14,10 @@ from ..results.file.provenance import now, united_reasons
 from ..results.file.view import View
 from ..results.layouts.variables import Filled
 from ..solve.backend.availability import require_solvers
-from ..solve.backend.solver_pools import forget_all
+from ..solve.backend.solver_pools import destroy_pooled_solvers
 from ..solve.exclusive import solving
 from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
-from ..sweep.stop import NoClaims, RankListener, StopRequest
+from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ..tasks.protocol import JointVariables, NamedArrays, Solver
 from ..tasks.running.failures import FailureReasons, parameters_in_words
 from ..tasks.running.in_memory import blas_pool, view_in_memory
@@ -60,7 +60,7 @@ def solve_here(job: Job, note: PointNote | None = None, progress: bool | None = 
                 _joint(solver.together, view_in_memory(job, plan, values), shown) if solver.together else ()
             )
         except BaseException:  # a solve was interrupted, by Ctrl-C too: cached solvers may be half changed
-            forget_all()
+            destroy_pooled_solvers()
             raise
         finally:
             shown.close()
@@ -190,5 +190,7 @@ def progress_listener(shown: Display, name: str) -> RankListener:
     KeyboardInterrupt.
     """
     return RankListener(
-        NoClaims(lambda place: shown.place(place.words, place.share or 0.0)), StopRequest(), lambda: name
+        SingleRankCommunication(lambda place: shown.place(place.words, place.share or 0.0)),
+        StopRequest(),
+        lambda: name,
     )

@@ -16,7 +16,7 @@ import xarray as xr
 from ..config.document.call_arguments import in_sentences
 from ..config.document.reading import yaml_of
 from ..errors import EnvironmentIncomplete, InputError
-from ..tasks.running.unforeseen_exceptions import describe_unforeseen, log_file
+from ..tasks.running.unforeseen_exceptions import describe_exception, log_file
 from .dataset import open_result
 from .keyword_arguments import ConfigTree, config_tree, job_from, require_allowed_keys
 from .solving import Display, progress_display, solve_here
@@ -71,7 +71,7 @@ def _warn(indices: Sequence[int], error: Exception) -> None:
     last = indices[-1] + 1
     points = f"point {first}" if first == last else f"points {first} to {last}"
     trace = "".join(traceback.format_exception(error))
-    warnings.warn(f"{points}: {describe_unforeseen(error)}\n{trace}", RuntimeWarning, stacklevel=2)
+    warnings.warn(f"{points}: {describe_exception(error)}\n{trace}", RuntimeWarning, stacklevel=2)
 
 
 def _on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Display) -> xr.Dataset:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from ..model.arm.quantities import LOADS
 from ..model.parameters import PARAMETERS
-from ..sweep.stop import NoClaims, RankListener, StopRequest
+from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ..watch import SolvePosition, reporting_to
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def solve_with_progress(shown: "ProgressReporter", solve: "Solve") -> "Iterator[
 
     def solve_and_show(job: "Job") -> "View":
         name = job.config.task.replace("_", " ")
-        with reporting_to(RankListener(NoClaims(show), StopRequest(), lambda: name)):
+        with reporting_to(RankListener(SingleRankCommunication(show), StopRequest(), lambda: name)):
             view = solve(job)
         shown(next(numbers))
         return view

@@ -65,7 +65,7 @@ class LimitCycleTask(Task):
         options = self.config.limit_cycle
         if options.start != "neighbour":
             return None
-        axis = self.points.moved.index(self.config.along)
+        axis = self.points.varying_parameters.index(self.config.along)
         return Chains(self.points.shape, axis, options.direction == "up")
 
     def coordinates(self) -> dict[str, np.ndarray]:

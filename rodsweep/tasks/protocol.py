@@ -31,13 +31,13 @@ class Units(Protocol):
     ranks.
     """
 
-    def wanted(self, results: Mapping[int, NamedArrays]) -> list[int]:
+    def units_to_solve(self, results: Mapping[int, NamedArrays]) -> list[int]:
         """Numbers of the units still to be solved, most urgent first; empty if no unit is left.
 
         results: results of the finished units, by number.
         """
 
-    def where(self, unit: int) -> str:
+    def unit_label(self, unit: int) -> str:
         """Text describing a unit, for the progress display and the log."""
 
 

@@ -57,7 +57,7 @@ class SpectrumTask(CertifiedTask):
         """
         if not self.config.follows:
             return None
-        return stretches_along_longest_axis(self.points.shape, self.points.moved)
+        return stretches_along_longest_axis(self.points.shape, self.points.varying_parameters)
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Material coordinates u of the nodes of eigenvectors, (nodes,), by name of the dimension; empty if
@@ -173,7 +173,7 @@ class SpectrumTask(CertifiedTask):
 
         stretches = self.stretches
         assert stretches is not None
-        varied = self.points.moved[stretches.axis]
+        varied = self.points.varying_parameters[stretches.axis]
         path = Path(self.points.rod(int(indices[0])), varied)
         found = solve_stretch(Stretch(path, self.points.values_of(indices)[varied]), request)
         words = {status.value: status.name for status in SpectrumStatus}

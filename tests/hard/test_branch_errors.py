@@ -91,7 +91,7 @@ def cycles_of(case: Case) -> Iterator[ArcPoint]:
             here = next_point(here, case.accuracy)
         except Unsolvable:
             return
-        outside = not 0 < here.parameter_coordinate < case.stop or here.deflection * last.deflection < 0
+        outside = not 0 < here.coordinate < case.stop or here.deflection * last.deflection < 0
         if outside or mesh_of(here.orbit).cost > LARGEST_MESH:
             return
         waiting.append(here)

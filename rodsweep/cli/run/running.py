@@ -88,7 +88,7 @@ class _RankRun:
         )
         together = self.solver.together
         self.joint = together and JointWork(
-            team, together, output, self.plan.fingerprint, self.log.note, stop
+            team, together, output, self.plan.fingerprint, self.log.append_exception, stop
         )
 
     def run(self) -> int:

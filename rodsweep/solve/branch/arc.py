@@ -92,7 +92,7 @@ class ArcPoint:
         return self.cycle.converged.workspace
 
     @property
-    def parameter_coordinate(self) -> float:
+    def coordinate(self) -> float:
         """Coordinate of the continuation parameter: 1/k for a stiffness k, otherwise the value itself."""
         return self.orbit.form.rod.coordinate(self.scale.name)
 
@@ -139,7 +139,7 @@ class ArcPoint:
         # Without progress along the tangent the two cycles do not define a cubic: the tangent alone predicts.
         if not (step > 0 and rate > 0):
             return np.array([self.tangent, 0 * slope, 0 * slope])
-        apart = np.append(last.values - self.orbit.values, coordinate - self.parameter_coordinate)
+        apart = np.append(last.values - self.orbit.values, coordinate - self.coordinate)
         # Hermite interpolation at the lengths -step and 0, with `slope` rescaled to the same length unit.
         A = (apart + step * self.tangent) * step**-2
         B = (self.tangent - slope / rate) * (0.5 / step)

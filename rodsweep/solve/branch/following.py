@@ -105,12 +105,12 @@ def _place_on(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> Solv
     name = start.scale.name
     # The end of the range towards which the parameter moves at present.
     aim = limits.ends[1 if start.ahead[-1] > 0 else 0]
-    value = PARAMETERS[name].value(start.parameter_coordinate)
+    value = PARAMETERS[name].value(start.coordinate)
     aim_value = PARAMETERS[name].value(aim)
     words = f"{name} = {value:.5g} on the way to {aim_value:.5g}, {counted(len(curve.points), 'cycle')}"
     return SolvePosition(
         words,
-        fraction_done(PARAMETERS[name].coordinate(curve.special[0].at), start.parameter_coordinate, aim),
+        fraction_done(PARAMETERS[name].coordinate(curve.special[0].at), start.coordinate, aim),
     )
 
 
@@ -130,9 +130,9 @@ def _end_without_cycle(curve: BranchCurve, reason: EndReason, message: str = "")
 def _passed_range_end(point: ArcPoint, limits: BranchLimits) -> int:
     """0 if a cycle lies below the parameter range, 1 if it lies above, -1 if it lies within."""
     low, high = limits.ends
-    if point.parameter_coordinate < low:
+    if point.coordinate < low:
         return 0
-    return 1 if point.parameter_coordinate > high else -1
+    return 1 if point.coordinate > high else -1
 
 
 def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
@@ -221,12 +221,12 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
     tangent = start.tangent
     # From d to 0 the parabola p = p0 + k d^2 changes by half as much as its tangent at d.
     share = start.deflection / (2 * start.ahead[0] * start.scale.deflection_unit)
-    at = start.parameter_coordinate - share * tangent[-1]
+    at = start.coordinate - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
     rounding = max(BRANCH_END.parameter_tolerance, limits.accuracy)
     for number, hopf in enumerate(limits.hopfs):
         tolerance = BRANCH_END.extrapolation_tolerance * abs(
-            start.parameter_coordinate - hopf.coordinate
+            start.coordinate - hopf.coordinate
         ) + rounding * abs(hopf.coordinate)
         period_tolerance = BRANCH_END.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
         period_tolerance += BRANCH_END.period_tolerance * hopf.period

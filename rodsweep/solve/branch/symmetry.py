@@ -235,15 +235,13 @@ def _nearest(start: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float
     if falls <= 0:
         return -1
     # Parameter and period are quadratic in the asymmetry.
-    period, at = (orbit.period, start.parameter_coordinate) + (
-        float(present @ present) / falls / 2 * start.tangent[-2:]
-    )
+    period, at = (orbit.period, start.coordinate) + float(present @ present) / falls / 2 * start.tangent[-2:]
     for which, breaking in enumerate(known):
         symmetric = breaking.point.orbit
         if symmetric is None:
             continue
         place = symmetric.form.rod.coordinate(start.scale.name)
-        tolerance = BRANCH_END.extrapolation_tolerance * abs(start.parameter_coordinate - place)
+        tolerance = BRANCH_END.extrapolation_tolerance * abs(start.coordinate - place)
         tolerance += max(BRANCH_END.parameter_tolerance, accuracy) * abs(place)
         period_tolerance = BRANCH_END.extrapolation_tolerance * abs(start.orbit.period - symmetric.period)
         period_tolerance += max(BRANCH_END.period_tolerance, accuracy) * symmetric.period

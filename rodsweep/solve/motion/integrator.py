@@ -189,7 +189,7 @@ class Integrator:
         return named.get(reason, RunEnding.too_many_steps)
 
     @property
-    def kept_bytes(self) -> int:
+    def memory_bytes(self) -> int:
         """Estimate of the memory in bytes: the dense Jacobian, its LU factors and a copy."""
         return 3 * 8 * self.vector.size**2
 

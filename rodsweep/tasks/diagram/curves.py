@@ -63,7 +63,7 @@ class DiagramCurves:
 
     def starts(self, units: "SpecialBoundaries", wanted: Sequence[int]) -> "dict[int, Any]":
         """Special points cached on this rank, by number of the row, for the rows on which the half curves
-        `wanted` start.
+        `units_to_solve` start.
         """
         rows = {units.row_of(unit) for unit in wanted}
         return {row: self.special[row] for row in rows if row in self.special}

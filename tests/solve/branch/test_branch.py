@@ -241,7 +241,7 @@ def test_branch_that_cannot_be_followed_says_where_and_why(monkeypatch):
     made = following.next_point
 
     def lost(here, accuracy):
-        if here.at > 75:
+        if here.coordinate > 75:
             raise Unsolvable("there is no cycle near on the branch")
         return made(here, accuracy)
 

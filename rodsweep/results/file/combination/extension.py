@@ -159,7 +159,7 @@ def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPointMap:
         places[axis] = _same_from_the_start(places[axis], new.shape[axis], plan.chains.upward)
     if plan.stretches:
         axis = plan.stretches.axis
-        before = stretches_along_longest_axis(old.shape, old.moved)
+        before = stretches_along_longest_axis(old.shape, old.varying_parameters)
         same = _same_stretches(places[axis], new.shape[axis])
         places[axis] = np.where(same & (before is not None and before.axis == axis), places[axis], -1)
     return StoredPointMap(old.shape, new.shape, tuple(places))

@@ -19,7 +19,7 @@ from ...orbit.matrix.linearisation import (
 )
 from ...orbit.matrix.phase import phase, phase_change, phase_row
 from ...orbit.matrix.right_sides import right_sides
-from ...orbit.matrix.shooting_intervals import legs_of
+from ...orbit.matrix.shooting_intervals import shooting_intervals_of
 from ...orbit.matrix.substitution import substitute
 from ...orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from ...orbit.newton import ConvergedOrbit
@@ -48,12 +48,12 @@ class BorderedMatrix:
         self._memory = MatrixMemory(workspace, K, s, n)
         right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
         ends = eliminate(orbit.points, V, orbit.duration, p, self._memory.factors, self._columns)
-        self._legs = legs_of(self._memory.factors, p.mass)
-        m = len(self._legs.maps)
+        self._shooting_intervals = shooting_intervals_of(self._memory.factors, p.mass)
+        m = len(self._shooting_intervals.maps)
         self._matrix = np.zeros((m * n + 2, m * n + 2))
         for j in range(m):
             rows = slice(j * n, (j + 1) * n)
-            self._matrix[rows, rows] = self._legs.maps[j]
+            self._matrix[rows, rows] = self._shooting_intervals.maps[j]
             # A leg ends where the next leg starts; the last leg ends at the symmetric image of the first
             # start.
             if j < m - 1:
@@ -123,9 +123,9 @@ class BorderedMatrix:
     def partial_multipliers(self) -> Complex:
         """Multipliers over the solved time interval, (rank,): eigenvalues of the propagator, composed with
         the reflection for a symmetric orbit."""
-        if len(self._legs.maps) == 1:
+        if len(self._shooting_intervals.maps) == 1:
             return partial_multipliers(self.propagator, self.orbit)
-        return self._legs.multipliers(self.orbit)
+        return self._shooting_intervals.multipliers(self.orbit)
 
     def multipliers(self) -> Complex:
         """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
@@ -151,7 +151,7 @@ class BorderedMatrix:
         (K, s, 1, n). ends: change of the last leg's end caused by `columns` for a fixed start, (1, n).
         """
         p = self.orbit.semidiscrete
-        sides = -self._legs.ends(self._memory.factors, columns, ends, p)[:, 0]
+        sides = -self._shooting_intervals.ends(self._memory.factors, columns, ends, p)[:, 0]
         sides[-1] += jump
         return sides.ravel()
 
@@ -184,7 +184,7 @@ class BorderedMatrix:
         columns = np.ascontiguousarray(stages[:, :, None])
         starts = found[:-2].reshape(-1, n).copy()
         factors = self._memory.factors
-        out = self._legs.substituted(factors, starts, columns, self.orbit.semidiscrete)
+        out = self._shooting_intervals.substituted(factors, starts, columns, self.orbit.semidiscrete)
         return np.concatenate([found[:n], out.ravel(), found[-2:]])
 
 

@@ -107,11 +107,8 @@ class SpecialCurveProblem:
 
     def _report(self, points: Sequence[SolvedPoint]) -> None:
         """Reports the last point of a curve to the progress display."""
-        report(
-            lambda: SolvePosition(
-                f"{self.rows.name} = {points[-1].row_parameter:.5g}, {counted(len(points), 'point')}"
-            )
-        )
+        words = f"{self.rows.name} = {points[-1].row_parameter:.5g}, {counted(len(points), 'point')}"
+        report(lambda: SolvePosition(words))
 
     def step(self, behind: Sequence[SolvedPoint], length: float) -> StepResult[SolvedPoint]:
         """The point one step beyond the last point, with the prediction error and the cosine of the angle
@@ -125,10 +122,8 @@ class SpecialCurveProblem:
             rates = None
         else:
             start, place = self._predicted(behind, self._step_before_crushing(behind, length))
-            way = np.append(
-                last.scale.components(start) - last.scale.components(last.orbit), place - last.row_coordinate
-            )
-            across = last.normal(way)
+            change = last.scale.components(start) - last.scale.components(last.orbit)
+            across = last.normal(np.append(change, place - last.row_coordinate))
             slope = chord_slope(*behind[-2:])
             rates = last.normal_derivatives
         point = self._family(last).correct_with_error(start, place, across, slope, rates, last)
@@ -160,10 +155,8 @@ class SpecialCurveProblem:
         def distance(longest: float) -> float:
             weights = lagrange_weights(lengths, longest)
             rod = known[-1].orbit.form.rod
-            at, place = (
-                float(np.dot(weights, [getattr(p, n) for p in known]))
-                for n in ("parameter", "row_coordinate")
-            )
+            at = float(np.dot(weights, [point.parameter for point in known]))
+            place = float(np.dot(weights, [point.row_coordinate for point in known]))
             values = {"F": rod.F, "k1": rod.k1, self.line.name: at, self.rows.name: self.rows.value(place)}
             return 1 - CYCLE_CURVES.crushing_margin / 2 - values["F"] / values["k1"]
 
@@ -176,9 +169,8 @@ class SpecialCurveProblem:
     ) -> tuple[Orbit, float]:
         """(orbit, rows' axis coordinate): sums over `points` with weights, (points,); raises Unsolvable."""
         values = np.dot(weights, [mesh.carry(point.orbit).values for point in points])
-        at, place = (
-            float(np.dot(weights, [getattr(p, n) for p in points])) for n in ("parameter", "row_coordinate")
-        )
+        at = float(np.dot(weights, [point.parameter for point in points]))
+        place = float(np.dot(weights, [point.row_coordinate for point in points]))
         changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
         return orbit_with_parameters(replace(mesh.carry(points[-1].orbit), values=values), changed), place
 
@@ -244,11 +236,8 @@ class SpecialCurveProblem:
     def on_row(self, one: SolvedPoint, other: SolvedPoint, place: float) -> SolvedPoint:
         """The point of the curve at the rows' axis coordinate `place` between two points; raises
         Unsolvable."""
-        share = (
-            (place - one.row_coordinate) / (other.row_coordinate - one.row_coordinate)
-            if other.row_coordinate != one.row_coordinate
-            else 0.0
-        )
+        length = other.row_coordinate - one.row_coordinate
+        share = (place - one.row_coordinate) / length if length else 0.0
         start, _ = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         return self._family(other).correct(start, place, ALONG_BRANCH, other.normal_derivatives)
 

@@ -128,21 +128,15 @@ class CycleFamily:
             finer = replace(mesh, order=mesh.order + CURVE_SECANT.more_orders, intervals=longer)
             if not finer.allowed:
                 break
-            fine = self.correct(
-                finer.carry(last.orbit),
-                last.row_coordinate,
-                normal,
-                last.normal_derivatives,
-                is_other_mesh=True,
-            )
+            known = last.normal_derivatives
+            fine = self.correct(finer.carry(last.orbit), last.row_coordinate, normal, known, True)
             # The solutions on both meshes may be displaced along the curve; the slope removes this
             # displacement from the error.
             off = abs(fine.parameter - last.parameter - slope * (fine.row_coordinate - last.row_coordinate))
             error = CURVE_SECANT.error_factor * off + CURVE_SECANT.secant_error * abs(fine.parameter)
             if error <= CURVE_SECANT.accuracy * abs(fine.parameter):
-                return replace(
-                    last, errors=CurveErrors(error / abs(last.parameter), smooth_tails(last.orbit), mesh)
-                )
+                errors = CurveErrors(error / abs(last.parameter), smooth_tails(last.orbit), mesh)
+                return replace(last, errors=errors)
             last = fine
         raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
 
@@ -204,9 +198,8 @@ class _SecantState:
         family = self.family
         rates = self.derivatives
         length = self.length + self.distance * float(self.direction[0])
-        self.orbit = family.orbit_at_row(
-            self.orbit, self.row_coordinate + self.distance * float(self.direction[1])
-        )
+        row = self.row_coordinate + self.distance * float(self.direction[1])
+        self.orbit = family.orbit_at_row(self.orbit, row)
         slope = abs(rates.test) if rates else 1.0
         enough = AUGMENTED.tolerance if rates else AUGMENTED.tolerance_share * CURVE_SECANT.first_secant
         condition = BorderCondition(family.scale, family.border, length)
@@ -232,18 +225,18 @@ class _SecantState:
             self.direction, (present.test - before.test) / span, orbit, mesh_of(one), abs(span)
         )
 
-    def _predicted_orbit(self, step: float, rates: NormalDerivatives) -> Orbit:
-        """The last cycle, moved by `step` across the curve along the derivatives `derivatives`."""
-        return moved_orbit(self.orbit, self.family.scale.name, step * rates.on_mesh_of(self.orbit))
+    def _predicted_orbit(self, step: float, derivatives: NormalDerivatives) -> Orbit:
+        """The last cycle, moved by `step` across the curve along `derivatives`."""
+        return moved_orbit(self.orbit, self.family.scale.name, step * derivatives.on_mesh_of(self.orbit))
 
-    def _point(self, step: float, rates: NormalDerivatives) -> SolvedPoint:
-        """The point of the curve: the last cycle, moved by the short step `step` across the curve along the
-        derivatives `derivatives`."""
+    def _point(self, step: float, derivatives: NormalDerivatives) -> SolvedPoint:
+        """The point of the curve: the last cycle, moved by the short step `step` across the curve along
+        `derivatives`."""
         family = self.family
         matrix = self.nearby.matrix
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
         place = self.row_coordinate + (self.distance + step) * float(self.direction[1])
-        orbit = family.orbit_at_row(self._predicted_orbit(step, rates), place)
+        orbit = family.orbit_at_row(self._predicted_orbit(step, derivatives), place)
         scale = Scale.of(orbit, family.scale.name, family.scale.min_deflection_unit)
         ahead = scale.directional_derivative(orbit, tangent)
         return SolvedPoint(
@@ -253,5 +246,5 @@ class _SecantState:
             row_coordinate=place,
             parameter=getattr(orbit.form.rod, scale.name),
             row_parameter=getattr(orbit.form.rod, family.rows.name),
-            normal_derivatives=rates,
+            normal_derivatives=derivatives,
         )

@@ -183,7 +183,7 @@ class ArmPath(PathProblem):
             self._counts[p] = number
         return self._counts[p]
 
-    def beside_axis(self, p: float, highest: float, known: Complex) -> Complex:
+    def eigenvalues_near_axis(self, p: float, highest: float, known: Complex) -> Complex:
         """Eigenvalues at p near the imaginary axis with |Im w| up to `highest`, (n,), one of each pair.
 
         known: some of these eigenvalues, (k,), which come first. Raises FloatingPointError if no elements
