@@ -88,7 +88,7 @@ def _on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Disp
         words = [_mpiexec(), "-n", str(ranks), sys.executable, "-m", "rodsweep", "run", str(config)]
         words += ["-o", str(output), *(["--strict"] if strict else [])]
         try:
-            status, errors = _run_shown(words, place, shown)
+            status, errors = _run_with_progress(words, place, shown)
         except OSError as error:
             raise EnvironmentIncomplete(f"{words[0]} cannot be started: {error.strerror}") from None
         if status not in COMPLETE_STATUSES:
@@ -98,7 +98,7 @@ def _on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Disp
         return open_result(output)
 
 
-def _run_shown(words: list[str], place: str, shown: Display) -> tuple[int, str]:
+def _run_with_progress(words: list[str], place: str, shown: Display) -> tuple[int, str]:
     """Runs the command `words` in the directory `place` and shows its progress; returns (exit status,
     standard error).
     """

@@ -70,7 +70,7 @@ class JointWork:
             self.kept.write(int(unit), result)
             found[int(unit)] = result
 
-        def taken() -> dict[int, NamedArrays]:
+        def take_results() -> dict[int, NamedArrays]:
             new = found.copy()
             found.clear()
             return new
@@ -89,7 +89,7 @@ class JointWork:
             solve=lambda unit: self._solved(units, unit),
             store=keep,
             prepare=prepare,
-            new_results=taken,
+            new_results=take_results,
             unit_label=units.where,
         )
         try:
@@ -102,8 +102,8 @@ class JointWork:
         these points again.
         """
         wanted = self.team.on_first(lambda: units.wanted(self.results))
-        for starts in self.team.exchange(self.together.starts(units, wanted)):
-            self.together.take(starts)
+        for starts in self.team.exchange(self.together.initial_data(units, wanted)):
+            self.together.add_initial_data(starts)
 
     def _solved(self, units: Any, unit: int) -> Iterable[tuple[int, NamedArrays]]:
         try:

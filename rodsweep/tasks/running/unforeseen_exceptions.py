@@ -68,7 +68,9 @@ class _Guard:
 
     def solver(self) -> Solver:
         """The guarded solver."""
-        return self.inner.within(self._outcome, self._together, record=lambda index, outcome: outcome.values)
+        return self.inner.with_wrapper(
+            self._outcome, self._together, record=lambda index, outcome: outcome.values
+        )
 
     def _outcome(
         self, index: int, start: State, solve: Callable[[], tuple[Any, State]]

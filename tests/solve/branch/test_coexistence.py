@@ -229,7 +229,7 @@ def test_another_axial_drag_is_another_config(tmp_path):
     marks = []
     for more in ("", ", gamma1: 1", ", gamma1: 2"):
         path.write_text(DIAGRAM.replace("k2: 1.0e4", "k2: 1.0e4" + more.replace(", ", "\n  ")))
-        marks.append(make_job(path, ()).config.meaning)
+        marks.append(make_job(path, ()).config.settings_of_results)
     assert marks[0] == marks[1] != marks[2]
 
 
@@ -267,10 +267,10 @@ def test_accuracy_of_cycles_makes_another_config_only_with_cycles(tmp_path):
         "cycles: true, cycle_accuracy: 1e-7",
     ):
         path.write_text(DIAGRAM.replace("cycles: true", options))
-        meanings.append(make_job(path, ()).config.meaning)
+        meanings.append(make_job(path, ()).config.settings_of_results)
     assert meanings[0] == meanings[1] != meanings[2]
     path.write_text(DIAGRAM.replace("cycles: true", "cycles: false"))
-    assert "cycle_accuracy" not in make_job(path, ()).config.meaning["phase_diagram"]
+    assert "cycle_accuracy" not in make_job(path, ()).config.settings_of_results["phase_diagram"]
 
 
 def test_axial_drag_without_cycles_is_refused(tmp_path):
