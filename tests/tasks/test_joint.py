@@ -41,7 +41,7 @@ def write_and_note(self, unit, arrays):
     state.append(unit)
 
 def hear_and_wait(self, text):
-    while len(state) >= {units} and "curve of" in self.name():
+    while len(state) >= {units} and "curve of" in self.unit_label():
         pathlib.Path("inside").touch()
         time.sleep(0.01)
         hear(self, text)
