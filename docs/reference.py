@@ -429,7 +429,7 @@ def curve_rows(job: Job) -> Iterator[list[str]]:
         yield variable_row(variable, list(variable.extra), "phase_diagram.criticality: true")
     for variable in cycle_curve_variables(line, row).values():
         yield variable_row(variable, list(variable.extra), "phase_diagram.cycles: true")
-    third = job.config.phase_diagram.third
+    third = job.config.phase_diagram.bautin_parameter
     assert third is not None
     for variable in bautin_curve_variables(line, row, third[0]).values():
         yield variable_row(variable, list(variable.extra), "phase_diagram.bautin_along")

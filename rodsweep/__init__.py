@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from .api.answers.picture import Picture, plot
     from .api.answers.tabling import table
     from .api.arm import Arm
-    from .api.asking import linspace, logspace
     from .api.dataset import open_result as open  # noqa: A004 - `rs.open`
+    from .api.keyword_arguments import linspace, logspace
     from .api.rod import SoftRod as Rod
     from .api.sweeping import sweep
     from .errors import EnvironmentIncomplete, InputError
@@ -41,8 +41,8 @@ _PLACES = {
     "InputError": "errors.InputError",
     "Picture": "api.answers.picture.Picture",
     "Rod": "api.rod.SoftRod",
-    "linspace": "api.asking.linspace",
-    "logspace": "api.asking.logspace",
+    "linspace": "api.keyword_arguments.linspace",
+    "logspace": "api.keyword_arguments.logspace",
     "open": "api.dataset.open_result",
     "plot": "api.answers.picture.plot",
     "sweep": "sweep",

@@ -18,8 +18,8 @@ def peers(quick: bool, place: Path) -> Peers:
     skipped = [] if CVODE in [family.name for family in every] else [CVODE_SKIPPED]
     return Peers(
         contenders={
-            FOLLOWING: [contender for family in every for contender in family.followers()],
-            WAITING: [contender for family in every for contender in family.waiters()],
+            FOLLOWING: [contender for family in every for contender in family.following_contenders()],
+            WAITING: [contender for family in every for contender in family.settling_contenders()],
         },
         sections=(partial(compare_with_auto, program, quick),) if program else (),
         skipped=skipped if program else [*skipped, AUTO_SKIPPED],

@@ -147,7 +147,7 @@ def judged_measurement(exact: AccurateCycle, m: Measurement, outcome: Any) -> Me
     if isinstance(outcome, Exception):
         return replace(m, failure=f"failed ({outcome})", seconds=nan)
     if isinstance(outcome, AutoCycle):
-        errors = exact.at(outcome.F).errors_of(outcome.period, outcome.tip_y_max)
+        errors = exact.cycle_at_force(outcome.F).errors_of(outcome.period, outcome.tip_y_max)
         multipliers = outcome.multipliers
     else:
         errors = exact.errors_of(outcome.measures.period, outcome.measures.tip_y_max)

@@ -16,7 +16,7 @@ import scipy.sparse.linalg
 from rodsweep.arrays import Array
 from rodsweep.bench.spectrum import arms
 from rodsweep.bench.spectrum.arms import mesh_of_arm, solve_next_arm
-from rodsweep.bench.spectrum.own import MODE_COUNT, PENCIL_GROUP, leading_eigenvalues
+from rodsweep.bench.spectrum.rodsweep_spectrum import MODE_COUNT, PENCIL_GROUP, leading_eigenvalues
 from rodsweep.bench.spectrum.study import ORDERS, pencil_mesh
 from rodsweep.bench.study import Contender
 from rodsweep.determinant.roots.newton import refine_eigenvalue

@@ -12,7 +12,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import LOADS, SECTION_SIDES
 from ..model.units import Given
 from .answers.answer import Answer
-from .asking import config_tree, job_from, with_load_in_si
+from .keyword_arguments import config_tree, job_from, with_load_in_si
 from .options import (
     BranchKeywords,
     CriticalityKeywords,
@@ -85,7 +85,7 @@ class Arm(SlenderArm):
                     gone |= dict.fromkeys(old)
         if changed.get("segments") is not None:
             gone["length"] = None
-        return Arm(**(self._given | gone | changed))
+        return Arm(**(self._given_quantities | gone | changed))
 
     @property
     def turned(self) -> "Arm":
@@ -192,11 +192,13 @@ class Arm(SlenderArm):
         return [each.name for each in fields(self) if each.init]
 
     @property
-    def _given(self) -> dict[str, Any]:
+    def _given_quantities(self) -> dict[str, Any]:
         """The quantities of the arm that are not None, by name."""
         return {name: getattr(self, name) for name in self._names if getattr(self, name) is not None}
 
     def __repr__(self) -> str:
         default = {each.name: each.default for each in fields(self)}
-        given = (f"{name}={value!r}" for name, value in self._given.items() if value != default[name])
+        given = (
+            f"{name}={value!r}" for name, value in self._given_quantities.items() if value != default[name]
+        )
         return f"Arm({', '.join(given)})"

@@ -10,17 +10,23 @@ import xarray as xr
 
 from ..config.arm.axes import STORED_ALONG
 from ..config.document.call_arguments import in_sentences
-from ..config.values import short
+from ..config.values import short_repr
 from ..errors import InputError
 from ..model.arm.quantities import ALL_QUANTITIES
 from ..results.file.content import SEAL_ATTRIBUTE, attribute_digests, variable_digest
-from ..results.file.recent import (
+from ..results.file.current_state import (
     insert_records,
     journalled_points,
     journalled_reasons,
     read_file_and_journals,
 )
-from ..results.file.validation import ResultHeader, cleaned, open_whole, reading, reason_of
+from ..results.file.validation import (
+    ResultHeader,
+    damage_refusals,
+    escape_control_characters,
+    open_whole,
+    reason_of,
+)
 from ..results.file.view import View
 from ..results.layouts import beside_points, layout_of
 from ..results.layouts.variables import DIMENSIONS, TYPED_UNIT, Layout
@@ -40,26 +46,26 @@ def open_result(path: str | Path) -> xr.Dataset:
     Raises InputError if the file is no result file, is damaged, or was changed by another program.
     """
     path = named_file_path(path, 'rs.open("RESULT.h5")')
-    return read_file_and_journals(path, lambda: _opened(path))
+    return read_file_and_journals(path, lambda: _open_result_file(path))
 
 
 def named_file_path(given: object, example: str) -> Path:
     """Path of a file named by the user; InputError, with `example`, if `given` is no file name."""
     if not isinstance(given, str | os.PathLike) or not isinstance(name := os.fspath(given), str):
-        raise InputError(f"{short(given)} is not the name of a file; write it as in {example}")
+        raise InputError(f"{short_repr(given)} is not the name of a file; write it as in {example}")
     if not name or "\0" in name:
         raise InputError(f"{name!r} is not the name of a file; write it as in {example}")
     path = Path(name)
     return Path(os.path.realpath(path)) if path.is_symlink() else path
 
 
-def _opened(path: Path) -> xr.Dataset:
+def _open_result_file(path: Path) -> xr.Dataset:
     file, header = open_whole(path)
     file.close()
-    data = _loaded(path, header)
+    data = _load_with_checksums(path, header)
     for variable in data.variables.values():
-        variable.attrs = {name: cleaned(value) for name, value in variable.attrs.items()}
-    data.attrs = {name: cleaned(value) for name, value in data.attrs.items()}
+        variable.attrs = {name: escape_control_characters(value) for name, value in variable.attrs.items()}
+    data.attrs = {name: escape_control_characters(value) for name, value in data.attrs.items()}
     data = in_layout_order(data, header.layout, header.config)
     if journal_directory(path).is_dir():
         recent = journalled_points(header, data["status"].values.ravel())
@@ -93,12 +99,12 @@ def in_layout_order(data: xr.Dataset, layout: Layout, config: dict[str, Any]) ->
     return xr.Dataset(variables, coords, data.attrs)
 
 
-def _loaded(path: Path, header: ResultHeader) -> xr.Dataset:
+def _load_with_checksums(path: Path, header: ResultHeader) -> xr.Dataset:
     """The Dataset that xarray reads from a result file; InputError if values or dimensions differ from the
     checksums in the file. header: header of the file.
     """
     digests = json.loads(header.attributes[SEAL_ATTRIBUTE])["variables"]
-    with reading(path):
+    with damage_refusals(path):
         try:
             with xr.open_dataset(path, engine=ENGINE, phony_dims="sort") as stored:
                 data = stored.load()
@@ -152,4 +158,4 @@ def view_of_dataset(data: xr.Dataset, path: Path) -> View:
     typed = {
         str(name): str(v.attrs[TYPED_UNIT]) for name, v in data.variables.items() if TYPED_UNIT in v.attrs
     }
-    return View(path, dict(data.attrs), variables, layout.parameters, flags, 0, layout.over, typed)
+    return View(path, dict(data.attrs), variables, layout.parameters, flags, 0, layout.arm_axes, typed)

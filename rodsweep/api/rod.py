@@ -11,10 +11,10 @@ from pydantic import ValidationError
 
 from ..config.axes import DEFAULTS, REQUIRED, words
 from ..config.document.call_arguments import in_sentences, unknown
-from ..config.document.refusals import hint_of, nearest, sentence_of
+from ..config.document.refusals import hint_of, sentence_of, similar_keys
 from ..config.material import MaterialSection, with_profile_read
 from ..config.tasks import CONFIGS
-from ..config.values import as_number, short
+from ..config.values import as_number, short_repr
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.as_rod import material_of, parameters_of
@@ -22,7 +22,7 @@ from ..model.material.build import STANDARD
 from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_axes
 from .answers.answer import Answer
-from .asking import config_tree, job_from, plain_keyword, plain_value, with_load_in_si
+from .keyword_arguments import config_tree, job_from, plain_keyword, plain_value, with_load_in_si
 from .options import (
     BranchKeywords,
     CriticalityKeywords,
@@ -71,12 +71,12 @@ class SoftRod:
         for name in parameters:
             if name not in PARAMETERS:
                 left = [other for other in (*PARAMETERS, "arm") if other not in given]
-                hint = hint_of(name, left if nearest(name, left) else (*PARAMETERS, "arm"))
+                hint = hint_of(name, left if similar_keys(name, left) else (*PARAMETERS, "arm"))
                 raise InputError(f"a rod has no parameter {name}; {hint}")
         material = {"law": law, "section": section, "profile": profile}
         if arm is not None:
             if not isinstance(arm, SlenderArm):
-                raise InputError(f"arm = {short(arm)} is not an arm; write it as in {ARM_EXAMPLE}")
+                raise InputError(f"arm = {short_repr(arm)} is not an arm; write it as in {ARM_EXAMPLE}")
             given = parameters_of(with_load_in_si(arm)) | given
             beside = {name: value for name, value in material.items() if value is not None}
             material = material_of(arm) | beside
@@ -177,7 +177,7 @@ class SoftRod:
         section: Any = CONFIGS[task].model_fields[task].annotation
         known = [*section.model_fields, "accuracy", "title", "progress"]
         for name in options:
-            if name not in known and not nearest(name, known):
+            if name not in known and not similar_keys(name, known):
                 raise unknown(name, known)
         options = dict(options)
         progress = options.pop("progress", None)
@@ -190,7 +190,7 @@ class SoftRod:
 
     def __repr__(self) -> str:
         values = [f"{name}={value:.15g}" for name, value in self._values.items()]
-        material = [f"{name}={short(value)}" for name, value in self._given_material.items()]
+        material = [f"{name}={short_repr(value)}" for name, value in self._given_material.items()]
         return f"Rod({', '.join([*values, *material])})"
 
     def __eq__(self, other: object) -> bool:

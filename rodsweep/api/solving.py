@@ -14,15 +14,15 @@ from ..results.file.provenance import now, united_reasons
 from ..results.file.view import View
 from ..results.layouts.variables import Filled
 from ..solve.backend.availability import require_solvers
-from ..solve.backend.kept import forget_all
+from ..solve.backend.solver_pools import destroy_pooled_solvers
 from ..solve.exclusive import solving
 from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
-from ..sweep.stop import NoClaims, RankListener, StopRequest
+from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ..tasks.protocol import JointVariables, NamedArrays, Solver
 from ..tasks.running.failures import FailureReasons, parameters_in_words
 from ..tasks.running.in_memory import blas_pool, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
-from ..tasks.running.unforeseen import PointNote, guarded_solver
+from ..tasks.running.unforeseen_exceptions import PointNote, guarded_solver
 from ..watch import reporting_to, solve_part
 from .solved import SolvedPoints
 
@@ -55,12 +55,14 @@ def solve_here(job: Job, note: PointNote | None = None, progress: bool | None = 
     with blas_pool().limit(limits=1, user_api="blas"):
         shown(0)
         try:
-            values, messages, reasons = _solved(job, solver, plan, shown)
+            values, messages, reasons = _solve_points(job, solver, plan, shown)
             joint = (
-                _joint(solver.together, view_in_memory(job, plan, values), shown) if solver.together else ()
+                _solve_joint_variables(solver.joint_variables, view_in_memory(job, plan, values), shown)
+                if solver.joint_variables
+                else ()
             )
         except BaseException:  # a solve was interrupted, by Ctrl-C too: cached solvers may be half changed
-            forget_all()
+            destroy_pooled_solvers()
             raise
         finally:
             shown.close()
@@ -93,7 +95,7 @@ def _history(started: str, reasons: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def _solved(
+def _solve_points(
     job: Job, solver: Solver, plan: Plan, shown: Display
 ) -> tuple[dict[str, np.ndarray], list[str], list[str]]:
     """Returns (variables, messages, reasons). variables: by name, with the dimensions of the points first.
@@ -127,7 +129,7 @@ def _solved(
     )
 
 
-def _joint(together: JointVariables, view: View, shown: Display) -> Sequence[Filled]:
+def _solve_joint_variables(together: JointVariables, view: View, shown: Display) -> Sequence[Filled]:
     """Values of the variables that depend on all points, for example curves. view: the solved points. shown:
     progress display.
     """
@@ -147,7 +149,7 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
     done = 0
 
     @contextmanager
-    def reported() -> Iterator[None]:
+    def point_progress() -> Iterator[None]:
         """Marks the reports in the `with` block as reports of the next point."""
         name = f"point {done + 1} of {count}" if count > 1 else ""
         with (
@@ -158,7 +160,7 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
 
     if solver.chained is None:
         for done in range(count):
-            with reported():
+            with point_progress():
                 outcome = solver.solve(done)
             yield done, outcome
         return
@@ -167,7 +169,7 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
     for chain in range(chains.count):
         state = None
         for index in map(int, chains.indices(chain)):
-            with reported():
+            with point_progress():
                 outcome, state = solve_from(index, state)
             done += 1
             yield index, outcome
@@ -190,5 +192,7 @@ def progress_listener(shown: Display, name: str) -> RankListener:
     KeyboardInterrupt.
     """
     return RankListener(
-        NoClaims(lambda place: shown.place(place.words, place.share or 0.0)), StopRequest(), lambda: name
+        SingleRankCommunication(lambda place: shown.place(place.words, place.share or 0.0)),
+        StopRequest(),
+        lambda: name,
     )

@@ -16,9 +16,9 @@ import xarray as xr
 from ..config.document.call_arguments import in_sentences
 from ..config.document.reading import yaml_of
 from ..errors import EnvironmentIncomplete, InputError
-from ..tasks.running.unforeseen import describe_unforeseen, log_file
-from .asking import ConfigTree, config_tree, job_from, require_allowed_keys
+from ..tasks.running.unforeseen_exceptions import describe_exception, log_file
 from .dataset import open_result
+from .keyword_arguments import ConfigTree, config_tree, job_from, require_allowed_keys
 from .solving import Display, progress_display, solve_here
 
 COMPLETE_STATUSES = (0, 1)
@@ -71,7 +71,7 @@ def _warn(indices: Sequence[int], error: Exception) -> None:
     last = indices[-1] + 1
     points = f"point {first}" if first == last else f"points {first} to {last}"
     trace = "".join(traceback.format_exception(error))
-    warnings.warn(f"{points}: {describe_unforeseen(error)}\n{trace}", RuntimeWarning, stacklevel=2)
+    warnings.warn(f"{points}: {describe_exception(error)}\n{trace}", RuntimeWarning, stacklevel=2)
 
 
 def _on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Display) -> xr.Dataset:
@@ -88,7 +88,7 @@ def _on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Disp
         words = [_mpiexec(), "-n", str(ranks), sys.executable, "-m", "rodsweep", "run", str(config)]
         words += ["-o", str(output), *(["--strict"] if strict else [])]
         try:
-            status, errors = _run_shown(words, place, shown)
+            status, errors = _run_with_progress(words, place, shown)
         except OSError as error:
             raise EnvironmentIncomplete(f"{words[0]} cannot be started: {error.strerror}") from None
         if status not in COMPLETE_STATUSES:
@@ -98,7 +98,7 @@ def _on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Disp
         return open_result(output)
 
 
-def _run_shown(words: list[str], place: str, shown: Display) -> tuple[int, str]:
+def _run_with_progress(words: list[str], place: str, shown: Display) -> tuple[int, str]:
     """Runs the command `words` in the directory `place` and shows its progress; returns (exit status,
     standard error).
     """

@@ -82,7 +82,7 @@ def main() -> None:
     if message and prints_messages():
         with suppress(OSError):  # standard error may also be on the full disk
             click.echo(f"rodsweep: {_one_line(message)}", err=True)
-    _drop_what_cannot_be_written()
+    _drop_unwritable_streams()
     sys.exit(code)
 
 
@@ -102,7 +102,7 @@ def _prepare_streams() -> None:
         del os.environ["COLUMNS"]
 
 
-def _drop_what_cannot_be_written() -> None:
+def _drop_unwritable_streams() -> None:
     """Redirects standard streams that cannot be flushed to /dev/null; otherwise Python would exit with
     120.
     """

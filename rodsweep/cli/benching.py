@@ -12,7 +12,7 @@ from ..errors import EnvironmentIncomplete
 from ..results.file.provenance import cpu_name, now, provenance
 from ..solve.backend import petsc
 
-MEASURED_COMMAND = (sys.executable, "-m", f"{__package__}.measured")
+MEASURED_COMMAND = (sys.executable, "-m", f"{__package__}.measured_command")
 """Command that starts `rodsweep` in the runs measured by the benchmark of the sweep."""
 REPORT_HEADING = """# Performance
 

@@ -61,7 +61,7 @@ def _arm_lines(job: Job) -> list[str]:
     made = (f"{name} = {span(np.asarray(values))}" for name, values in columns.items())
     validity = validity_sentence(ArmValidity(job.config, job.points).at_rest(), when=" before anything moves")
     return [
-        f"the arm: {given_text(arm.given)}{_material_text(arm)}",
+        f"the arm: {given_text(arm.quantity_axes)}{_material_text(arm)}",
         *_wall_lines(arm),
         *plane_lines({variable.name: np.asarray(values) for variable, values in job.quantities}),
         f"the arm as a rod: {', '.join(made)} s",
@@ -83,7 +83,9 @@ def _wall_lines(arm: ArmSection) -> list[str]:
         return []
     names = ("length", "radius", "inner_radius", "poisson")
     # Only poisson may be missing; its default is that of rubber.
-    values = [arm.given[name].array() if name in arm.given else np.array([0.5]) for name in names]
+    values = [
+        arm.quantity_axes[name].array() if name in arm.quantity_axes else np.array([0.5]) for name in names
+    ]
     length, radius, bore, poisson = np.meshgrid(*values)
     tubes = bore < radius
     effect = wall_effect(length[tubes], radius[tubes], bore[tubes], poisson[tubes])

@@ -97,7 +97,7 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
 @click.option("-o", "--output", type=FILE_TYPE, help="By default FILE's name with -snapshot before .h5.")
 def snapshot(file: Path, output: Path | None) -> None:
     """Write the finished points of the result FILE, without disturbing the run."""
-    from ..results.file.recent import write_snapshot
+    from ..results.file.current_state import write_snapshot
 
     output = result_file(output or with_ending(file, f"-snapshot{file.suffix}"))
     done, points = write_snapshot(link_target(file), output)

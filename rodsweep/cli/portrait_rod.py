@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from ..model.arm.quantities import LOADS
 from ..model.parameters import PARAMETERS
-from ..sweep.stop import NoClaims, RankListener, StopRequest
+from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ..watch import SolvePosition, reporting_to
 
 if TYPE_CHECKING:
@@ -38,16 +38,16 @@ def rod_of_options(
     from ..post.rod_portrait.results import DescribedRod
     from .arm_report import as_options
 
-    own = _given(parameters)
-    words = _given(material)
-    of_arm = _given(quantities)
+    own = _options_that_are_set(parameters)
+    words = _options_that_are_set(material)
+    of_arm = _options_that_are_set(quantities)
     if of_arm:
         of_arm |= {name: words.pop(name) for name in ("law", "section") if name in words}
         try:
             SlenderArm(**of_arm)
         except InputError as error:
             raise InputError(as_options(str(error))) from None
-        return DescribedRod(parameters=own, material=_read(words), arm=of_arm)
+        return DescribedRod(parameters=own, material=_read_material(words), arm=of_arm)
     for name in REQUIRED:
         if name not in own:
             raise InputError(
@@ -55,17 +55,17 @@ def rod_of_options(
                 "of an arm, such as --length"
             )
     values = {name: own.get(name, DEFAULTS.get(name)) for name in PARAMETERS}
-    return DescribedRod(parameters=_given(values), material=_read(words))
+    return DescribedRod(parameters=_options_that_are_set(values), material=_read_material(words))
 
 
-def _read(material: Mapping[str, Any]) -> Any:
+def _read_material(material: Mapping[str, Any]) -> Any:
     """The section `material` of a config, with the profile read from its file."""
     from ..config.material import with_profile_read
 
     return with_profile_read({"material": dict(material)}, Path())["material"]
 
 
-def _given(options: Mapping[str, Any]) -> dict[str, Any]:
+def _options_that_are_set(options: Mapping[str, Any]) -> dict[str, Any]:
     """The options whose value is not None, by name."""
     return {name: value for name, value in options.items() if value is not None}
 
@@ -80,7 +80,7 @@ def solve_with_progress(shown: "ProgressReporter", solve: "Solve") -> "Iterator[
 
     def solve_and_show(job: "Job") -> "View":
         name = job.config.task.replace("_", " ")
-        with reporting_to(RankListener(NoClaims(show), StopRequest(), lambda: name)):
+        with reporting_to(RankListener(SingleRankCommunication(show), StopRequest(), lambda: name)):
             view = solve(job)
         shown(next(numbers))
         return view

@@ -72,7 +72,7 @@ class Axes(LinearAxes):
         """Axes of the swept parameters, by name: the given axes and, for a grid of parameters, axes computed
         from the arm's quantities.
         """
-        if self.arm is None or self.over:
+        if self.arm is None or self.arm_axes:
             return self.given_axes
         axes = self.arm.grid_axes() | self.given_axes
         return {name: axes[name] for name in self.of_arm if name in axes}
@@ -80,7 +80,7 @@ class Axes(LinearAxes):
     @cached_property
     def given_axes(self) -> dict[str, Axis]:
         """Axes of the parameters that the config names directly, by name of the parameter."""
-        return {name: value for name, value in self._given.items() if isinstance(value, Axis)}
+        return {name: value for name, value in self._given_values.items() if isinstance(value, Axis)}
 
     @property
     def is_list(self) -> bool:
@@ -88,28 +88,28 @@ class Axes(LinearAxes):
         return self.points is not None
 
     @property
-    def over(self) -> tuple[str, ...]:
+    def arm_axes(self) -> tuple[str, ...]:
         """Names of the axes of a grid over an arm's quantities; empty for a grid of parameters or a list."""
         if self.arm is None:
             return ()
-        given = self.arm.given | self.given_axes
+        given = self.arm.quantity_axes | self.given_axes
         return names_over({name: axis.size for name, axis in given.items()}, self.in_diagram)
 
     @property
-    def alone(self) -> dict[str, int]:
+    def single_parameter_sizes(self) -> dict[str, int]:
         """Number of values on each axis along which a single parameter changes, by name of the parameter."""
-        if self.arm is None or not self.over:
+        if self.arm is None or not self.arm_axes:
             return {name: axis.size for name, axis in self.axes.items()}
-        given = self.arm.given | self.given_axes
-        return {name: given[axis].size for axis in self.over if (name := parameter_of_axis(axis))}
+        given = self.arm.quantity_axes | self.given_axes
+        return {name: given[axis].size for axis in self.arm_axes if (name := parameter_of_axis(axis))}
 
     @property
-    def numbers(self) -> dict[str, float]:
+    def constant_parameters(self) -> dict[str, float]:
         """Values of the parameters that are given as a number, not as an axis, by name."""
-        return {name: value for name, value in self._given.items() if isinstance(value, float)}
+        return {name: value for name, value in self._given_values.items() if isinstance(value, float)}
 
     @property
-    def _given(self) -> dict[str, Any]:
+    def _given_values(self) -> dict[str, Any]:
         return {name: getattr(self, name, None) for name in PARAMETERS}
 
     def require(self, names: tuple[str, ...], or_points: bool = True) -> None:
@@ -140,12 +140,12 @@ class Axes(LinearAxes):
         arm.refuse_misuse(forced, self.given_axes)
         beside = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
         count = arm.count(math.prod(axis.size for axis in beside.values()))
-        if self.over and count > MOST_POINTS:
+        if self.arm_axes and count > MOST_POINTS:
             raise ValueError(
                 f"parameters.arm makes a grid of {count} points, more than the {MOST_POINTS} allowed; use "
                 "fewer values"
             )
-        if not self.over:
+        if not self.arm_axes:
             arm.grid_axes()
 
 

@@ -58,7 +58,7 @@ def json_schema() -> dict[str, Any]:
         with_bounds(section.get("properties", {}), definitions["Axis"])
     add_arm_conditions(definitions["ArmSection"], definitions["Axis"])
     whole = {"oneOf": tasks, "definitions": definitions}
-    for node in nodes_of(whole):
+    for node in iterate_subschemas(whole):
         for ours, theirs in BOUNDS.items():
             if ours in node:
                 bound = node.pop(ours)
@@ -108,21 +108,21 @@ def _describe_keys(schema: dict[str, Any], section: type[BaseModel]) -> None:
             key["description"] = meanings[name]
 
 
-def given(name: str) -> Schema:
+def key_is_given(name: str) -> Schema:
     """JSON schema of the condition that the key `name` is present and not null."""
     return {"required": [name], "properties": {name: {"not": {"type": "null"}}}}
 
 
 def none_of(names: Iterable[str]) -> Schema:
     """JSON schema of the condition that no key in `names` is given."""
-    return {"not": {"anyOf": [given(name) for name in names]}}
+    return {"not": {"anyOf": [key_is_given(name) for name in names]}}
 
 
 def all_of(names: Iterable[str], *more: Schema) -> Schema:
     """JSON schema of the condition that all keys in `names` are given and all schemas in `more` are
     satisfied.
     """
-    return {"allOf": [*map(given, names), *more]}
+    return {"allOf": [*map(key_is_given, names), *more]}
 
 
 def bounded(schema: Schema, bound: Mapping[str, float], words: tuple[str, ...] = ()) -> Schema:
@@ -130,7 +130,7 @@ def bounded(schema: Schema, bound: Mapping[str, float], words: tuple[str, ...] =
     bounds. words: allowed spellings of inf.
     """
     copy = deepcopy(schema)
-    for node in nodes_of(copy):
+    for node in iterate_subschemas(copy):
         kinds = node.get("anyOf", [])
         if any("enum" in kind and "inf" in kind["enum"] for kind in kinds):
             kept = [{"enum": list(words)}] if words else []
@@ -167,7 +167,7 @@ def add_arm_conditions(section: Schema, axis: Schema) -> None:
             continue
         sign = "[+]?" if bound else "[+-]?"
         pattern = QUANTITY_TEXT.format(sign=sign, percent="%" if name in LOADS else "")
-        for node in nodes_of(key):
+        for node in iterate_subschemas(key):
             if node.get("type") == "string":
                 node["pattern"] = pattern
     of_one = ["length", "young"]
@@ -191,7 +191,7 @@ def points_of(needed: Iterable[str], lists: bool) -> Schema:
     loads = [all_of([name]) for name in LOAD_AXES]
     loaded = {"properties": {"arm": {"anyOf": loads}}}
     unloaded = {"properties": {"arm": none_of(LOAD_AXES)}}
-    load = {"oneOf": [given("F"), loaded]} if "F" in axes else unloaded
+    load = {"oneOf": [key_is_given("F"), loaded]} if "F" in axes else unloaded
     none_listed = none_of(["points", "columns"])
     ways = [all_of(axes, none_of(["arm"]), none_listed), all_of(["arm"], none_listed, load)]
     if lists:
@@ -199,10 +199,10 @@ def points_of(needed: Iterable[str], lists: bool) -> Schema:
     return {"anyOf": ways} if "F" in axes else {"anyOf": ways, **none_of(["F"])}
 
 
-def nodes_of(schema: Any) -> Iterable[Schema]:
+def iterate_subschemas(schema: Any) -> Iterable[Schema]:
     """Yields all mappings within a JSON schema, including the schema."""
     if isinstance(schema, dict):
         yield schema
     if isinstance(schema, dict | list):
         for inner in list(schema.values() if isinstance(schema, dict) else schema):
-            yield from nodes_of(inner)
+            yield from iterate_subschemas(inner)

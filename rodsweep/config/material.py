@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from ..errors import InputError
 from ..model.material.build import Build
 from ..model.material.profile import FACTORS, Profile
-from .values import Number, StrictSection, cell_number, short
+from .values import Number, StrictSection, cell_number, short_repr
 
 MOST_ROWS = 1000
 """Maximum number of rows of a profile; longer profiles are refused."""
@@ -60,7 +60,7 @@ class ProfileTable(StrictSection):
         return self
 
 
-def _or_file(schema: dict[str, Any]) -> None:
+def _allow_profile_file(schema: dict[str, Any]) -> None:
     """Adds the name of a CSV file as an allowed value to the JSON schema of a profile, in place."""
     schema["anyOf"] = [{"type": "string"}, *schema["anyOf"]]
 
@@ -75,7 +75,8 @@ class MaterialSection(StrictSection):
     profile: Annotated[
         ProfileTable | None,
         Field(
-            description="the name of a CSV file, or a mapping of columns to lists", json_schema_extra=_or_file
+            description="the name of a CSV file, or a mapping of columns to lists",
+            json_schema_extra=_allow_profile_file,
         ),
     ] = None
     """Name of a CSV file, or mapping, with the columns u, k1, k2, k3, gamma1, gamma2 and gamma3: factors
@@ -134,5 +135,5 @@ def read_profile(path: Path) -> dict[str, list[float]]:
             try:
                 columns[name].append(cell_number(cell))
             except ValueError:
-                raise InputError(f"{place}: {name} = {short(cell)} is not a number") from None
+                raise InputError(f"{place}: {name} = {short_repr(cell)} is not a number") from None
     return columns

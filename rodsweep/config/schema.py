@@ -51,13 +51,13 @@ class Config(StrictSection):
         """Names of the parameters of a point: the parameters that the task needs, and the optional parameters
         in the config.
         """
-        return (*self.rod_parameters_used({}), *self.added)
+        return (*self.rod_parameters_used({}), *self.optional_names)
 
     @property
-    def added(self) -> tuple[str, ...]:
+    def optional_names(self) -> tuple[str, ...]:
         """Names of the optional parameters in the config, given by name or implied by the arm's shape."""
         arm = self.parameters.arm
-        made = () if arm is None else arm.tapering
+        made = () if arm is None else arm.cone_parameters
         return tuple(n for n in OPTIONAL_PARAMETERS if n in self.parameters.optional or n in made)
 
     @property
@@ -90,7 +90,7 @@ class Config(StrictSection):
         return NONLINEAR_PARAMETERS
 
     @property
-    def unused(self) -> dict[str, str]:
+    def options_without_effect(self) -> dict[str, str]:
         """Options without effect in this config, by name; the value is the setting with which the option
         would have an effect.
         """
@@ -98,31 +98,31 @@ class Config(StrictSection):
 
     def refuse_unused(self) -> None:
         """Raises ValueError if the config gives an option that has no effect."""
-        for option, remedy in self.unused.items():
+        for option, remedy in self.options_without_effect.items():
             if option in getattr(self, self.task).model_fields_set:
                 raise ValueError(
                     f"{self.task}.{option} is given but not used; set {self.task}.{remedy} or remove it"
                 )
 
     @property
-    def meaning(self) -> dict[str, Any]:
+    def settings_of_results(self) -> dict[str, Any]:
         """All settings on which the results depend, except the points, as JSON-compatible values.
 
         Settings under the key `together` change only variables that are computed from all points together.
         Two configs with equal meanings and equal points give the same results.
         """
-        options = getattr(self, self.task).model_dump(mode="json", exclude=set(self.unused))
-        numbers = dict(self.parameters.numbers)
+        options = getattr(self, self.task).model_dump(mode="json", exclude=set(self.options_without_effect))
+        numbers = dict(self.parameters.constant_parameters)
         meant = {"task": self.task, "parameters": numbers, "accuracy": self.accuracy, self.task: options}
         if self.material is not None and not self.build.standard:
             meant["material"] = self.material.model_dump(mode="json", exclude_none=True)
         if self.parameters.arm is None:
             return meant
-        if self.parameters.over:  # the grid's axes do not contain parameters with one value
+        if self.parameters.arm_axes:  # the grid's axes do not contain parameters with one value
             given = self.parameters.given_axes
             beside = {name: float(given[name].array()[0]) if name in given else None for name in self.names}
-            meant["parameters"] |= {k: v for k, v in beside.items() if k not in self.parameters.over}
-        return meant | {"arm": self.parameters.arm.meaning}
+            meant["parameters"] |= {k: v for k, v in beside.items() if k not in self.parameters.arm_axes}
+        return meant | {"arm": self.parameters.arm.settings_of_results}
 
     def refuse_found(self, name: str, why: str) -> None:
         """Raises ValueError, with the reason `why`, if the config gives the parameter `name`, for which the
@@ -160,7 +160,7 @@ class LinearConfig(Config):
 
     @model_validator(mode="after")
     def _only_parameters_that_are_used(self) -> "LinearConfig":
-        for name in self.parameters.numbers:
+        for name in self.parameters.constant_parameters:
             if name not in self.beyond:
                 raise ValueError(
                     f"parameters.{name} is given but the task {self.task} does not use it; remove it"

@@ -25,11 +25,11 @@ def as_number(value: Any) -> float:
     if isinstance(value, str) and value.strip().lower() in ("inf", "+inf", "-inf"):
         return float(value)
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError(f"{short(value)} is not a number")
+        raise ValueError(f"{short_repr(value)} is not a number")
     try:
         number = float(value)
     except OverflowError:
-        raise ValueError(f"{short(value)} is too large for a floating-point number") from None
+        raise ValueError(f"{short_repr(value)} is too large for a floating-point number") from None
     if isnan(number):
         raise ValueError("nan is not allowed; give a number")
     return number
@@ -50,7 +50,7 @@ def cell_number(cell: str) -> float:
     return as_number(float(cell))
 
 
-def short(value: Any) -> str:
+def short_repr(value: Any) -> str:
     """`repr` of a value for messages, cut to 60 characters."""
     try:
         text = repr(value)
@@ -59,7 +59,7 @@ def short(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def named(name: object, most: int = 200) -> str:
+def printable_name(name: object, most: int = 200) -> str:
     """A name for a message: `repr` of a name that is not printable, shortened in the middle to at most `most`
     characters.
     """
@@ -77,7 +77,7 @@ def printable(text: str) -> str:
 def as_text(value: Any) -> Any:
     """The value unchanged; ValueError for a text with control characters or lone surrogates."""
     if isinstance(value, str) and not all(c.isprintable() or c == " " for c in value):
-        raise ValueError(f"{short(value)} has characters that cannot be printed")
+        raise ValueError(f"{short_repr(value)} has characters that cannot be printed")
     return value
 
 
@@ -145,7 +145,7 @@ class Axis(StrictSection):
         return bool(finite) and 0 < 10 * finite[0] < finite[-1]
 
     @property
-    def resolved(self) -> dict[str, Any]:
+    def json_value(self) -> dict[str, Any]:
         """The axis as JSON-compatible keys and values, with `factor` applied to start and stop of a range."""
         tree = self.model_dump(mode="json", exclude_none=True)
         ends = {} if self.values is not None else {"start": self.start, "stop": self.stop}
@@ -158,7 +158,7 @@ class Axis(StrictSection):
         # The ends stay unscaled, so that a longer range contains exactly the same values.
         return self.model_copy(update={"factor": scale * self.factor})
 
-    def agrees(self, other: "Axis") -> bool:
+    def equals_within_rounding(self, other: "Axis") -> bool:
         """Whether two axes have the same values within rounding."""
         return self.size == other.size and np.allclose(self.array(), other.array(), rtol=1e-12, atol=0)
 
@@ -188,7 +188,9 @@ def as_axis(value: Any) -> Axis:
         raise ValueError("the list is empty; give at least one number")
     numbers = tuple(as_number(item) for item in value)
     if any(b <= a for a, b in zip(numbers[:-1], numbers[1:], strict=True)):
-        raise ValueError(f"{short(value)} is not sorted; list the numbers in increasing order, each once")
+        raise ValueError(
+            f"{short_repr(value)} is not sorted; list the numbers in increasing order, each once"
+        )
     return Axis(values=numbers)
 
 
@@ -196,7 +198,7 @@ def _range(value: dict) -> Axis:
     known = ("start", "stop", "num", "spacing")
     for key in value:
         if key not in known:
-            raise ValueError(f"unknown key {short(key)} in a range; its keys are {', '.join(known)}")
+            raise ValueError(f"unknown key {short_repr(key)} in a range; its keys are {', '.join(known)}")
     for key in known[:3]:
         if key not in value:
             raise ValueError(f"a range needs start, stop and num, and {key} is missing")
@@ -207,9 +209,9 @@ def _range(value: dict) -> Axis:
         num = int(num)
     spacing = value.get("spacing", "linear")
     if spacing not in ("linear", "log"):
-        raise ValueError(f"spacing = {short(spacing)} is neither linear nor log")
+        raise ValueError(f"spacing = {short_repr(spacing)} is neither linear nor log")
     if isinstance(num, bool) or not isinstance(num, int) or not 1 <= num <= MOST_VALUES:
-        raise ValueError(f"num = {short(num)} is not a whole number from 1 to {MOST_VALUES}")
+        raise ValueError(f"num = {short_repr(num)} is not a whole number from 1 to {MOST_VALUES}")
     if abs(start) == inf or abs(stop) == inf:
         raise ValueError("start and stop of a range must be finite; put inf in a list")
     if (num > 1 and not start < stop) or (num == 1 and start != stop):

@@ -10,7 +10,7 @@ from bokeh.events import DocumentReady, Pan, Tap
 from bokeh.models import Button
 
 from .controls import ChangeCallback, Controls
-from .look import colour_script, style_sheet, template_text
+from .page_style import colour_script, style_sheet, template_text
 from .pictures.beating import BeatingPicture
 from .pictures.branches import BranchPicture
 from .pictures.card import Card

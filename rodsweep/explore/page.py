@@ -12,11 +12,11 @@ from .contents import PageContents
 from .scales import SCALES
 from .sharing import state_of_text
 from .solving.diagrams import Dataset, has_uniform_rods
-from .solving.letting_go import Tip
 from .solving.needs import IDLE_KINDS, INSTANT_KINDS, MANUAL_KINDS, STOPPABLE_KINDS, TIP_KINDS, Needs, needs
 from .solving.questions import Question, Reply
-from .solving.sign import progress_text, solving_text
 from .solving.solvers import Solvers
+from .solving.solving_status import progress_text, solving_text
+from .solving.tip_release import Tip
 from .state import PageState, from_address, rod_of
 from .stored_results import StoredResults
 

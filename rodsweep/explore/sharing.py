@@ -12,7 +12,7 @@ from bokeh.models import Button, Column, CustomJS, Div, FileInput, GlyphRenderer
 from ..config.document.parsing import parse
 from ..config.document.reading import validated
 from ..errors import InputError
-from .look import style_sheet, template_text
+from .page_style import style_sheet, template_text
 from .pictures.card import Card
 from .state import PageState
 from .stored import state_of

@@ -13,7 +13,7 @@ from ..api.rod import SoftRod
 from ..config.document.reading import yaml_of
 from ..config.document.refusals import hint_of
 from ..config.tasks import CONFIGS
-from ..config.values import overflows, short
+from ..config.values import overflows, short_repr
 from ..errors import InputError
 from ..model.parameters import OPTIONAL_PARAMETERS
 
@@ -96,7 +96,9 @@ class PageState:
             return Arm(**{name: text.strip() for name, text in self.arm.items()}, **material)
         for name, text in self.rod.items():
             if overflows(text.strip()):
-                raise InputError(f"parameters.{name}: {short(text)} is too large for a floating-point number")
+                raise InputError(
+                    f"parameters.{name}: {short_repr(text)} is too large for a floating-point number"
+                )
         return SoftRod(**self.parameters(), **material)
 
     def parameters(self) -> dict[str, Any]:
@@ -111,7 +113,7 @@ class PageState:
         value = number(self.F_max)
         if not (isinstance(value, float) and 0 < value < float("inf")):
             raise InputError(
-                f"F_max = {short(self.F_max)} is not allowed; it must be a finite number above 0"
+                f"F_max = {short_repr(self.F_max)} is not allowed; it must be a finite number above 0"
             )
         return value
 
@@ -166,12 +168,12 @@ def from_address(query: str, default: PageState | None = None) -> PageState:
     known = TAB_DEFAULTS[tab]
     for name in given:
         if name not in known:
-            raise InputError(f"unknown key {short(name)} in the address; {hint_of(name, list(known))}")
+            raise InputError(f"unknown key {short_repr(name)} in the address; {hint_of(name, list(known))}")
     return state.with_values(**given)
 
 
 def _choice(key: str, given: str, known: Any) -> str:
     """Returns `given` if it is one of `known`; raises InputError otherwise."""
     if given not in known:
-        raise InputError(f"{key} = {short(given)} is not allowed; it must be {' or '.join(known)}")
+        raise InputError(f"{key} = {short_repr(given)} is not allowed; it must be {' or '.join(known)}")
     return given

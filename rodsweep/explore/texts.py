@@ -10,7 +10,7 @@ from bokeh.events import DocumentReady
 from bokeh.model import DataModel
 from bokeh.models import CustomJS
 
-from .look import template_text
+from .page_style import template_text
 
 
 class PageText(DataModel):

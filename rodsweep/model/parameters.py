@@ -52,22 +52,22 @@ class Parameter:
     """Whether a result file contains the parameter only if the config names the parameter."""
     default: float | None = None
     """Value of a parameter that the config does not name; None for a parameter that a grid must name."""
-    scales: tuple[str, ...] = ()
+    scaled_names: tuple[str, ...] = ()
     """Names of the stiffnesses or drags that the value multiplies; empty for a load, a stiffness or a drag. A
     parameter scales either stiffnesses or drags, so that the equations are affine in the parameter's
     coordinate, as the covering of a path requires."""
 
     def __post_init__(self) -> None:
         """Raises ValueError if the parameter scales both stiffnesses and drags."""
-        if len({name in STIFFNESSES for name in self.scales}) > 1:
+        if len({name in STIFFNESSES for name in self.scaled_names}) > 1:
             raise ValueError(
-                f"{self.name} scales {' and '.join(self.scales)}: no coordinate is affine in both"
+                f"{self.name} scales {' and '.join(self.scaled_names)}: no coordinate is affine in both"
             )
 
     @property
     def by_compliance(self) -> bool:
         """Whether the parameter enters the equations as 1/value, which may be 0, and not as the value."""
-        return bool(self.rigid or set(self.scales) & set(STIFFNESSES))
+        return bool(self.rigid or set(self.scaled_names) & set(STIFFNESSES))
 
     def coordinate(self, value: float) -> float:
         """The quantity in which the equations are affine: 1/value for a stiffness, otherwise the value."""
@@ -171,7 +171,9 @@ LINEAR_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if PARAMETERS[na
 """Names of the parameters of the transverse linear problem, without the optional parameters."""
 OPTIONAL_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.optional)
 """Names of the parameters that a result file contains only if the config names them."""
-SCALINGS = tuple((name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scales)
+SCALINGS = tuple(
+    (name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scaled_names
+)
 """All pairs (parameter name, name of a stiffness or drag that the parameter multiplies)."""
 TRANSVERSE_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 """Names of all parameters, optional parameters included, that the transverse linear problem may contain."""

@@ -246,5 +246,5 @@ class Rod:
         drags are products of coordinates, so a derivative is the product of the other factors.
         """
         others = scaled({**self.values, name: 1.0})
-        changing = PARAMETERS[name].scales or (name,)
+        changing = PARAMETERS[name].scaled_names or (name,)
         return {of: float(1 / others[of] if of in STIFFNESSES else others[of]) for of in changing}

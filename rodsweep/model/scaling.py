@@ -1,6 +1,6 @@
 """The rod's force, stiffnesses and drags at the base, from the values of the parameters.
 
-A parameter may multiply stiffnesses or drags, as `PARAMETERS` states in the field `scales`.
+A parameter may multiply stiffnesses or drags, as `PARAMETERS` states in the field `scaled_names`.
 """
 
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ def scaled(values: Mapping[str, Any]) -> Mapping[str, Any]:
     """Force, stiffnesses and drags at the base, by name, from the parameter `values` by name.
 
     Each is the value of the parameter of the same name times the values of the parameters that scale it, see
-    `Parameter.scales`.
+    `Parameter.scaled_names`.
     """
     if not SCALINGS:
         return values

@@ -9,8 +9,8 @@ from ..config.axes import words
 from ..errors import InputError
 from ..results.file.view import View
 from ..wording import counted
+from .output_files import atomic_write
 from .tables import Table, Tables
-from .whole_file import atomic_write
 
 SEPARATORS = {".csv": ",", ".tsv": "\t"}
 """Character between two columns, by the suffix of the output file."""

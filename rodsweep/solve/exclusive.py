@@ -19,7 +19,7 @@ from types import FrameType
 from typing import Any, ParamSpec, Self, TypeVar
 
 from ..watch import MakePosition, reporting_to
-from .backend.kept import forget_all
+from .backend.solver_pools import destroy_pooled_solvers
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -63,7 +63,7 @@ def solving(function: Callable[P, R]) -> Callable[P, R]:
         try:
             return function(*values, **named)
         except BaseException:
-            forget_all()
+            destroy_pooled_solvers()
             raise
 
     return one_at_a_time(defer_signals(call))

@@ -35,11 +35,13 @@ def largest_first_mesh(
     searched, by name of the parameter; meshes are compared at these values.
     """
     indices = {*sampled(points).tolist(), *_corners(points)}
-    rods = (rod for index in sorted(indices) for rod in _moved(points.rod(index), ends or {}))
+    rods = (
+        rod for index in sorted(indices) for rod in _rods_at_parameter_ends(points.rod(index), ends or {})
+    )
     return max(map(mesh_of, rods), key=lambda mesh: mesh.nodes, default=None)
 
 
-def _moved(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod]:
+def _rods_at_parameter_ends(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod]:
     """Yields the rod with every combination of the parameter values in `ends`, by name, (n,) each.
 
     A force is lowered to just below the crushing force. Combinations outside the range of the model are

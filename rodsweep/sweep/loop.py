@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..watch import SolveStopped, reporting_to
-from .claims import FirstRankRequests, OtherRankClaims
-from .handout import GIVE_BACK_AFTER, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
+from .chunk_queue import GIVE_BACK_AFTER, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
+from .chunk_requests import FirstRankRequests, OtherRankRequests
 from .points.ranges import IndexRange
 from .stop import RankListener, StopRequest
 from .team import Team
@@ -64,29 +64,31 @@ class Loop:
 
     solve: UnitSolver
     """Solves the points of a unit."""
-    keep: Callable[[Indices, Any], None]
+    store: Callable[[Indices, Any], None]
     """Stores the result of a point durably, on the rank that solved it, before the next point begins."""
     prepare: Callable[[], object] = lambda: None
     """Called once, before the first unit."""
-    results: Callable[[], dict[int, Any]] = dict
+    new_results: Callable[[], dict[int, Any]] = dict
     """Returns the results of the units stored since the last call, by number of the unit; empty if no unit
     depends on the results of other units."""
-    name: Callable[[int], str] = lambda unit: ""
+    unit_label: Callable[[int], str] = lambda unit: ""
     """Returns a description of a unit for the progress display."""
 
 
-def sweep(team: Team, todo: ChunkQueue, loop: Loop, shown: ProgressSink, stop: StopRequest) -> RankWork:
-    """Solves every unit in `todo`, which is used on the first rank only; returns when all ranks have
+def sweep(team: Team, queue: ChunkQueue, loop: Loop, progress: ProgressSink, stop: StopRequest) -> RankWork:
+    """Solves every unit in `queue`, which is used on the first rank only; returns when all ranks have
     finished.
 
     An exception on any rank ends all ranks. After a stop request to any rank, each rank ends after the
     current point, or abandons the point after GRACE_SECONDS (see `stop`).
     """
-    claims = FirstRankRequests(team, todo, stop, shown.place) if team.first else OtherRankClaims(team, stop)
+    claims = (
+        FirstRankRequests(team, queue, stop, progress.place) if team.first else OtherRankRequests(team, stop)
+    )
     with suppress(SolveStopped), reporting_to(RankListener(claims, stop)):
         loop.prepare()
-    shown(0)
-    return _RankLoop(team, claims, loop, shown, stop).share()
+    progress(0)
+    return _RankLoop(team, claims, loop, progress, stop).solve_chunks()
 
 
 class _RankLoop:
@@ -95,45 +97,45 @@ class _RankLoop:
     def __init__(
         self,
         team: Team,
-        claims: FirstRankRequests | OtherRankClaims,
+        requests: FirstRankRequests | OtherRankRequests,
         loop: Loop,
-        shown: ProgressSink,
+        progress: ProgressSink,
         stop: StopRequest,
     ):
         self.team = team
-        self.claims = claims
+        self.requests = requests
         self.loop = loop
-        self.shown = shown
+        self.progress = progress
         self.stop = stop
         self.points = 0
         self.ended = False
 
-    def share(self) -> RankWork:
+    def solve_chunks(self) -> RankWork:
         """Solves chunk after chunk; returns the statistics of the rank once all ranks have finished."""
         started = time.monotonic()
         busy = 0.0
-        chunk = self.claims.claim(RankReport())
+        chunk = self.requests.next_chunk(RankReport())
         while chunk != NO_WORK_LEFT:
             began = time.monotonic()
             before = self.points
-            at = self._solved_up_to(chunk)
+            at = self._solve_chunk(chunk)
             spent = time.monotonic() - began
             busy += spent
             report = RankReport(
                 done=at - chunk[0],
                 seconds=spent,
-                given_back=(at, chunk[1]),
+                returned=(at, chunk[1]),
                 points=self.points - before,
                 stop=self.stop.name,
-                results=self.loop.results(),
+                results=self.loop.new_results(),
             )
-            chunk = self.claims.claim(report)
-        if isinstance(self.claims, FirstRankRequests):
-            self.claims.close()
+            chunk = self.requests.next_chunk(report)
+        if isinstance(self.requests, FirstRankRequests):
+            self.requests.close()
         self.team.wait_for_all()
         return RankWork(self.points, busy, time.monotonic() - started - busy, self.ended)
 
-    def _solved_up_to(self, chunk: IndexRange) -> int:
+    def _solve_chunk(self, chunk: IndexRange) -> int:
         """Solves the units of a chunk in order; returns the number of the first unsolved unit.
 
         Later units stay unsolved after a stop request, or if the chunk takes too long.
@@ -143,7 +145,7 @@ class _RankLoop:
         before = self.points
         while at < chunk[1] and not self.stop:
             try:
-                with reporting_to(RankListener(self.claims, self.stop, partial(self.loop.name, at))):
+                with reporting_to(RankListener(self.requests, self.stop, partial(self.loop.unit_label, at))):
                     self._solve(at, before)
             except SolveStopped:
                 self.ended = True
@@ -157,8 +159,8 @@ class _RankLoop:
     def _solve(self, unit: int, before: int) -> None:
         """Solves a unit and stores its points. before: number of points stored before the current chunk."""
         for index, result in self.loop.solve(unit):
-            self.loop.keep(index, result)
+            self.loop.store(index, result)
             self.points += 1 if isinstance(index, int) else len(index)
-            self.claims.between_points()
-            if isinstance(self.claims, FirstRankRequests):
-                self.shown(self.claims.handout.points + self.points - before)
+            self.requests.between_points()
+            if isinstance(self.requests, FirstRankRequests):
+                self.progress(self.requests.queue.points + self.points - before)

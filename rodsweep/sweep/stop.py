@@ -16,7 +16,7 @@ from ..watch import MakePosition, SolvePosition, SolveStopped
 
 POLL_SECONDS = 0.05
 """Seconds between two polls for messages and stop requests during a solve."""
-PLACE_SECONDS = 0.5
+POSITION_SECONDS = 0.5
 """Seconds from the start of a solve to the first report of its progress, and between two reports."""
 STOP_SIGNALS = (signal.SIGTERM, signal.SIGUSR1, signal.SIGINT)
 """Signals that request a stop: from `kill` or a scheduler at the time limit, from a scheduler's warning, from
@@ -57,7 +57,7 @@ class StopRequest:
         the main thread.
         """
         for number in STOP_SIGNALS:
-            signal.signal(number, self._note)
+            signal.signal(number, self._record_signal)
 
     @staticmethod
     def ignore() -> None:
@@ -67,34 +67,34 @@ class StopRequest:
         for number in STOP_SIGNALS:
             signal.signal(number, signal.SIG_IGN)
 
-    def take(self, name: str) -> None:
+    def adopt(self, name: str) -> None:
         """Adopts the stop request of another rank; name: name of the signal."""
         self.name = name
 
-    def _note(self, number: int, _: FrameType | None) -> None:
+    def _record_signal(self, number: int, _: FrameType | None) -> None:
         if number == signal.SIGINT and self.acknowledges and not self.name:
             with suppress(OSError):
                 os.write(2, STOPPING_MESSAGE)  # print is not safe in a signal handler
         self.name = signal.Signals(number).name
 
 
-class Claims(Protocol):
+class RankCommunication(Protocol):
     """Communication of a rank with other ranks during a solve and between points."""
 
     def between_points(self) -> None: ...
 
-    def report_place(self, place: SolvePosition) -> None: ...
+    def report_position(self, place: SolvePosition) -> None: ...
 
 
-class NoClaims:
-    """`Claims` of a run with a single rank; `shown` receives the progress of a long solve."""
+class SingleRankCommunication:
+    """`RankCommunication` of a run with a single rank; `shown` receives the progress of a long solve."""
 
     def __init__(self, shown: Callable[[SolvePosition], object] | None = None):
         self.shown = shown
 
     def between_points(self) -> None: ...
 
-    def report_place(self, place: SolvePosition) -> None:
+    def report_position(self, place: SolvePosition) -> None:
         """Passes the progress within a long point to `shown`, if given."""
         if self.shown:
             self.shown(place)
@@ -107,24 +107,26 @@ class RankListener:
     A new listener is created for every unit.
     """
 
-    def __init__(self, claims: Claims, stop: StopRequest, name: Callable[[], str] = str):
-        """name: function that returns a description of the unit."""
-        self.claims = claims
+    def __init__(
+        self, communication: RankCommunication, stop: StopRequest, unit_label: Callable[[], str] = str
+    ):
+        """unit_label: function that returns a description of the unit."""
+        self.communication = communication
         self.stop = stop
-        self.name = name
+        self.unit_label = unit_label
         self.next_poll = 0.0
-        self.next_report = time.monotonic() + PLACE_SECONDS
+        self.next_report = time.monotonic() + POSITION_SECONDS
 
     def __call__(self, place: MakePosition) -> None:
         """Handles a solver's report, at the position `place()`; raises Stopped if the solve must end."""
         now = time.monotonic()
         if now >= self.next_report and (here := place()).words:
-            self.next_report = now + PLACE_SECONDS
-            self.claims.report_place(
-                SolvePosition(": ".join(filter(None, (self.name(), here.words))), here.share)
+            self.next_report = now + POSITION_SECONDS
+            self.communication.report_position(
+                SolvePosition(": ".join(filter(None, (self.unit_label(), here.words))), here.share)
             )
         if now >= self.next_poll:
             self.next_poll = now + POLL_SECONDS
-            self.claims.between_points()
+            self.communication.between_points()
             if self.stop.is_due:
                 raise SolveStopped

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..config.task.branch import BranchConfig
 from ..results.layouts.branch import followed_variables, special_variables
-from ..results.layouts.variables import listed, recorded
+from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.cost_estimate import Estimate, estimate_branches
 from .parts import NonlinearTask, crushing_clause, points_clause
 from .protocol import CheckRow, Solver
@@ -96,8 +96,8 @@ def branch_values(result: "BranchesOfRod", along: str, points: int, special: int
     counts["special"] = len(specials)
     values: dict[str, Any] = {f"{name}_count": count if known else -1 for name, count in counts.items()}
     values |= {"unstable_at_start": result.unstable_at_start, "certified": result.proved}
-    values |= listed(followed_variables(along), cycles, points)
-    values |= listed(special_variables(along), specials, special)
+    values |= value_lists(followed_variables(along), cycles, points)
+    values |= value_lists(special_variables(along), specials, special)
     return values | {"seconds": result.seconds, "status": result.status}
 
 
@@ -123,7 +123,7 @@ def _cycle(point: "BranchPoint", along: str) -> dict[str, Any]:
         "unstable_multipliers": "unstable_count",
     }
     variables = [v for v in followed_variables(along) if v.name != "branch"]
-    return recorded(variables, point, point.measures, point.errors, names=own)
+    return outcome_values(variables, point, point.measures, point.errors, names=own)
 
 
 SPECIAL_POINT_FIELDS = {
@@ -146,4 +146,4 @@ def _special(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict
     }
     known = {*beside, "special_branch", "special_meets"}
     own = [v for v in special_variables("F") if v.name not in known]
-    return beside | recorded(own, point, prefix="special_", names=SPECIAL_POINT_FIELDS)
+    return beside | outcome_values(own, point, prefix="special_", names=SPECIAL_POINT_FIELDS)

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..config.task.criticality import CriticalityConfig
 from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM
-from ..results.layouts.variables import listed, recorded
+from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.cost_estimate import Estimate, estimate_criticality
 from .parts import NonlinearTask, crushing_clause, points_clause
 from .protocol import CheckRow, Solver
@@ -62,6 +62,6 @@ def criticality_values(result: "Criticality", most: int) -> dict[str, Any]:
     for name in ABSENT_FROM_HOPF_SEARCH:
         del search[name]
     pairs = zip(result.coefficients, result.crossings, strict=False)
-    rows = [recorded(NORMAL_FORM, *pair, prefix="crossing_") for pair in pairs]
+    rows = [outcome_values(NORMAL_FORM, *pair, prefix="crossing_") for pair in pairs]
     ends = {"F_end": result.end, "unstable_at_end": result.transitions.unstable_at_end}
-    return search | ends | listed(NORMAL_FORM, rows, most)
+    return search | ends | value_lists(NORMAL_FORM, rows, most)

@@ -20,7 +20,7 @@ from ..results.layouts.limit_cycle import (
     TIP,
     TRANSIENT,
 )
-from ..results.layouts.variables import Filled, Variable, recorded
+from ..results.layouts.variables import Filled, Variable, outcome_values
 from ..solve.backend.availability import require_solvers
 from ..sweep.cost_estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, MARCHED_CYCLE_SECONDS, Estimate
 from ..sweep.first_mesh import largest_first_mesh
@@ -29,7 +29,7 @@ from ..sweep.points.grid import refuse_outside
 from ..wording import counted
 from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
 from .parts import arms_line, material_check_rows, points_clause, points_text, rod_check_rows
-from .protocol import CheckRow, OrderedMap, Solver, Task, on_this_rank
+from .protocol import CheckRow, OrderedMap, Solver, Task, solve_on_one_rank
 
 if TYPE_CHECKING:
     from ..solve.cycle.limit_cycle import Cycle, CycleRequest
@@ -65,7 +65,7 @@ class LimitCycleTask(Task):
         options = self.config.limit_cycle
         if options.start != "neighbour":
             return None
-        axis = self.points.moved.index(self.config.along)
+        axis = self.points.varying_parameters.index(self.config.along)
         return Chains(self.points.shape, axis, options.direction == "up")
 
     def coordinates(self) -> dict[str, np.ndarray]:
@@ -79,7 +79,7 @@ class LimitCycleTask(Task):
             times["transient"] = np.linspace(0.0, 1.0, options.transient)
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
 
-    def constants(self, in_order: OrderedMap = on_this_rank) -> tuple[Filled, ...]:
+    def constants(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[Filled, ...]:
         """Hopf points of the straight rod on the lines through the points."""
         lines = hopf_lines_of(self.points)
         if lines:
@@ -185,7 +185,7 @@ class LimitCycleTask(Task):
         )
         if self.config.limit_cycle.method == "collocation":
             return by_collocation
-        from ..solve.cycle.marched import solve_by_integration
+        from ..solve.cycle.by_integration import solve_by_integration
         from ..solve.cycle.status import MarchedStatus
 
         return replace(
@@ -208,7 +208,7 @@ class LimitCycleTask(Task):
         stored = _StoredMultipliers(
             np.full(STORED_MULTIPLIERS, complex(nan, nan)) if found is None else found
         )
-        values = recorded(CYCLE, stored, cycle.errors, cycle.measures, cycle, names=MULTIPLIER_FIELDS)
+        values = outcome_values(CYCLE, stored, cycle.errors, cycle.measures, cycle, names=MULTIPLIER_FIELDS)
         if options.time == "tau1":  # t/tau1 = (t/tau2) k2/gamma3
             values[PERIOD_TAU1.name] = cycle.measures.period * point["k2"] / point["gamma3"]
         if options.samples:

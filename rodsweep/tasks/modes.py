@@ -13,7 +13,7 @@ from ..discretization.elements.resolution import mesh_accuracy
 from ..model.rod import Rod
 from ..results.layouts.modes import GROWTH, MODE_NUMBERS
 from ..results.layouts.spectrum import EACH_MODE, EACH_POINT
-from ..results.layouts.variables import Filled, recorded
+from ..results.layouts.variables import Filled, outcome_values
 from ..sweep.cost_estimate import Estimate, estimate_modes, estimate_spectra
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from .hopf.force_changes import force_changes
@@ -89,12 +89,12 @@ class ModesTask(CertifiedTask):
 def mode_values(result: "Modes", growth: bool) -> dict[str, Any]:
     """Variables of the file for the modes of one rod; growth: whether transient growth was computed."""
     vectors = result.vectors
-    values = recorded(EACH_MODE + EACH_POINT, vectors.resolution, result, result.spectrum)
-    values |= recorded(MODE_NUMBERS, vectors)
+    values = outcome_values(EACH_MODE + EACH_POINT, vectors.resolution, result, result.spectrum)
+    values |= outcome_values(MODE_NUMBERS, vectors)
     fields = ("Y", "Theta", "h2", "Pi", "adjoint_Y", "adjoint_Theta")
     for name, field in zip(fields, (*vectors.right, *vectors.deformation, *vectors.left), strict=True):
         values[f"{name}_real"] = field.real
         values[f"{name}_imag"] = field.imag
     if growth:
-        values |= recorded(GROWTH, result.growth)
+        values |= outcome_values(GROWTH, result.growth)
     return values

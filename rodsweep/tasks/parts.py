@@ -42,29 +42,29 @@ class CertifiedTask(Task):
         """Rows of `check` on the results that the task's options request."""
 
     @property
-    def moved(self) -> dict[str, np.ndarray]:
+    def parameter_values(self) -> dict[str, np.ndarray]:
         """All values of each parameter at points, in searches and on lines, by name of the parameter, in
         arrays of any shape.
         """
-        return self.points.of_rods | self.searched() | self.coordinates()
+        return self.points.of_rods | self.searched_limits() | self.coordinates()
 
     def arms(self) -> str:
-        return arms_line(self.config, self.moved, self.first_mesh)
+        return arms_line(self.config, self.parameter_values, self.first_mesh)
 
     def first_mesh(self) -> Elements | None:
         """The finest of the initial meshes of all points; None if the rod model applies to no point.
 
-        By default the mesh of a search, along the parameter in `searched`, for eigenvalues on the imaginary
-        axis.
+        By default the mesh of a search, along the parameter in `searched_limits`, for eigenvalues on the
+        imaginary axis.
         """
         accuracy = mesh_accuracy(ANCHORS.place_accuracy, vectors=False)
 
         def mesh_of(rod: Rod) -> Elements:
             return spectrum_mesh(rod, ANCHORS.min_known_modes, accuracy)
 
-        return largest_first_mesh(self.points, mesh_of, self.searched())
+        return largest_first_mesh(self.points, mesh_of, self.searched_limits())
 
-    def searched(self) -> dict[str, np.ndarray]:
+    def searched_limits(self) -> dict[str, np.ndarray]:
         """Ends of the searched range, (1,) or (2,), by name of the parameter; empty for tasks without a
         search.
         """
@@ -95,8 +95,8 @@ class CertifiedTask(Task):
     def check_rows(self) -> list[CheckRow]:
         what, why = self.never_modelled
         parts = [
-            *rod_check_rows(self.moved),
-            *material_check_rows(self.config, self.moved),
+            *rod_check_rows(self.parameter_values),
+            *material_check_rows(self.config, self.parameter_values),
             *self.option_rows(),
         ]
         return [*parts, ("certificate", *self.certificate()), (what, False, why)]
@@ -208,7 +208,11 @@ def _profile(config: Config, profile: Profile) -> str:
     """Text describing a profile. The profile of a cone in SI units is computed by rodsweep: the drag at each
     radius.
     """
-    if config.stated_build is None and config.parameters.arm is not None and config.parameters.arm.tapering:
+    if (
+        config.stated_build is None
+        and config.parameters.arm is not None
+        and config.parameters.arm.cone_parameters
+    ):
         return "the drag of each local radius"
     jumps = len(profile.u) - len(profile.breaks)
     rows = f"a profile of {counted(len(profile.u), 'row')}"

@@ -62,8 +62,10 @@ class PhaseDiagramTask(CertifiedTask):
             ("criticality of Hopf curves", options.criticality, criticality),
             (
                 "curves of generalised Hopf points",
-                options.third is not None,
-                f"over {options.third[0]}" if options.third else "phase_diagram.bautin_along adds them",
+                options.bautin_parameter is not None,
+                f"over {options.bautin_parameter[0]}"
+                if options.bautin_parameter
+                else "phase_diagram.bautin_along adds them",
             ),
             ("stable states, with cycles", options.cycles, cycles),
         ]
@@ -107,7 +109,7 @@ class PhaseDiagramTask(CertifiedTask):
             warm_up=warm_up,
             solve=lambda index: solve_row(self.rod(index), request),
             record=lambda index, result: row_values(result, request.name, request.crossings),
-            together=curves if options.curves else None,
+            joint_variables=curves if options.curves else None,
         )
         if not options.cycles:
             return of_rows

@@ -31,13 +31,13 @@ class Units(Protocol):
     ranks.
     """
 
-    def wanted(self, results: Mapping[int, NamedArrays]) -> list[int]:
+    def units_to_solve(self, results: Mapping[int, NamedArrays]) -> list[int]:
         """Numbers of the units still to be solved, most urgent first; empty if no unit is left.
 
         results: results of the finished units, by number.
         """
 
-    def where(self, unit: int) -> str:
+    def unit_label(self, unit: int) -> str:
         """Text describing a unit, for the progress display and the log."""
 
 
@@ -49,10 +49,10 @@ class JointVariables(Protocol):
         points.
         """
 
-    def starts(self, units: Any, wanted: Sequence[int]) -> dict[int, Any]:
+    def initial_data(self, units: Any, wanted: Sequence[int]) -> dict[int, Any]:
         """Initial data that this rank has cached for the units `wanted`, to be sent to all ranks."""
 
-    def take(self, starts: Mapping[int, Any]) -> None:
+    def add_initial_data(self, starts: Mapping[int, Any]) -> None:
         """Caches initial data received from a different rank."""
 
     def solve(self, units: Any, unit: int) -> NamedArrays:
@@ -80,7 +80,7 @@ class Solver:
     """Solves the point at a flat index; returns an outcome with the attributes `status` and `message`."""
     record: Callable[[int, Any], dict[str, Any]]
     """Function from (flat index, outcome) of a point to the values of the file's variables, by name."""
-    together: JointVariables | None = None
+    joint_variables: JointVariables | None = None
     """Computes the variables that depend on all points; None for tasks without such variables."""
     chained: ChainedWork | None = None
     """Chains of points, each started from the solution of the previous point; used instead of `solve`. None
@@ -89,7 +89,9 @@ class Solver:
     """(segments of the sweep, function that solves the points of a segment at their flat indices), used
     instead of `solve`. None if every point is solved alone."""
 
-    def within(self, around: SolveWrapper, together: SolveStretch | None = None, **changed: Any) -> "Solver":
+    def with_wrapper(
+        self, around: SolveWrapper, together: SolveStretch | None = None, **changed: Any
+    ) -> "Solver":
         """A copy of the solver with the solve of every point wrapped by `around`, and with the fields in
         `changed`.
 
@@ -111,7 +113,7 @@ class Solver:
         return replace(self, solve=solve, chained=chained, stretched=stretched, **changed)
 
 
-def on_this_rank(items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
+def solve_on_one_rank(items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
     """Results of `work` for all items, in order, computed on this rank only."""
     return [work(item) for item in items]
 
@@ -140,7 +142,7 @@ class Task(ABC):
         """Coordinates, (extent,), of the dimensions other than the points, by name of the dimension."""
         return {}
 
-    def constants(self, in_order: OrderedMap = on_this_rank) -> tuple[Filled, ...]:
+    def constants(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[Filled, ...]:
         """Variables of the file that depend only on the config. in_order: maps a function over items, shared
         among the ranks.
         """

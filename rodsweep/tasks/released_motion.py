@@ -54,7 +54,7 @@ def bent_shape(job: Job, tip: tuple[float, float] | None) -> Array:
     """
     from ..discretization.beam import Beam
     from ..solve.cycle.transient.motion_mesh import integrable_rod, motion_mesh
-    from ..solve.motion.held_tip import equilibrium_at_tip
+    from ..solve.motion.fixed_tip import equilibrium_at_tip
 
     rod = job.points.rod(0)
     beam = Beam(integrable_rod(rod), motion_mesh(rod, MOTION_ACCURACY))

@@ -18,13 +18,13 @@ from ..model.material.build import Build
 from ..model.material.laws import LINEAR
 from ..model.rod import Crushed, Rod
 from ..results.layouts.spectrum import EACH_FOLLOWED_POINT, EACH_MODE, longitudinal, longitudinal_parameters
-from ..results.layouts.variables import Filled, recorded
+from ..results.layouts.variables import Filled, outcome_values
 from ..sweep.cost_estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.stretches import Stretches, StretchResult, stretches_along_longest_axis
 from .hopf.force_changes import force_changes
 from .parts import CertifiedTask, points_text
-from .protocol import CheckRow, OrderedMap, Solver, on_this_rank
+from .protocol import CheckRow, OrderedMap, Solver, solve_on_one_rank
 
 if TYPE_CHECKING:
     from ..solve.spectrum.search import Spectrum, SpectrumRequest
@@ -57,7 +57,7 @@ class SpectrumTask(CertifiedTask):
         """
         if not self.config.follows:
             return None
-        return stretches_along_longest_axis(self.points.shape, self.points.moved)
+        return stretches_along_longest_axis(self.points.shape, self.points.varying_parameters)
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Material coordinates u of the nodes of eigenvectors, (nodes,), by name of the dimension; empty if
@@ -65,9 +65,9 @@ class SpectrumTask(CertifiedTask):
         """
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
-    def constants(self, in_order: OrderedMap = on_this_rank) -> tuple[Filled, ...]:
+    def constants(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[Filled, ...]:
         """Longitudinal growth rates, if requested, along the parameters on which these rates depend."""
-        gamma1 = self.config.parameters.numbers.get("gamma1")
+        gamma1 = self.config.parameters.constant_parameters.get("gamma1")
         if gamma1 is None:
             return ()
         along, shape, columns = self._longitudinal_points()
@@ -173,7 +173,7 @@ class SpectrumTask(CertifiedTask):
 
         stretches = self.stretches
         assert stretches is not None
-        varied = self.points.moved[stretches.axis]
+        varied = self.points.varying_parameters[stretches.axis]
         path = Path(self.points.rod(int(indices[0])), varied)
         found = solve_stretch(Stretch(path, self.points.values_of(indices)[varied]), request)
         words = {status.value: status.name for status in SpectrumStatus}
@@ -198,7 +198,7 @@ def longitudinal_of_arm(values: dict[str, float], build: Build, modes: int) -> n
 
 def spectrum_values(result: "Spectrum") -> dict[str, Any]:
     """Variables of the file for the spectrum of a point, or for the spectra of the points of a stretch."""
-    values = recorded(EACH_MODE + EACH_FOLLOWED_POINT, result)
+    values = outcome_values(EACH_MODE + EACH_FOLLOWED_POINT, result)
     if result.vectors is not None:
         for field, vector in zip(("Y", "Theta"), result.vectors, strict=True):
             values[f"{field}_real"] = vector.real

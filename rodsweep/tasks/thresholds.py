@@ -9,7 +9,7 @@ import numpy as np
 
 from ..config.task.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
-from ..results.layouts.variables import listed, recorded
+from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.cost_estimate import Estimate, estimate_lines
 from .parts import CertifiedTask, crushing_clause, points_clause
 from .protocol import CheckRow, Solver
@@ -82,8 +82,10 @@ def crossing_values(result: "Thresholds | Criticality", most: int, line: str, at
     """
     found = result.transitions
     variables = crossing_variables(line, at)
-    rows = [recorded(variables, each, prefix="crossing_", names={at: "at"}) for each in result.crossings]
-    return listed(variables, rows, most) | {
+    rows = [
+        outcome_values(variables, each, prefix="crossing_", names={at: "at"}) for each in result.crossings
+    ]
+    return value_lists(variables, rows, most) | {
         "crossing_count": len(found.crossings),
         "open_from": found.open_range[0],
         "open_to": found.open_range[1],

@@ -7,11 +7,11 @@ from html import escape
 from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import Validity
 from .checks import Check, checks_of
-from .folding import folded
 from .load import Load
 from .planes import planes_of, with_load
 from .sentences import verdict_sentences
 from .table import NumberRow, number_rows
+from .text_wrapping import folded
 from .validity import Assessment
 
 BRACKETS_NOTE = "In brackets: the range over drag, which is known only up to a factor."

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 import rodsweep as rs
-from rodsweep.api.asking import config_tree, job_from
+from rodsweep.api.keyword_arguments import config_tree, job_from
 from rodsweep.api.solved import StoredResult
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.post.tables.contents import TABLE_NAMES

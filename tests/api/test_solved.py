@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import rodsweep as rs
-from rodsweep.api.asking import config_tree, job_from
 from rodsweep.api.dataset import view_of_dataset
+from rodsweep.api.keyword_arguments import config_tree, job_from
 from rodsweep.api.solving import solve_here
 
 ROD = {"F": 30, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}

@@ -21,7 +21,7 @@ from rodsweep.bench.spectrum import arms
 from rodsweep.bench.spectrum import study as spectrum
 from rodsweep.bench.spectrum.arms import ARMS, UnsolvedArms, arm_spectra, arm_table, exact_arm_spectrum
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
-from rodsweep.bench.spectrum.own import (
+from rodsweep.bench.spectrum.rodsweep_spectrum import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
     MODE_COUNT,
@@ -95,7 +95,7 @@ def test_exact_eigenvalues_of_arms_are_those_of_another_code(rod):
 def test_no_arm_is_solved_twice():
     """A solved arm is kept, and its second spectrum would cost nothing."""
     arm = UnsolvedArms(ARMS["cone"])
-    forces = [arm.another().F for _ in range(60)]
+    forces = [arm.next_arm().F for _ in range(60)]
     assert len(set(forces)) == 60
     assert forces[-1] < ARMS["cone"].F * (1 + 1e-13)
 

@@ -103,13 +103,13 @@ def soft_rod():
 
 @cache
 def exact():
-    return AccurateCycle.near(soft_rod())
+    return AccurateCycle.converged_from_orbit(soft_rod())
 
 
 def test_the_reference_is_the_cycle_on_its_mesh():
     assert exact().period == pytest.approx(cycle().period, rel=1e-8)  # one element of order 18 leaves 1e-9
     assert exact().tip_y_max == pytest.approx(cycle().tip_y_max, rel=1e-8)
-    moved = exact().at(50.5)
+    moved = exact().cycle_at_force(50.5)
     solved = solve_cycle(replace(RODS[0], F=50.5), cycle_request(ACCURACY), along="F")
     errors = moved.errors_of(solved.measures.period, solved.measures.tip_y_max)
     assert max(errors.values()) < ACCURACY
@@ -160,7 +160,10 @@ def test_the_benchmark_times_peers_beside_rodsweep(monkeypatch):
     failing = [Contender("failing", tolerance, "failing", gives_up) for tolerance in ("1e-05", "1e-07")]
     further = Measurement("30", "continuation", "p = 14", 1.0, 1e-6)
     peers = Peers(
-        contenders={FOLLOWING: double.followers() + failing, WAITING: double.waiters() + failing},
+        contenders={
+            FOLLOWING: double.following_contenders() + failing,
+            WAITING: double.settling_contenders() + failing,
+        },
         sections=[lambda rounds: ([f"a section of {rounds}"], [further])],
         notes=["A note."],
         skipped=["Another is skipped."],

@@ -11,7 +11,7 @@ import pytest
 from conftest import RANK
 from surveyed import survey_only
 
-from rodsweep.bench.sweep import followed
+from rodsweep.bench.sweep import eigenvalue_following
 from rodsweep.bench.sweep import study as sweep
 from rodsweep.bench.sweep.launch import (
     HOPF_FORCE,
@@ -66,7 +66,7 @@ def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch, loaded)
     monkeypatch.setattr(sweep, "QUICK_SIZES", (400,))
     monkeypatch.setattr(sweep, "QUICK_SPECTRUM_COUNT", 16)
     monkeypatch.setattr(sweep, "QUICK_CYCLE_COUNT", 2)
-    monkeypatch.setattr(followed, "QUICK_GRIDS", followed.QUICK_GRIDS[1:])
+    monkeypatch.setattr(eigenvalue_following, "QUICK_GRIDS", eigenvalue_following.QUICK_GRIDS[1:])
     command = (sys.executable, "-SE", str(RANK), str(loaded.ranks), *MEASURED_COMMAND[1:])
     study = sweep_study(quick=True, command=command)
     assert "| spectra | 16 | 1 |" in study.text

@@ -70,7 +70,7 @@ def rows():
         replace(f, tolerances=LOOSE_AND_TIGHT.get(f.name, (f.tolerances[0], f.tolerances[-1])))
         for f in FOLLOWED
     ]
-    return measure_following(cycle(), [c for family in chosen for c in family.followers()], 1)
+    return measure_following(cycle(), [c for family in chosen for c in family.following_contenders()], 1)
 
 
 def of(name):
@@ -125,7 +125,7 @@ def soft_rod():
 
 @cache
 def exact():
-    return AccurateCycle.near(soft_rod())
+    return AccurateCycle.converged_from_orbit(soft_rod())
 
 
 @pytest.fixture(scope="module")
@@ -174,7 +174,7 @@ def test_auto_continues_the_same_cycles(auto):
         assert abs(branch.F - 50.0) < 1e-5
         assert len(branch.multipliers) == 3 * setting.order
         assert np.abs(branch.multipliers - 1).min() < 1e-3
-        errors.append(exact().at(branch.F).errors_of(branch.period, branch.tip_y_max))
+        errors.append(exact().cycle_at_force(branch.F).errors_of(branch.period, branch.tip_y_max))
     for name in errors[0]:
         assert errors[1][name] < 3e-7
         assert errors[1][name] < errors[0][name] / 3 < 3e-6

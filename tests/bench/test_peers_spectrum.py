@@ -12,7 +12,7 @@ from benchmarks.spectrum.eigensolvers import (
 )
 from rodsweep.bench.spectrum.arms import ARM_RACE, ARMS, UnsolvedArms, exact_arm_spectrum
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
-from rodsweep.bench.spectrum.own import MODE_COUNT
+from rodsweep.bench.spectrum.rodsweep_spectrum import MODE_COUNT
 from rodsweep.bench.spectrum.study import HARD_RODS, SPECTRUM_RACE
 from rodsweep.bench.study import grouped_by_fields
 from rodsweep.model.rod import Rod

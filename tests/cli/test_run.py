@@ -217,8 +217,8 @@ def test_run_killed_before_its_end_was_written_writes_it_the_next_time(command):
     patch = (
         "import os, rodsweep.results.file.store as store\n"
         "def die(self, attributes): os._exit(9)\n"
-        "fold = store.Store.fold\n"
-        "store.Store.fold = lambda self, a, more=(): die(self, a) if a else fold(self, a, more)\n"
+        "fold = store.Store.add_journals\n"
+        "store.Store.add_journals = lambda self, a, more=(): die(self, a) if a else fold(self, a, more)\n"
         "def patched(rank, solve): return solve\n"
     )
     assert run_patched(command, patch, ranks=0).returncode == 9

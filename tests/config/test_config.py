@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rodsweep.config.document.reading import config_of, text_of
-from rodsweep.config.document.refusals import nearest
+from rodsweep.config.document.refusals import similar_keys
 from rodsweep.errors import InputError
 from rodsweep.tasks.running.job import make_job
 
@@ -393,7 +393,7 @@ def test_file_that_is_no_text_is_refused(tmp_path):
     ],
 )
 def test_only_near_keys_are_suggested(key, known, meant):
-    assert nearest(key, known) == meant
+    assert similar_keys(key, known) == meant
 
 
 TASKS_OF_LISTS = {

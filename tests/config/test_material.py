@@ -31,7 +31,7 @@ def test_profile_of_a_file_is_part_of_the_config(tmp_path):
     read = config(tmp_path, "material: {profile: steps.csv}")
     table = "material: {profile: {u: [0, 0.4, 0.4, 1], k3: [1, 1, 0.2, 0.2], gamma3: [1, 1, 0.5, 0.5]}}"
     assert read.build == config(tmp_path, table).build
-    assert read.meaning == config(tmp_path, table).meaning
+    assert read.settings_of_results == config(tmp_path, table).settings_of_results
     assert read.build.profile.rows[2] == (1.0, 1.0, 0.2, 1.0, 1.0, 0.5)
     assert not read.standard
 
@@ -39,7 +39,7 @@ def test_profile_of_a_file_is_part_of_the_config(tmp_path):
 def test_default_material_means_the_same_as_none(tmp_path):
     plain, written = config(tmp_path), config(tmp_path, "material: {law: linear}")
     assert written.standard
-    assert plain.meaning == written.meaning
+    assert plain.settings_of_results == written.settings_of_results
 
 
 @pytest.mark.parametrize(

@@ -33,7 +33,7 @@ def test_an_arm_that_varies_is_read_again_from_its_file_and_its_text(tmp_path, a
     (tmp_path / "text.yaml").write_text(text_of(read))
     for other in (again, load_config(tmp_path / "text.yaml")[0]):
         assert other.build == read.build
-        assert other.meaning == read.meaning
+        assert other.settings_of_results == read.settings_of_results
         assert other.names == read.names
     assert not read.standard
 

@@ -6,8 +6,8 @@ from reference.dense_arm import eigenvalues
 from reference.random_arms import random_arm
 from surveyed import RODS
 
-from rodsweep.determinant.arm.count.beside_axis import modes_near_axis
 from rodsweep.determinant.arm.count.count import count_right_of
+from rodsweep.determinant.arm.count.modes_near_axis import modes_near_axis
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull.hull import hull_of
 from rodsweep.determinant.arm.hull.region import Hull, clearance

@@ -29,7 +29,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, NoReturn
 
 SOLVERS = ("petsc4py", "slepc4py")
-MEASURED = ["-m", "rodsweep.cli.measured"]
+MEASURED = ["-m", "rodsweep.cli.measured_command"]
 UNCAUGHT = 70
 """Exit status of a child that an exception ended: the interpreter's own, 1, has a meaning."""
 
@@ -239,7 +239,7 @@ class IsRank(Exception):
 def be_rank(request: dict, streams: list[int]) -> None:
     """Runs the command as one rank, in this process, which ends as any other does: MPI wants that.
 
-    Or as the benchmark of the sweep starts it, see `rodsweep.cli.measured`.
+    Or as the benchmark of the sweep starts it, see `rodsweep.cli.measured_command`.
     """
     for stream, given in enumerate(streams):
         os.dup2(given, stream)
@@ -254,7 +254,7 @@ def be_rank(request: dict, streams: list[int]) -> None:
     if str(patch.parent.absolute()) in os.environ.get("PYTHONPATH", ""):
         exec(patch.read_text(), {"__name__": "sitecustomize"})
     if request["words"][:2] == MEASURED:
-        from rodsweep.cli.measured import run_measured as main
+        from rodsweep.cli.measured_command import run_measured as main
 
         sys.argv = request["words"][1:]
     else:

@@ -18,9 +18,9 @@ from surveyed import few
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc import ArcPoint, next_point
-from rodsweep.solve.branch.beginning import first_cycle, hopf_point
 from rodsweep.solve.branch.branch_curve import BranchPoint
-from rodsweep.solve.branch.settling import measurement_due, with_errors_in_accuracy
+from rodsweep.solve.branch.branch_start import first_cycle, hopf_point
+from rodsweep.solve.branch.mesh_choice import measurement_due, with_errors_in_accuracy
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
@@ -91,7 +91,7 @@ def cycles_of(case: Case) -> Iterator[ArcPoint]:
             here = next_point(here, case.accuracy)
         except Unsolvable:
             return
-        outside = not 0 < here.at < case.stop or here.deflection * last.deflection < 0
+        outside = not 0 < here.coordinate < case.stop or here.deflection * last.deflection < 0
         if outside or mesh_of(here.orbit).cost > LARGEST_MESH:
             return
         waiting.append(here)

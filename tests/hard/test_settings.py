@@ -40,7 +40,7 @@ from rodsweep.model.compiled.settings import CompiledSettings
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
-from rodsweep.solve.backend.kept import forget_all
+from rodsweep.solve.backend.solver_pools import destroy_pooled_solvers
 from rodsweep.solve.branch.branches import BranchRequest, solve_branches
 from rodsweep.solve.branch.special.curves import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import SpecialKind
@@ -49,14 +49,14 @@ from rodsweep.solve.changes.diagram.boundaries import curves_through, seed_of
 from rodsweep.solve.changes.diagram.boundary_curves import trace
 from rodsweep.solve.changes.diagram.rows import RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
+from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.limit_cycle import Cycle, CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.cycle.marched import solve_by_integration
 from rodsweep.solve.hopf.bautin_curves import BautinSpace, bautin_curve, on_curve
 from rodsweep.solve.hopf.coefficient_errors import hopf_coefficients
 from rodsweep.solve.hopf.generalised import curve_criticality
-from rodsweep.solve.hopf.hopf_beside import subcritical_hopf_beside
+from rodsweep.solve.hopf.subcritical_hopf import subcritical_hopf_near
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
-from rodsweep.solve.motion.held_tip import equilibrium_at_tip
+from rodsweep.solve.motion.fixed_tip import equilibrium_at_tip
 from rodsweep.solve.motion.integrator import RunEnding, forget_integrators, integrator
 from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -134,7 +134,7 @@ def curve_of_folds(accuracy: float) -> Answer:
     except FAILURES:
         return None
     last = points[-1]
-    return {f"{end.name} at": (last.at, last.error), "row": (last.row, ROUNDING)}
+    return {f"{end.name} at": (last.parameter, last.error), "row": (last.row_parameter, ROUNDING)}
 
 
 def coefficients(accuracy: float) -> Answer:
@@ -188,7 +188,7 @@ def curve_of_generalised_hopf(accuracy: float) -> Answer:
 
 def beside(accuracy: float) -> Answer:
     """The subcritical Hopf point above a force; its search states no error, only the digits it needs."""
-    found = subcritical_hopf_beside(WITH_FOLD.changed(k1=200.0, F=156.0))
+    found = subcritical_hopf_near(WITH_FOLD.changed(k1=200.0, F=156.0))
     if found is None:
         return None
     return {"F": (found.F, 1e-9 * found.F), "unstable y": (found.unstable_y, 2e-3 * found.unstable_y)}
@@ -480,11 +480,11 @@ CASES = {
     "BRANCH_ERRORS": BRANCH,
     "BRANCH_END": LOPSIDED,
     "ASYMMETRIC_START": LOPSIDED,
-    "BEGINNING": BRANCH,
+    "BRANCH_START": BRANCH,
     "BRANCHES": BRANCH,
-    "BRANCH_WORK": BRANCH,
+    "COMPUTING_TIME": BRANCH,
     "SPECIAL_POINT": BRANCH,
-    "LEGS": UNSTABLE,
+    "SHOOTING_INTERVALS": UNSTABLE,
     "LEAST_STRETCH": BRANCH,
     "ARC_STEPS": BRANCH,
     "ORBIT_NEWTON": BRANCH,
@@ -493,7 +493,7 @@ CASES = {
     "MULTIPLIERS": BRANCH,
     "CURVE_START": CURVE,
     "CURVE_IDENTITY": CURVE,
-    "ACROSS_CURVE": CURVE,
+    "CURVE_SECANT": CURVE,
     "AUGMENTED": CURVE,
     "CYCLE_CURVES": CURVE,
     "CURVE_STEPS": CURVE,
@@ -504,7 +504,7 @@ CASES = {
     "PLANE": BAUTIN_CURVE,
     "BAUTIN": BAUTIN_CURVE,
     "BAUTIN_STEPS": BAUTIN_CURVE,
-    "HOPF_BESIDE": BESIDE,
+    "SUBCRITICAL_HOPF": BESIDE,
     "MODE_MESH": MODES,
     "MODE_ITERATION": MODES,
     "LEADING_MODES": MODES,
@@ -556,10 +556,10 @@ CASES = {
     "ANCHORS": CONE,
     "ARM_CROSSINGS": CONE,
     "SEARCH_RANGE": CONE,
-    "HELD_TIP": HELD,
+    "FIXED_TIP": HELD,
     "ARM_PATH": CONE,
-    "AXIS_PLACES": SLENDER_CONE,
-    "BESIDE_AXIS": SLENDER_CONE,
+    "AXIS_MODES": SLENDER_CONE,
+    "NEAR_AXIS": SLENDER_CONE,
     "ARM_STRETCH": CONE,
     "ARM_FAMILY": CONE,
     "ARM_DOUBLE_EIGENVALUES": CONE,
@@ -573,9 +573,9 @@ CASES = {
     "DETERMINANT": SPECTRA,
     "ROOTS": SPECTRA,
     "DOMINANCE": SPECTRA,
-    "REACH": SPECTRA,
+    "NODE_DISC": SPECTRA,
     "SPECTRUM_ERROR_SETTINGS": SPECTRA,
-    "KEPT": SPECTRA,
+    "SOLVER_POOLS": SPECTRA,
     "STABILITY_CHANGES": BETWEEN,
     "ROOT_NEWTON": THRESHOLDS,
     "BOX": THRESHOLDS,
@@ -684,7 +684,7 @@ def changed(name: str, field: str, factor: float) -> Any:
 
 def forget() -> None:
     """Empties what solvers keep from point to point, which other settings may have made."""
-    forget_all()
+    destroy_pooled_solvers()
     for title, module in list(sys.modules.items()):
         if title.startswith("rodsweep."):
             for value in list(vars(module).values()):

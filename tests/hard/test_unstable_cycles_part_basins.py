@@ -11,7 +11,7 @@ from rods import rod_of
 
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.solve.branch.arc import next_point
-from rodsweep.solve.branch.beginning import first_cycle, hopf_point
+from rodsweep.solve.branch.branch_start import first_cycle, hopf_point
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace

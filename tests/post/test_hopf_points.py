@@ -11,7 +11,7 @@ from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
 from rodsweep.post.hopf_points import BracketedChange, LocatedChange, StoredChanges
 from rodsweep.post.summary.stability import stability_lines
 from rodsweep.sweep.points.points import lines_over
-from rodsweep.tasks.protocol import on_this_rank
+from rodsweep.tasks.protocol import solve_on_one_rank
 from rodsweep.tasks.running.job import make_job
 
 pytestmark = pytest.mark.filterwarnings("error::UserWarning")
@@ -29,7 +29,7 @@ def config_of(F, k1, k2, gamma3):
     )
 
 
-def searched(tmp_path, config, in_order=on_this_rank):
+def searched(tmp_path, config, in_order=solve_on_one_rank):
     """The variables of the Hopf points of a config, by name."""
     path = tmp_path / "c.yaml"
     path.write_text(config)

@@ -42,7 +42,7 @@ parameters:
 @pytest.mark.parametrize("units", [1, 7, 64, 1000, 12345, 10**6])
 @pytest.mark.parametrize("of", [1, 2, 3, 8, 100])
 def test_every_unit_is_in_one_shard(units, of):
-    parts = [Shard(number, of).part([(0, units)], units) for number in range(1, of + 1)]
+    parts = [Shard(number, of).ranges_of_shard([(0, units)], units) for number in range(1, of + 1)]
     ranges = sorted(r for part in parts for r in part)
     assert ranges[0][0] == 0
     assert ranges[-1][1] == units
@@ -60,8 +60,8 @@ def test_shard_of_what_is_left_is_what_is_left_of_the_shard():
         todo = list(zip(edges[::2], edges[1::2], strict=False))
         left = {i for start, stop in todo for i in range(start, stop)}
         for number in range(1, of + 1):
-            whole = {i for r in Shard(number, of).part([(0, units)], units) for i in range(*r)}
-            part = {i for r in Shard(number, of).part(todo, units) for i in range(*r)}
+            whole = {i for r in Shard(number, of).ranges_of_shard([(0, units)], units) for i in range(*r)}
+            part = {i for r in Shard(number, of).ranges_of_shard(todo, units) for i in range(*r)}
             assert part == whole & left
 
 

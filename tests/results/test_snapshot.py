@@ -11,8 +11,8 @@ from surveyed import few
 
 from rodsweep.api.dataset import open_result
 from rodsweep.errors import EnvironmentIncomplete
-from rodsweep.results.file import recent
-from rodsweep.results.file.recent import read_file_and_journals, write_snapshot
+from rodsweep.results.file import current_state
+from rodsweep.results.file.current_state import read_file_and_journals, write_snapshot
 from rodsweep.results.file.view import read_view
 from rodsweep.results.run.journal import journal_directory
 
@@ -95,7 +95,7 @@ def test_snapshot_of_no_result_is_refused(command, name):
 def test_points_that_are_folded_in_meanwhile_are_not_lost_from_sight(command, waiting, monkeypatch, look):
     """The run ends between the reading of the file and of its journals."""
     path = command.directory / "c.h5"
-    real = recent.read_journals
+    real = current_state.read_journals
     folds = []
 
     def read_after_a_fold(*words):
@@ -106,7 +106,7 @@ def test_points_that_are_folded_in_meanwhile_are_not_lost_from_sight(command, wa
             assert command("run", "c.yaml").returncode == 0
         return real(*words)
 
-    monkeypatch.setattr(recent, "read_journals", read_after_a_fold)
+    monkeypatch.setattr(current_state, "read_journals", read_after_a_fold)
     if look == "view":
         status = read_view(path).variables["status"]
     elif look == "dataset":

@@ -13,8 +13,8 @@ from rodsweep.results.file import exchange, points, validation
 from rodsweep.results.file.combination.identity import config_difference
 from rodsweep.results.file.combination.merge import merge
 from rodsweep.results.file.creation import Plan
+from rodsweep.results.file.current_state import write_snapshot
 from rodsweep.results.file.provenance import FAILURE_REASONS
-from rodsweep.results.file.recent import write_snapshot
 from rodsweep.results.file.seal import seal
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.validation import read_header
@@ -78,7 +78,7 @@ def test_journalled_points_reach_their_place_in_any_order(tmp_path, is_grid):
     assert store.missing() == [(0, count)]
     journal(store, [4, 0, 3], rank=0)
     journal(store, [1], rank=1)
-    store.fold({"finished": "now"})
+    store.add_journals({"finished": "now"})
     assert store.missing() == ([(2, 3), (5, 12)] if is_grid else [(2, 3)])
     with h5py.File(path) as file:
         growth = file["growth_rate"][...].reshape(count, 2)
@@ -96,7 +96,7 @@ def test_blocks_of_any_size_give_the_same_file(tmp_path, monkeypatch, is_grid):
     whole = Store(tmp_path / "whole.h5", plan(is_grid))
     count = whole.missing()[0][1]
     journal(whole, range(count))
-    whole.fold({})
+    whole.add_journals({})
     monkeypatch.setattr(pages_of, "BYTES_A_BLOCK", 3 * (LAYOUT.record.itemsize + 4))
     monkeypatch.setattr(points, "POINTS_AT_ONCE", 2)
     store = Store(tmp_path / "a.h5", plan(is_grid))
@@ -105,7 +105,7 @@ def test_blocks_of_any_size_give_the_same_file(tmp_path, monkeypatch, is_grid):
     journal(store, [*order[:3], order[0]], rank=1)
     assert read_view(tmp_path / "a.h5").journalled == count
     assert store.missing() == [(0, count)]
-    store.fold({})
+    store.add_journals({})
     assert store.missing() == []
     assert store.status_counts() == {"ok": count}
     with h5py.File(tmp_path / "whole.h5") as one, h5py.File(tmp_path / "a.h5") as other:
@@ -123,7 +123,7 @@ def test_a_merge_reaches_every_point_of_files_larger_than_what_is_read_at_once(t
     for path, indices, error in zip(paths, shares, (1e-12, 1e-11), strict=True):
         store = Store(path, plan(False, count=whole + 5))
         journal(store, indices, error=error)
-        store.fold({})
+        store.add_journals({})
         store.close()
     merged = merge(tmp_path / "m.h5", paths, lambda config, points: plan(False, count=points.count))
     assert (merged.points, merged.missing, merged.finished) == (6, whole - 1, False)
@@ -180,7 +180,7 @@ def test_a_killed_run_keeps_the_reasons_of_the_points_that_it_stored(tmp_path):
     pages = Journal(store.journals, 0, LAYOUT, store.plan.fingerprint)
     pages.append(0, record(0), [one])
     pages.append(1, record(1))
-    store.fold({})
+    store.add_journals({})
     pages = Journal(store.journals, 0, LAYOUT, store.plan.fingerprint)
     several = {name: np.array([value, value]) for name, value in record(2).items()}
     pages.append_all(np.array([2, 3]), several, [other, long])
@@ -228,7 +228,7 @@ def test_journal_of_another_config_is_not_folded(tmp_path):
     pages = Journal(store.journals, 0, LAYOUT, "another")
     pages.append(0, record(0))
     pages.close()
-    store.fold({})
+    store.add_journals({})
     assert store.missing() == [(0, 12)]
     store.close()
 

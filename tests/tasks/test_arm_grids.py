@@ -10,8 +10,8 @@ from contents import content, same
 from surveyed import few
 
 import rodsweep as rs
-from rodsweep.api.asking import config_tree, job_from
 from rodsweep.api.dataset import view_of_dataset
+from rodsweep.api.keyword_arguments import config_tree, job_from
 from rodsweep.config.arm.axes import CRUSHED, NO_WALL, NOT_SLENDER
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import Validity

@@ -12,7 +12,7 @@ from pint import UnitRegistry
 from surveyed import only
 
 import rodsweep as rs
-from rodsweep.api.asking import config_tree, job_from
+from rodsweep.api.keyword_arguments import config_tree, job_from
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.post.figures import draw
 from rodsweep.results.file.view import read_view
@@ -82,7 +82,7 @@ def test_axes_that_move_several_parameters_become_a_grid_over_the_quantities():
     axes = {"length": ["10 cm", "20 cm"], "young": ["50 kPa", "100 kPa"], "pressure": ["1 kPa", "2 kPa"]}
     made = job("limit_cycle", arm=SILICONE | axes, gamma1=[0.5, 1])
     assert made.points.shape == (2, 2, 2, 2)
-    assert made.layout.over == (*axes, "gamma1")
+    assert made.layout.arm_axes == (*axes, "gamma1")
     quantities = at_points(made.quantities, made.points)
     for index in range(16):
         at = {name: float(quantities[name][index]) for name in axes}
@@ -254,7 +254,7 @@ def test_axes_of_a_force_have_its_si_unit_opposite(command, drawn):
 def test_neighbours_follow_each_other_along_a_quantity_of_the_arm():
     arm = SILICONE | {"force": ["0.19 N", "0.2 N"]}
     made = [job("limit_cycle", arm=arm, start="neighbour", along=along) for along in ("force", "F")]
-    assert made[0].config.meaning == made[1].config.meaning
+    assert made[0].config.settings_of_results == made[1].config.settings_of_results
     assert made[0].task.chains == made[1].task.chains
     with pytest.raises(rs.InputError, match=r"along is pressure but parameters\.arm\.pressure is not given"):
         job("limit_cycle", arm=arm, start="neighbour", along="pressure")

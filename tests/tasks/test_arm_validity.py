@@ -8,7 +8,7 @@ import pytest
 from surveyed import few
 
 import rodsweep as rs
-from rodsweep.api.asking import job_from
+from rodsweep.api.keyword_arguments import job_from
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import Validity, effects_of, fastest_rate, worst_validity
 from rodsweep.post.figures import draw

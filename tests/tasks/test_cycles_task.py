@@ -71,7 +71,7 @@ def test_axial_drag_of_a_spectrum_stays_one_number(tmp_path):
     made = job_of(tmp_path, text)
     assert made.resolved["parameters"]["gamma1"] == 2
     assert made.layout.parameters == ("F", "k1", "k2", "gamma3")
-    assert made.config.parameters.numbers == {"gamma1": 2}
+    assert made.config.parameters.constant_parameters == {"gamma1": 2}
     for gamma1, sentence in (("[1, 2]", "gamma1: .*is not a number"), ("-1", "gamma1 = -1 is not allowed")):
         with pytest.raises(InputError, match=sentence):
             job_of(tmp_path, text.replace("gamma1: 2", f"gamma1: {gamma1}"))
@@ -282,7 +282,7 @@ def filled_file(directory, text=None):
         outcome = nothing() if index == job.points.count - 1 else cycle(index)
         journal.append(index, job.task.record(job.points.values(index), outcome))
     journal.close()
-    store.fold({"finished": "now", "started": "before", "ranks": 1})
+    store.add_journals({"finished": "now", "started": "before", "ranks": 1})
     store.close()
     return directory / "c.h5"
 
@@ -477,7 +477,7 @@ def test_stopped_chain_goes_on_with_the_next_point(points):
     for _, outcome in chain_solver([(0, 6)], kept, [], stop)(0):
         done.append(outcome)
         if len(done) == points:
-            stop.take("SIGUSR1")
+            stop.adopt("SIGUSR1")
     assert done == whole[:points]
     solved = []
     rest = [outcome for _, outcome in chain_solver([(points, 6)], kept, solved)(0)]

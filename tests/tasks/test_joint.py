@@ -16,7 +16,7 @@ from rodsweep.results.run.checkpoints import UnitResults
 from rodsweep.solve.branch.special.boundaries import RowSpecialPoint, SpecialBoundaries
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalfCurve
 from rodsweep.solve.branch.special.point import SpecialKind
-from rodsweep.sweep.handout import NO_WORK_LEFT, Pool, RankReport
+from rodsweep.sweep.chunk_queue import NO_WORK_LEFT, DependentUnitQueue, RankReport
 
 DIAGRAM = """
 task: phase_diagram
@@ -41,7 +41,7 @@ def write_and_note(self, unit, arrays):
     state.append(unit)
 
 def hear_and_wait(self, text):
-    while len(state) >= {units} and "curve of" in self.name():
+    while len(state) >= {units} and "curve of" in self.unit_label():
         pathlib.Path("inside").touch()
         time.sleep(0.01)
         hear(self, text)
@@ -196,14 +196,14 @@ def test_curves_do_not_depend_on_who_followed_what_in_which_order(ranks):
     found = []
     for rotation in range(ranks):
         units = boundaries()
-        pool = Pool(units, {}, ranks)
+        pool = DependentUnitQueue(units, {}, ranks)
         held, turn = {}, itertools.cycle([(rank + rotation) % ranks for rank in range(ranks)])
         while True:
             rank = next(turn)
             results = {held[rank]: half(units, held[rank])} if rank in held else {}
-            pool.settle(rank, RankReport(results=results))
+            pool.add_report(rank, RankReport(results=results))
             held.pop(rank, None)
-            chunk = pool.take(rank)
+            chunk = pool.next_chunk(rank)
             if chunk == NO_WORK_LEFT:
                 break
             if chunk is not None:
@@ -216,20 +216,20 @@ def test_curves_do_not_depend_on_who_followed_what_in_which_order(ranks):
 
 def test_one_rank_follows_no_half_in_vain():
     units, results = boundaries(), {}
-    while wanted := units.wanted(results):
+    while wanted := units.units_to_solve(results):
         results[wanted[0]] = half(units, wanted[0])
     assert len(results) == 4  # two of each curve
 
 
 def test_unit_that_a_stop_ended_is_wanted_again():
     units = boundaries()
-    pool = Pool(units, {}, 2)
-    first = pool.take(0)
-    assert pool.take(1) != first
-    pool.settle(0, RankReport(given_back=first))
-    assert pool.take(0) == first
+    pool = DependentUnitQueue(units, {}, 2)
+    first = pool.next_chunk(0)
+    assert pool.next_chunk(1) != first
+    pool.add_report(0, RankReport(returned=first))
+    assert pool.next_chunk(0) == first
     pool.stop()
-    assert pool.take(1) == NO_WORK_LEFT
+    assert pool.next_chunk(1) == NO_WORK_LEFT
 
 
 def test_results_of_units_are_read_whole_or_not_at_all(tmp_path):

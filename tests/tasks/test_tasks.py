@@ -153,7 +153,7 @@ def filled_file(tmp_path, task):
     for index in range(job.points.count):
         journal.append(index, record_of(task, index))
     journal.close()
-    store.fold({"note": "whole"})
+    store.add_journals({"note": "whole"})
     store.close()
     return tmp_path / "c.h5"
 

@@ -10,7 +10,7 @@ from contents import content, same
 from matplotlib.collections import PolyCollection
 
 import rodsweep as rs
-from rodsweep.api.asking import config_tree, job_from
+from rodsweep.api.keyword_arguments import config_tree, job_from
 from rodsweep.config.arm.axes import CRUSHED, NO_FLUTTER
 from rodsweep.config.arm.section import ArmSection
 from rodsweep.model.arm.arm import SlenderArm

@@ -123,7 +123,7 @@ class Answer:
                 return _scalar(column_of(variable, np.ravel(tables.view.variables[name])))
         for each, variables in tables.contents.lists.items():
             if name in (*(v.name for v in variables), *tables.contents.dimensions(each)):
-                return self._along(each, name)
+                return self._list_values(each, name)
         if name == "eigenvalues" and EIGENVALUE[0] in tables.view.variables:
             return self.growth_rate + 1j * self.frequency
         if name in self.data.variables:  # a coordinate, or a number of the whole file
@@ -131,7 +131,7 @@ class Answer:
             return values if values.ndim else values.item()
         raise AttributeError(f"this answer has no {name!r}; it has {', '.join(self._names())}")
 
-    def _along(self, table: str, name: str) -> np.ndarray:
+    def _list_values(self, table: str, name: str) -> np.ndarray:
         """Values of a variable or a coordinate of a list, with one entry per item of the list.
 
         table: name of the list. name: name of the variable or coordinate.

@@ -12,7 +12,7 @@ from typing import Any, Literal, ParamSpec, TypedDict, TypeVar, Unpack
 import xarray as xr
 
 from ...config.document.call_arguments import in_sentences, unknown
-from ...config.values import short
+from ...config.values import short_repr
 from ...errors import InputError
 from ...post.figures import draw
 from ...post.figures.request import KINDS, ROOTS, Drawing, FigureLook, Shapes
@@ -175,11 +175,11 @@ def plot(
     _refuse_other_than(roots=(roots, ROOTS), what=(what, KINDS))
     points = [points] if isinstance(points, int) else points
     if not isinstance(points, Sequence) or not all(isinstance(point, int) for point in points):
-        raise InputError(f"points = {short(points)} is not allowed; give whole numbers, from 1")
+        raise InputError(f"points = {short_repr(points)} is not allowed; give whole numbers, from 1")
     several = [data] if isinstance(data, Drawable) else data
     if not isinstance(several, Sequence) or not several:
         raise InputError(
-            f"{short(data)} has nothing to draw; give a Dataset, an answer or a file, or several"
+            f"{short_repr(data)} has nothing to draw; give a Dataset, an answer or a file, or several"
         )
     values = choices_of(at)
     views = [section(view_of_result(one, PLOT_EXAMPLE), values) for one in several]

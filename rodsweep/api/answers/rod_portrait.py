@@ -50,7 +50,7 @@ class RodPortrait:
     @property
     def thresholds(self) -> Answer:
         """Thresholds of the straight rod along F."""
-        return self._of(self.results.views["thresholds"])
+        return self._task_answer(self.results.views["thresholds"])
 
     @property
     def criticality(self) -> Answer | None:
@@ -65,26 +65,26 @@ class RodPortrait:
     @property
     def modes(self) -> dict[str, Answer]:
         """Leading modes at the first threshold of each kind, by kind: onset, hopf."""
-        return {kind: self._of(view) for kind, (_, view) in self.results.modes.items()}
+        return {kind: self._task_answer(view) for kind, (_, view) in self.results.modes.items()}
 
     @property
     def cycles(self) -> dict[float, Answer]:
         """Limit cycles at three forces, by force. If no cycle was found at a force, the status of its answer
         gives the reason.
         """
-        return {F: self._of(view) for F, view in self.results.cycles}
+        return {F: self._task_answer(view) for F, view in self.results.cycles}
 
     @property
     def missing(self) -> dict[str, str]:
         """Reason for every result that could not be solved, by task."""
         return dict(self.results.missing)
 
-    def _of(self, view: View) -> Answer:
+    def _task_answer(self, view: View) -> Answer:
         return self.answers[view.attributes["config"]]
 
     def _answer(self, task: str) -> Answer | None:
         view = self.results.views.get(task)
-        return None if view is None else self._of(view)
+        return None if view is None else self._task_answer(view)
 
     @one_at_a_time
     def figure(self) -> Drawing:

@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from ...config.document.call_arguments import in_sentences
-from ...config.values import short
+from ...config.values import short_repr
 from ...errors import InputError
 from ...post.tables import Tables
 from ...results.file.view import View, read_view
@@ -33,10 +33,14 @@ def table(data: Result, name: str | None = None, *, columns: Sequence[str] = ())
     `frame.attrs` of the DataFrame has `units` and `meanings`. Raises InputError for unknown names.
     """
     if name is not None and not isinstance(name, str):
-        raise InputError(f"name = {short(name)} is not the name of a table; write it as in {TABLE_EXAMPLE}")
+        raise InputError(
+            f"name = {short_repr(name)} is not the name of a table; write it as in {TABLE_EXAMPLE}"
+        )
     names = [columns] if isinstance(columns, str) else columns
     if not isinstance(names, list | tuple) or not all(isinstance(each, str) for each in names):
-        raise InputError(f"columns = {short(columns)} is not a list of names, such as ['F', 'growth_rate']")
+        raise InputError(
+            f"columns = {short_repr(columns)} is not a list of names, such as ['F', 'growth_rate']"
+        )
     return frame_of(Tables(view_of_result(data, TABLE_EXAMPLE)).table(name, tuple(names)).columns)
 
 
@@ -48,7 +52,7 @@ def view_of_result(data: Any, example: str) -> View:
         return read_view(named_file_path(data, example))
     if not isinstance(data, Answer | xr.Dataset):
         raise InputError(
-            f"{short(data)} is not a result; give a Dataset, an answer or a file, as in {example}"
+            f"{short_repr(data)} is not a result; give a Dataset, an answer or a file, as in {example}"
         )
     whole = data.whole if isinstance(data, Answer) else data
     return view_of_dataset(whole, Path(str(whole.attrs.get("title", "data"))))

@@ -49,11 +49,11 @@ class IntegratorFamily:
     tolerances: tuple[float, ...]
     waiting: tuple[float, ...] = ()
 
-    def followers(self) -> list[Contender]:
+    def following_contenders(self) -> list[Contender]:
         """Contenders of the race FOLLOWING, which follow a cycle in time: one for each of `tolerances`."""
         return [self._at(tolerance) for tolerance in self.tolerances]
 
-    def waiters(self) -> list[Contender]:
+    def settling_contenders(self) -> list[Contender]:
         """Contenders of the race WAITING, which integrate until the motion is periodic: one for each of
         `waiting`."""
         return [self._at(tolerance) for tolerance in self.waiting]

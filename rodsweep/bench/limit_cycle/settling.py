@@ -53,7 +53,7 @@ class SettlingMethod:
     failed: tuple[str, ...] = ()
 
     @property
-    def settled(self) -> bool:
+    def reaches_cycle(self) -> bool:
         """Whether the method reaches the cycle."""
         return isfinite(self.returns)
 
@@ -65,17 +65,19 @@ class SettlingMethod:
             "way": self.way + (f" (fails at {', '.join(self.failed)})" if self.failed else ""),
             "tolerance": self.setting,
             "returns": f"{about}{self.returns:.0f}"
-            if self.settled
+            if self.reaches_cycle
             else f"not reached in {WAITING_PERIODS} periods",
-            "milliseconds": f"{about}{1e3 * self.times * timed.median:.0f}" if self.settled else "",
-            "error": self.error if self.settled else nan,
+            "milliseconds": f"{about}{1e3 * self.times * timed.median:.0f}" if self.reaches_cycle else "",
+            "error": self.error if self.reaches_cycle else nan,
         }
 
 
 def compare_settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int) -> str:
     """Runs all methods that reach the cycle, at F = 50 and near the Hopf point, and returns the table of the
     methods. at: reference cycle at F = 50. every: contenders of the race WAITING."""
-    waiting = {method: _waited(at, settings) for method, settings in by_method(every).items()}
+    waiting = {
+        method: _integrate_until_periodic(at, settings) for method, settings in by_method(every).items()
+    }
     cycle = cycle_at(CYCLE_FORCE)
     left = _error(at, cycle.measures.period, cycle.measures.tip_y_max)
     waits = [SettlingMethod(CYCLE_FORCE, SOLVE_NAME, "", cycle.periods, left, partial(cycle_at, CYCLE_FORCE))]
@@ -105,7 +107,7 @@ def _error(at: ReferenceCycle, period: float, height: float) -> float:
     return max(abs(period / at.period - 1), abs(height / at.tip_y_max - 1))
 
 
-def _waited(at: ReferenceCycle, settings: Sequence[Contender]) -> SettlingMethod:
+def _integrate_until_periodic(at: ReferenceCycle, settings: Sequence[Contender]) -> SettlingMethod:
     """Integration at the loosest tolerance at which two successive returns agree, and period and largest tip
     y are accurate, within SETTLED_WITHIN. settings: contenders of one integrator, from the loosest tolerance.
     """

@@ -50,10 +50,10 @@ def limit_cycle_study(quick: bool, peers: Peers) -> Study:
     warm_up()
     rounds, stride = (QUICK_ROUND_COUNT, 2) if quick else (ROUND_COUNT, 1)
     at = solve_reference()
-    followers = every_nth_setting([*DEFAULT.followers(), *peers.of(FOLLOWING)], stride)
+    followers = every_nth_setting([*DEFAULT.following_contenders(), *peers.of(FOLLOWING)], stride)
     found = measure_following(at, followers, rounds)
     blocks = [introduction(rounds), *peers.notes, work_table(found), target_table(found)]
-    blocks.append(compare_settling(at, [*DEFAULT.waiters(), *peers.of(WAITING)], rounds))
+    blocks.append(compare_settling(at, [*DEFAULT.settling_contenders(), *peers.of(WAITING)], rounds))
     undrawn = measure_sweep_points(QUICK_RODS if quick else RODS, rounds)
     blocks += [sweep_introduction(), sweep_table(undrawn)]
     for section in peers.sections:

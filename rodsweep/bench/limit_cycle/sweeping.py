@@ -79,12 +79,12 @@ class AccurateCycle:
     tip_y_max: float
 
     @classmethod
-    def near(cls, orbit: Orbit) -> "AccurateCycle":
+    def converged_from_orbit(cls, orbit: Orbit) -> "AccurateCycle":
         """The reference cycle near the orbit `orbit`, for the rod of this orbit."""
         found = refined_at_period(orbit, REFERENCE_ACCURACY, NewtonWorkspace())
         return cls(found.orbit, found.measures.period, found.measures.tip_y_max)
 
-    def at(self, F: float) -> "AccurateCycle":
+    def cycle_at_force(self, F: float) -> "AccurateCycle":
         """The reference cycle of the same rod at the force F, which must be close to the present force."""
         form = self.orbit.form
         near = replace(self.orbit, form=replace(form, rod=replace(form.rod, F=F)))
@@ -124,7 +124,7 @@ def swept_rod(point: Rod, accuracy: float) -> SweptRod:
             ).neighbour
         neighbours[axis] = before
     here = solve_cycle(point, cycle_request(accuracy), along=SWEPT_PARAMETERS[0])
-    return SweptRod(point, AccurateCycle.near(orbit_of(here)), neighbours, workspace)
+    return SweptRod(point, AccurateCycle.converged_from_orbit(orbit_of(here)), neighbours, workspace)
 
 
 def earlier_rod(point: Rod, axis: str, steps: int) -> Rod:

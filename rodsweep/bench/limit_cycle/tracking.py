@@ -159,13 +159,15 @@ def tip_returns(beam: Beam, run: Trajectory) -> TipReturns:
     states = []
     heights = []
     for k in rising:
-        again = _again(beam, run.states[k], REPEATED_STEP_FACTOR * (run.times[k + 1] - run.times[k]))
+        again = _integrate_in_small_steps(
+            beam, run.states[k], REPEATED_STEP_FACTOR * (run.times[k + 1] - run.times[k])
+        )
         when = float(_spline(again.times, again.states @ row).roots(extrapolate=False)[0])
         for _ in range(NEWTON_CORRECTION_COUNT):
-            there = _again(beam, run.states[k], when).states[-1]
+            there = _integrate_in_small_steps(beam, run.states[k], when).states[-1]
             when -= float(row @ there) / float(row @ beam.rate(there))
         times.append(run.times[k] + when)
-        states.append(_again(beam, run.states[k], when).states[-1])
+        states.append(_integrate_in_small_steps(beam, run.states[k], when).states[-1])
     for first, last in pairwise(rising):
         heights.append(largest_y_near(beam, run, first + int(np.argmax(y[first : last + 1]))))
     return TipReturns(np.array(times), np.array(states), np.array(heights))
@@ -173,12 +175,12 @@ def tip_returns(beam: Beam, run: Trajectory) -> TipReturns:
 
 def largest_y_near(beam: Beam, run: Trajectory, k: int) -> float:
     """Largest y of the tip, in L, during the step of a run to its k-th state and the step after."""
-    again = _again(beam, run.states[k - 1], run.times[k + 1] - run.times[k - 1])
+    again = _integrate_in_small_steps(beam, run.states[k - 1], run.times[k + 1] - run.times[k - 1])
     height = _spline(again.times, beam.tip(again.states)[1])
     return float(height(height.derivative().roots(extrapolate=False)).max())
 
 
-def _again(beam: Beam, z: Array, duration: float) -> Trajectory:
+def _integrate_in_small_steps(beam: Beam, z: Array, duration: float) -> Trajectory:
     """Trajectory from the state z, (unknowns,), over `duration`, in tau2, in SMALL_STEP_COUNT equal steps."""
     limit = RunLimit(max_steps=SMALL_STEP_COUNT + 2)
     return integrator(beam.mesh, PERIOD_MAP).run(beam, z, duration, duration / SMALL_STEP_COUNT, limit)

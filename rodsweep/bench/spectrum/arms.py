@@ -18,7 +18,7 @@ from ...solve.spectrum.arm_solver import arm_solver
 from ...solve.spectrum.problem import ArmProblem
 from ..study import Contender, Measurement, count_text, grouped_by_fields, markdown_table, measure_case
 from .exact import relative_error
-from .own import (
+from .rodsweep_spectrum import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
     MODE_COUNT,
@@ -65,7 +65,7 @@ class UnsolvedArms:
         self._values = dict(rod.values)
         self._build = rod.build
 
-    def another(self) -> Rod:
+    def next_arm(self) -> Rod:
         """The arm with the next larger F."""
         self._values["F"] = nextafter(self._values["F"], inf)
         return Rod(**self._values, build=self._build)
@@ -85,12 +85,12 @@ def arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measurement]:
     """Measurements of rodsweep, Krylov-Schur and the peers on all ARMS, at all sizes of the eigenproblem."""
     measurements = []
     for name, rod in ARMS.items():
-        judge = partial(_judged, exact_arm_spectrum(rod))
+        judge = partial(_error_field, exact_arm_spectrum(rod))
         measurements += measure_case(name, UnsolvedArms(rod), [*contenders(), *peers], rounds, judge)
     return measurements
 
 
-def _judged(exact: list[complex], w: Complex) -> dict[str, float]:
+def _error_field(exact: list[complex], w: Complex) -> dict[str, float]:
     """Field `error` of `Measurement` for computed eigenvalues w, (modes,). exact: reference eigenvalues."""
     return {"error": relative_error(w, exact)}
 
@@ -101,7 +101,9 @@ def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
     rows = [
         {
             "method": method,
-            "cells": " | ".join(_cheapest(own) for own in grouped_by_fields(every, "case").values()),
+            "cells": " | ".join(
+                _cheapest_time_cell(own) for own in grouped_by_fields(every, "case").values()
+            ),
         }
         for (method,), every in grouped_by_fields(measurements, "method").items()
     ]
@@ -114,7 +116,7 @@ def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
     ) + markdown_table(" | ".join(["method", *ARMS]), "{method} | {cells}", rows)
 
 
-def _cheapest(measurements: Sequence[Measurement]) -> str:
+def _cheapest_time_cell(measurements: Sequence[Measurement]) -> str:
     """Cell of `arm_table` for one method on one arm. measurements: at all sizes."""
     reached = [m for m in measurements if m.error <= TARGET_ERROR]
     if not reached:
@@ -132,7 +134,7 @@ def mesh_of_arm(rod: Rod, order: int) -> ArmMesh:
 def solve_next_arm(solve: Callable[[Rod, int], Complex], size: int, arms: UnsolvedArms) -> Complex:
     """Eigenvalues, (modes,), of the next arm of `arms` by the eigensolver `solve`. size: second argument of
     `solve`, an order or a number of intervals."""
-    return solve(arms.another(), size)
+    return solve(arms.next_arm(), size)
 
 
 def _krylov_schur(rod: Rod, order: int) -> Complex:
@@ -142,15 +144,15 @@ def _krylov_schur(rod: Rod, order: int) -> Complex:
     return leading_eigenvalues(w, MODE_COUNT + 1)
 
 
-def _own(certify: bool, arms: UnsolvedArms) -> Complex:
-    return rodsweep_spectrum(arms.another(), certify)
+def _rodsweep_solver(certify: bool, arms: UnsolvedArms) -> Complex:
+    return rodsweep_spectrum(arms.next_arm(), certify)
 
 
 def contenders() -> list[Contender]:
     """Contenders of ARM_RACE: rodsweep without and with certificate, and Krylov-Schur at all orders."""
     own = [
-        Contender(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_own, False)),
-        Contender(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_own, True)),
+        Contender(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_rodsweep_solver, False)),
+        Contender(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_rodsweep_solver, True)),
     ]
     krylov = [
         Contender(KRYLOV_SCHUR, str(order), PENCIL_GROUP, partial(solve_next_arm, _krylov_schur, order))

@@ -33,7 +33,7 @@ from ..study import (
 )
 from .arms import ARM_RACE, arm_spectra, arm_table
 from .exact import exact_spectrum, relative_error
-from .own import (
+from .rodsweep_spectrum import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
     MODE_COUNT,

@@ -141,20 +141,22 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
 
     command: first arguments of the measured command. fresh: whether to replace an existing result file.
     """
-    others = _seconds_of_others()
+    others = _other_process_seconds()
     began = time.monotonic()
     words = [*launcher_words(ranks), *command]
     started = [_start(words, case.kind, directory, fresh) for directory in case.directories]
-    said = [_inside(process, case.kind) for process in started]
+    said = [_printed_seconds(process, case.kind) for process in started]
     seconds = time.monotonic() - began
-    elsewhere = np.maximum(0.0, (_seconds_of_others() - others) / seconds)
+    elsewhere = np.maximum(0.0, (_other_process_seconds() - others) / seconds)
     files = [directory / RESULT for directory in case.directories]
-    solved = [_solving(file) if case.kind == SOLVED else (0.0, nan) for file in files]
+    solved = [_solver_time_and_share(file) if case.kind == SOLVED else (0.0, nan) for file in files]
     return CommandRun(
         seconds=seconds,
         stated_seconds=max(said),
         solver_seconds=sum(spent for spent, _ in solved),
-        peak_memory=tuple(_peak(case, rank) for rank in (FIRST_RANK_PREFIX, OTHER_RANKS_PREFIX)[:ranks]),
+        peak_memory=tuple(
+            _peak_memory(case, rank) for rank in (FIRST_RANK_PREFIX, OTHER_RANKS_PREFIX)[:ranks]
+        ),
         file_bytes=sum(file.stat().st_size for file in files),
         journal_bytes=sum(
             page.stat().st_size for file in files for page in journal_directory(file).glob("rank-*")
@@ -179,7 +181,7 @@ def _start(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> sub
     )
 
 
-def _inside(process: subprocess.Popen[str], kind: str) -> float:
+def _printed_seconds(process: subprocess.Popen[str], kind: str) -> float:
     """Waits for the command to finish, and returns the time in s that the command printed; nan if the command
     was killed on purpose."""
     output, errors = process.communicate()
@@ -190,14 +192,14 @@ def _inside(process: subprocess.Popen[str], kind: str) -> float:
     return float(said[1]) if said else nan
 
 
-def _peak(case: SweepCase, rank: str) -> int:
+def _peak_memory(case: SweepCase, rank: str) -> int:
     """Peak memory of the first rank, or largest peak memory of the other ranks, in bytes. rank:
     FIRST_RANK_PREFIX or OTHER_RANKS_PREFIX."""
     notes = (note for directory in case.directories for note in (directory / NOTES).glob(f"{rank}-*"))
     return max((int(note.read_text()) for note in notes), default=0)
 
 
-def _solving(file: Path) -> tuple[float, float]:
+def _solver_time_and_share(file: Path) -> tuple[float, float]:
     """(time in the solver in s, fraction of the time of all ranks that was spent on points), from a result
     file."""
     view = read_view(file)
@@ -205,7 +207,7 @@ def _solving(file: Path) -> tuple[float, float]:
     return float(view.variables["seconds"].sum(dtype=float)), busy / (busy + idle)
 
 
-def _seconds_of_others() -> float:
+def _other_process_seconds() -> float:
     """Processor time, in s, of all processes of the machine except the finished children of this process; nan
     if unknown."""
     try:

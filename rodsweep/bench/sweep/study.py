@@ -21,7 +21,7 @@ from ..study import (
     nan_median,
     timing_order,
 )
-from .followed import followed_sweeps, followed_table
+from .eigenvalue_following import followed_sweeps, followed_table
 from .launch import (
     INSTANT,
     KILLED,

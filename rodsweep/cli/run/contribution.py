@@ -74,7 +74,7 @@ class RunEnd:
     stored_halves: int | None
     """Number of half curves stored for the next run if the curves are incomplete, else None."""
 
-    def times(self) -> list[str]:
+    def time_sentences(self) -> list[str]:
         """Sentences on the times of points and curves; empty if there was nothing to do."""
         sentences = []
         ranks = counted(self.ranks, "rank")
@@ -90,7 +90,7 @@ class RunEnd:
             sentences.append(f"{word} {self.curve_seconds:.2f} s on {ranks}{done}")
         return sentences
 
-    def kept_words(self) -> str:
+    def stored_points_clause(self) -> str:
         """Clause with the numbers of points and half curves that a stopped run has stored."""
         points = f"{counted(self.stored, 'point')} kept"
         if self.stored_halves is not None:

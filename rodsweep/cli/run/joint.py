@@ -10,14 +10,14 @@ from ...results.file.view import read_view
 from ...results.layouts.variables import Filled
 from ...results.run.checkpoints import UnitResults
 from ...results.run.journal import journal_directory
-from ...solve.backend.kept import forget_all
-from ...sweep.handout import ChunkQueue, Pool
+from ...solve.backend.solver_pools import destroy_pooled_solvers
+from ...sweep.chunk_queue import ChunkQueue, DependentUnitQueue
 from ...sweep.loop import Indices, Loop, RankWork, sweep
 from ...sweep.progress import ProgressReporter, SilentProgress
-from ...sweep.stop import NoClaims, RankListener, StopRequest
+from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ...sweep.team import Team
 from ...tasks.protocol import JointVariables, NamedArrays
-from ...tasks.running.unforeseen import RUN_ENDING_EXCEPTIONS, UnitNote
+from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, UnitNote
 from ...watch import SolveStopped, reporting_to
 
 UNIT_NOUN = "halves of curves"
@@ -70,7 +70,7 @@ class JointWork:
             self.kept.write(int(unit), result)
             found[int(unit)] = result
 
-        def taken() -> dict[int, NamedArrays]:
+        def take_results() -> dict[int, NamedArrays]:
             new = found.copy()
             found.clear()
             return new
@@ -78,7 +78,7 @@ class JointWork:
         todo = ChunkQueue([], self.team.size)
         if self.team.first:
             self.results = self.kept.read()
-            todo = Pool(units, self.results, self.team.size)
+            todo = DependentUnitQueue(units, self.results, self.team.size)
         self._exchange_starts(units)
         shown = (
             ProgressReporter(None, f"{title}, curves", UNIT_NOUN)
@@ -87,10 +87,10 @@ class JointWork:
         )
         loop = Loop(
             solve=lambda unit: self._solved(units, unit),
-            keep=keep,
+            store=keep,
             prepare=prepare,
-            results=taken,
-            name=units.where,
+            new_results=take_results,
+            unit_label=units.where,
         )
         try:
             return sweep(self.team, todo, loop, shown, self.stop)
@@ -102,8 +102,8 @@ class JointWork:
         these points again.
         """
         wanted = self.team.on_first(lambda: units.wanted(self.results))
-        for starts in self.team.exchange(self.together.starts(units, wanted)):
-            self.together.take(starts)
+        for starts in self.team.exchange(self.together.initial_data(units, wanted)):
+            self.together.add_initial_data(starts)
 
     def _solved(self, units: Any, unit: int) -> Iterable[tuple[int, NamedArrays]]:
         try:
@@ -111,7 +111,7 @@ class JointWork:
         except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:
-            forget_all()
+            destroy_pooled_solvers()
             self.note(units.where(unit), error)
             yield unit, self.together.empty_result()
 
@@ -121,6 +121,6 @@ class JointWork:
         """
         if units is not None and units.wanted(self.results):
             return None
-        with suppress(SolveStopped), reporting_to(RankListener(NoClaims(), self.stop)):
+        with suppress(SolveStopped), reporting_to(RankListener(SingleRankCommunication(), self.stop)):
             return self.together.variables(read_view(self.output), units, self.results)
         return None

@@ -14,7 +14,7 @@ from ...errors import EnvironmentIncomplete
 from ...results.file.creation import Plan
 from ...results.run.checkpoints import Checkpoints
 from ...results.run.journal import Journal, journal_directory, kept_sentence
-from ...sweep.handout import ChunkQueue
+from ...sweep.chunk_queue import ChunkQueue
 from ...sweep.loop import Indices, Loop, sweep
 from ...sweep.points.chains import ChainSolver
 from ...sweep.points.ranges import IndexRange, IndexSet, Shard, index_count
@@ -54,14 +54,14 @@ class PointWork:
         """
         if self.solver.stretched is not None:
             stretches = self.solver.stretched[0]
-            units = self.shard.part(stretches.todo(missing), stretches.count)
+            units = self.shard.ranges_of_shard(stretches.todo(missing), stretches.count)
             return units, stretches.missing_in(units, missing)
         if self.solver.chained is None:
-            units = self.shard.part(missing, self.job.points.count)
+            units = self.shard.ranges_of_shard(missing, self.job.points.count)
             return units, index_count(units)
         lacks = IndexSet(missing)
         chains = self.solver.chained.chains
-        units = self.shard.part(chains.todo(lacks), chains.count)
+        units = self.shard.ranges_of_shard(chains.todo(lacks), chains.count)
         each = (lacks[chains.indices(chain)].sum() for unit in units for chain in range(*unit))
         return units, int(sum(each))
 
@@ -91,7 +91,7 @@ class PointWork:
         try:
             with closing(Journal(directory, self.team.rank, plan.layout, plan.fingerprint)) as journal:
                 solve = self._solve_unit(IndexSet(missing), directory)
-                loop = Loop(solve=solve, keep=keep, prepare=prepare, name=self._unit_name)
+                loop = Loop(solve=solve, store=keep, prepare=prepare, unit_label=self._unit_name)
                 share = sweep(self.team, ChunkQueue(units, self.team.size), loop, shown, self.stop)
         except OSError as error:
             raise EnvironmentIncomplete(

@@ -18,9 +18,9 @@ from ...sweep.stop import StopRequest
 from ...sweep.team import Team
 from ...tasks.running.failures import parameters_in_words
 from ...tasks.running.job import Job, job_of, plan_of
-from ...tasks.running.unforeseen import TracebackLog, guarded_solver
+from ...tasks.running.unforeseen_exceptions import TracebackLog, guarded_solver
 from ...wording import counted
-from ..beforehand import report_stop, shared_flutter_forces, with_shared_constants
+from ..shared_computations import report_stop, shared_flutter_forces, with_shared_constants
 from .contribution import (
     MAX_FAILURES_PRINTED,
     RunContribution,
@@ -70,7 +70,7 @@ class _RankRun:
         self.began = time.monotonic()
         self.started = provenance.now()
         self.seconds = 0.0
-        self.log = TracebackLog(output, team.rank, self._where, options.strict)
+        self.log = TracebackLog(output, team.rank, self._file_and_folder_text, options.strict)
         self.solver = guarded_solver(job.solver(), job.layout, self.log)
         self.kernels = provenance.merged_blas_kernels(team.gather(blas()) or [])
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
@@ -84,11 +84,11 @@ class _RankRun:
             output=output,
             stop=stop,
             quiet=options.quiet,
-            where=self._where,
+            where=self._file_and_folder_text,
         )
-        together = self.solver.together
+        together = self.solver.joint_variables
         self.joint = together and JointWork(
-            team, together, output, self.plan.fingerprint, self.log.note, stop
+            team, together, output, self.plan.fingerprint, self.log.append_exception, stop
         )
 
     def run(self) -> int:
@@ -106,14 +106,14 @@ class _RankRun:
             points = self.job.points.count
             shard = f"; shard {self.shard}" if self.shard.of > 1 else ""
             kept = f", {points - index_count(missing)} kept" if points > index_count(missing) else ""
-            if self.joint and self._lacks_curves(index_count(missing) - count):
+            if self.joint and self._lacks_joint_variables(index_count(missing) - count):
                 kept += ", then curves through all"
-            self._say(f"{self.output}: {count} of {counted(points, 'point')} to do{kept}{shard}")
+            self._print_message(f"{self.output}: {count} of {counted(points, 'point')} to do{kept}{shard}")
         contributions: list[RunContribution] = []
         if count:
-            self.team.on_first(self._note_kernels)
+            self.team.on_first(self._record_blas_kernels)
             contributions = self.team.gather(self.work.solve(units, missing, count, self.prepare)) or []
-        joint = self.team.on_first(lambda: self._fold(count, contributions))
+        joint = self.team.on_first(lambda: self._add_journals(count, contributions))
         shares: list[RankWork] = []
         if self.joint and joint.units is not None:
             title = None if self.options.quiet else self.job.name
@@ -121,14 +121,14 @@ class _RankRun:
         exceptions = sum(self.team.gather(self.log.count) or [])
         return self.team.on_first(lambda: self._finish(count, contributions, joint, shares, exceptions))
 
-    def _lacks_curves(self, missing: int) -> bool:
+    def _lacks_joint_variables(self, missing: int) -> bool:
         """Whether the file lacks only the variables that depend on all points; called on the first rank.
 
         missing: number of missing points.
         """
         return not missing and "finished" not in self.store.attributes()
 
-    def _fold(self, count: int, contributions: list[RunContribution]) -> PendingJointWork:
+    def _add_journals(self, count: int, contributions: list[RunContribution]) -> PendingJointWork:
         """Writes the points of all journals into the file; returns whether variables that depend on all
         points are still missing, with their work items.
 
@@ -138,16 +138,16 @@ class _RankRun:
         if count:
             history = run_history(contributions, self.team.MPI.Get_library_version())
             started = {"started": self.started, "stopped": self.stop.name}
-            self.store.fold(last_run_attributes(self.plan) | history | started)
-        if not self._lacks_curves(index_count(self.store.missing())):
+            self.store.add_journals(last_run_attributes(self.plan) | history | started)
+        if not self._lacks_joint_variables(index_count(self.store.missing())):
             return PendingJointWork(False)
         if not self.joint:
             return PendingJointWork(True)
         if not count:
-            self._note_kernels()
+            self._record_blas_kernels()
         return PendingJointWork(True, self.joint.together.units(read_view(self.output)))
 
-    def _say(self, text: str, amiss: bool = False) -> None:
+    def _print_message(self, text: str, amiss: bool = False) -> None:
         """Prints a text; in quiet mode only if `amiss`. amiss: whether the text reports a problem."""
         if amiss or not self.options.quiet:
             click.echo(text)
@@ -155,27 +155,27 @@ class _RankRun:
     def _open(self) -> list[IndexRange]:
         """Opens or creates the result file; returns the ranges of the flat indices of missing points."""
         self.store = Store(self.output, self.plan, self.options.fresh, self.options.extend)
-        if self.joint and (self.options.fresh or not self._lacks_curves(0)):
+        if self.joint and (self.options.fresh or not self._lacks_joint_variables(0)):
             self.joint.kept.drop()
-        self._tell_notes()
+        self._print_store_notes()
         return self.store.missing()
 
-    def _tell_notes(self) -> None:
+    def _print_store_notes(self) -> None:
         """Prints the notes of the store on points and journals found in unexpected places."""
         for note in self.store.notes:
-            self._say(f"{self.output}: {note}", amiss=True)
+            self._print_message(f"{self.output}: {note}", amiss=True)
         self.store.notes.clear()
 
-    def _note_kernels(self) -> None:
+    def _record_blas_kernels(self) -> None:
         """Stores the names of the BLAS kernels of all ranks, and prints a warning if the kernels differ."""
         before = self.store.attributes()
         kernels = provenance.merged_blas_kernels(provenance.kernels_of(before), self.kernels.splitlines())
         if kernels != before.get(provenance.KERNELS_ATTRIBUTE):
-            self.store.fold({provenance.KERNELS_ATTRIBUTE: kernels})
+            self.store.add_journals({provenance.KERNELS_ATTRIBUTE: kernels})
         if sentence := provenance.kernels_sentence(kernels):
             click.echo(f"{self.output}: {sentence}")
 
-    def _where(self, index: int) -> str:
+    def _file_and_folder_text(self, index: int) -> str:
         return parameters_in_words(self.job.points.values(index))
 
     def _finish_file(self, joint: PendingJointWork) -> bool:
@@ -184,14 +184,14 @@ class _RankRun:
             return False
         variables = self.joint.variables(joint.units) if self.joint else ()
         if variables is None:
-            self.store.fold({"stopped": self.stop.name})
+            self.store.add_journals({"stopped": self.stop.name})
             return True
         self.store.finish({"finished": provenance.now(), "stopped": self.stop.name}, variables)
         if self.joint:
             self.joint.kept.drop()
         return False
 
-    def _say_failures(self, contributions: list[RunContribution], exceptions: int) -> None:
+    def _print_failures(self, contributions: list[RunContribution], exceptions: int) -> None:
         """Prints the first failed points, and the name of the file with the tracebacks of exceptions."""
         failures = [failure for contribution in contributions for failure in contribution.failures]
         for failure in failures[:MAX_FAILURES_PRINTED]:
@@ -218,7 +218,7 @@ class _RankRun:
         """Completes the result file, prints how the run ended, and returns the exit status."""
         lacks_joint_variables_in = self._finish_file(joint)
         missing = self.store.missing()
-        self._tell_notes()
+        self._print_store_notes()
         counts = self.store.status_counts()
         self.store.close()
         left = self.work.units(missing)[1]
@@ -234,15 +234,15 @@ class _RankRun:
             followed_halves=sum(share.points for share in shares) if joint.due and self.joint else None,
             stored_halves=len(self.joint.results) if self.joint and lacks_joint_variables_in else None,
         )
-        for sentence in ending.times() or [f"{part} is complete, nothing to do"]:
-            self._say(sentence)
+        for sentence in ending.time_sentences() or [f"{part} is complete, nothing to do"]:
+            self._print_message(sentence)
         expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
         amiss = not set(counts) <= expected
-        self._say(f"{self.output}: {self._outcomes(counts, left)}", amiss)
-        self._say_failures(contributions, exceptions)
+        self._print_message(f"{self.output}: {self._outcomes(counts, left)}", amiss)
+        self._print_failures(contributions, exceptions)
         if left or lacks_joint_variables_in:
             how = f"stopped by {self.stop.name}" if self.stop else "not complete"
-            click.echo(f"{how}; {ending.kept_words()}, the same command continues")
+            click.echo(f"{how}; {ending.stored_points_clause()}, the same command continues")
             return STOPPED_STATUS
         if amiss:
             click.echo(f"  `rodsweep show {self.output}` says what each status means")

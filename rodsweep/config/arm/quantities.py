@@ -9,7 +9,7 @@ from ...errors import InputError
 from ...model.arm.drag import DRAGS, RANGE_OF_DRAG
 from ...model.arm.quantities import RELATIVE, UNITS
 from ...model.units import in_si, share_of_flutter, split_quantity, written_in
-from ..values import AXIS_SCHEMA, Axis, as_axis, as_number, short
+from ..values import AXIS_SCHEMA, Axis, as_axis, as_number, short_repr
 
 RANGE_ENDS = ("start", "stop")
 """Keys of the ends of a range."""
@@ -67,13 +67,13 @@ def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
     """
     found = dict(given)
     for name, load in RELATIVE.items():
-        shares, is_relative = _shares(given.get(load))
+        shares, is_relative = _loads_in_flutter_loads(given.get(load))
         if not is_relative:
             continue
         if not all(each is not None for each in shares):
             raise ValueError(
-                f"parameters.arm.{load} = {short(given[load])} has relative and absolute values; write all "
-                "values like '1.2 of flutter', or all as absolute loads"
+                f"parameters.arm.{load} = {short_repr(given[load])} has relative and absolute values; "
+                "write all values like '1.2 of flutter', or all as absolute loads"
             )
         if given.get(name) is not None:
             raise ValueError(
@@ -85,7 +85,7 @@ def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _shares(value: Any) -> tuple[list[float | None], bool]:
+def _loads_in_flutter_loads(value: Any) -> tuple[list[float | None], bool]:
     """Returns (shares, is_relative). shares: each value of a load divided by the flutter load, None for an
     absolute value. is_relative: whether any value is relative to flutter.
     """
@@ -102,8 +102,8 @@ def as_drags(value: Any) -> Axis:
         names = list(DRAGS)
     if not names or not all(isinstance(name, str) and name in DRAGS for name in names):
         raise ValueError(
-            f"{short(value)} is not a drag; write {RANGE_OF_DRAG}, one of {', '.join(DRAGS)}, or a list of "
-            "these"
+            f"{short_repr(value)} is not a drag; write {RANGE_OF_DRAG}, one of {', '.join(DRAGS)}, "
+            "or a list of these"
         )
     return Axis(values=tuple(float(place) for place in sorted({DRAGS.index(name) for name in names})))
 

@@ -98,7 +98,7 @@ class ArmSection(StrictSection):
         return {name: getattr(self, name) for name in OF_MATERIAL if getattr(self, name) is not None}
 
     @property
-    def varies(self) -> bool:
+    def is_nonuniform(self) -> bool:
         """Whether any key makes the arms nonuniform: `tip_radius` or `segments`."""
         return self.tip_radius is not None or self.segments is not None
 
@@ -120,42 +120,42 @@ class ArmSection(StrictSection):
         return RELATIVE.get(str(self.load_axis), self.load_axis)
 
     @property
-    def several(self) -> tuple[str, ...]:
+    def varying_quantities(self) -> tuple[str, ...]:
         """Names of the quantities that have several values or are relative to flutter."""
-        return tuple(name for name, axis in self.given.items() if axis.size > 1 or name in RELATIVE)
+        return tuple(name for name, axis in self.quantity_axes.items() if axis.size > 1 or name in RELATIVE)
 
     @property
-    def meaning(self) -> dict[str, Any]:
+    def settings_of_results(self) -> dict[str, Any]:
         """Data of the arm on which the results depend, except the points: quantities in SI units and material
         keys, by name.
 
         A quantity that varies between points has the value None.
         """
-        varied = AXIS_OF if self.is_grid else self.several
-        numbers = {n: None if n in varied else float(axis.array()[0]) for n, axis in self.given.items()}
+        varied = AXIS_OF if self.is_grid else self.varying_quantities
+        numbers = {n: None if n in varied else value for n, value in self.first_values.items()}
         return numbers | {name: list(v) if name == "segments" else v for name, v in self.material.items()}
 
     @property
     def is_grid(self) -> bool:
         """Whether the points form a grid of parameters, that is, every axis changes exactly one parameter."""
-        return all(name in AXIS_OF for name in self.several)
+        return all(name in AXIS_OF for name in self.varying_quantities)
 
     @property
-    def given(self) -> dict[str, Axis]:
+    def quantity_axes(self) -> dict[str, Axis]:
         """Axes of the given quantities by name, the load last."""
         names = (*ALL_BUT_LOAD, *LOAD_AXES)
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
     def require_allowed_keys(self) -> None:
         """Raises ValueError for a value out of range, or if the model does not cover a grid's first arm."""
-        for name, axis in self.given.items():
+        for name, axis in self.quantity_axes.items():
             low = float(axis.array()[0])
             if name in RELATIVE and low < 0:
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} is below 0")
             if name in UNITS and not (QUANTITIES[name].signed or low > 0):
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0")
         if self.is_grid:
-            self.made(self.firsts, loaded=True)
+            self.arm_of(self.first_values, loaded=True)
 
     def refuse_misuse(self, forced: bool, beside: Collection[str]) -> None:
         """Raises ValueError if the load does not suit the task, or if k2 is given in addition to an axis of
@@ -168,7 +168,7 @@ class ArmSection(StrictSection):
         loads += [f"parameters.arm.{name}" for name in LOAD_AXES if getattr(self, name) is not None]
         if loads[1:]:
             raise ValueError(f"{loads[0]} and {loads[1]} are both given; give one of them")
-        if "poisson" in self.several and "k2" in beside:
+        if "poisson" in self.varying_quantities and "k2" in beside:
             raise ValueError(
                 "parameters.arm.poisson has several values but changes only k2, and parameters.k2 is given "
                 "too; give one of them"
@@ -187,50 +187,51 @@ class ArmSection(StrictSection):
 
         Raises ValueError if the arm is not slender, or if the smallest load crushes the arm.
         """
-        arm = self.made(self.firsts, loaded=True)
-        names = (*all_but("F", NONLINEAR_PARAMETERS), *self.tapering)
+        arm = self.arm_of(self.first_values, loaded=True)
+        names = (*all_but("F", NONLINEAR_PARAMETERS), *self.cone_parameters)
         axes = {name: Axis(values=(arm.parameter(name),)) for name in names}
         for name in ("k2", "gamma3"):
-            different = {getattr(self.made(each), name) for each in self.sections()}
+            different = {getattr(self.arm_of(each), name) for each in self.sections()}
             axes[name] = Axis(values=tuple(sorted(different)))
         if self.load:
-            axes = {"F": self.given[self.load].scaled(1.0 / getattr(arm, SCALE_OF[self.load]))} | axes
+            axes = {"F": self.quantity_axes[self.load].scaled(1.0 / getattr(arm, SCALE_OF[self.load]))} | axes
         return axes
 
     def grid_quantities(self) -> dict[str, Array]:
         """Quantities and units of the arm by name, in a grid of parameters: (), or (n,) for n values."""
-        values = {name: axis.array() for name, axis in self.given.items()}
+        values = {name: axis.array() for name, axis in self.quantity_axes.items()}
         if self.poisson is not None:  # k2 decreases with Poisson's ratio, and axes must increase
             values["poisson"] = values["poisson"][::-1]
-        first = self.made(self.firsts)
+        first = self.arm_of(self.first_values)
         units = {name: np.array([getattr(first, name)]) for name in ARM_UNITS}
         if len(values.get("drag", ())) > 1:
-            arms = {place: self.made(self.firsts | {"drag": place}) for place in values["drag"].tolist()}
+            first_values = self.first_values
+            arms = {place: self.arm_of(first_values | {"drag": place}) for place in values["drag"].tolist()}
             values["drag"] = np.array(sorted(arms, key=lambda place: arms[place].gamma3))
             units["tau2"] = np.array([arms[place].tau2 for place in values["drag"].tolist()])
         return {name: array[0] if len(array) == 1 else array for name, array in (values | units).items()}
 
     @property
-    def tapering(self) -> tuple[str, ...]:
+    def cone_parameters(self) -> tuple[str, ...]:
         """Names of parameters that only cones have: ("taper",) for cones, else ()."""
         return () if self.tip_radius is None else ("taper",)
 
     def count(self, beside: int) -> int:
         """Number of points of a grid. beside: number of combinations of the parameters given with the arm."""
-        return int(np.prod([float(axis.size) for axis in self.given.values()])) * beside
+        return int(np.prod([float(axis.size) for axis in self.quantity_axes.values()])) * beside
 
     @property
-    def firsts(self) -> dict[str, float]:
+    def first_values(self) -> dict[str, float]:
         """First value of every given quantity, in SI units, by name."""
-        return {name: float(axis.array()[0]) for name, axis in self.given.items()}
+        return {name: float(axis.array()[0]) for name, axis in self.quantity_axes.items()}
 
     def sections(self) -> Iterator[dict[str, float]]:
         """Yields length, material and cross-section of every arm, in SI units by name, in row-major order."""
-        names = [name for name in ALL_BUT_LOAD if name in self.given]
-        for values in product(*(self.given[name].array() for name in names)):
+        names = [name for name in ALL_BUT_LOAD if name in self.quantity_axes]
+        for values in product(*(self.quantity_axes[name].array() for name in names)):
             yield dict(zip(names, map(float, values), strict=True))
 
-    def made(self, values: Mapping[str, float], loaded: bool = False) -> SlenderArm:
+    def arm_of(self, values: Mapping[str, float], loaded: bool = False) -> SlenderArm:
         """The arm with the given quantities; ValueError for invalid values.
 
         values: quantities in SI units, by name. loaded: whether the load is included; a load relative to

@@ -56,8 +56,8 @@ def build_of(arm: "ArmSection") -> Build:
         return alike
     if arm.is_grid and len(set(builds_of(arm))) > 1:
         raise ValueError(
-            f"parameters.arm.{arm.several[0]} has several values, and the ratios between the segments "
-            "would differ from value to value; give one value"
+            f"parameters.arm.{arm.varying_quantities[0]} has several values, and the ratios between "
+            "the segments would differ from value to value; give one value"
         )
     return next(builds_of(arm), alike)
 
@@ -68,7 +68,7 @@ def builds_of(arm: "ArmSection") -> Iterator[Build]:
     """
     for values in arm.sections():
         with suppress(UncoveredArm):
-            yield arm.made(values).build
+            yield arm.arm_of(values).build
 
 
 def tapers_of(arm: "ArmSection") -> set[float]:
@@ -87,7 +87,7 @@ def refuse_misused_shape(arm: "ArmSection", beside: dict[str, Any]) -> None:
 
     beside: parameters given in addition to the arm, by name.
     """
-    if arm.segments is not None and "length" in arm.several:
+    if arm.segments is not None and "length" in arm.varying_quantities:
         raise ValueError(
             "parameters.arm.length has several values, but the segments fix the length; leave it out"
         )

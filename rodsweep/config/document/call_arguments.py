@@ -6,7 +6,7 @@ from inspect import Parameter, Signature, signature
 from typing import ParamSpec, TypeVar
 
 from ...errors import InputError
-from ..values import short
+from ..values import short_repr
 from .refusals import hint_of
 
 P = ParamSpec("P")
@@ -40,7 +40,7 @@ def require_matching_arguments(
     ours = list(asked.parameters.values())
     by_place = [p.name for p in ours if p.kind is Parameter.POSITIONAL_OR_KEYWORD]
     if len(values) > len(by_place):
-        surplus = short(values[len(by_place)])
+        surplus = short_repr(values[len(by_place)])
         raise InputError(f"the argument {surplus} has no name; write it as in {example}")
     known = [p.name for p in ours if p.kind not in (Parameter.VAR_KEYWORD, Parameter.VAR_POSITIONAL)]
     takes_any = any(p.kind is Parameter.VAR_KEYWORD for p in ours)

@@ -13,7 +13,7 @@ from ruamel.yaml.events import AliasEvent, Event, ScalarEvent
 from ruamel.yaml.parser import Parser
 
 from ...errors import InputError
-from ..values import named, overflows, short
+from ..values import overflows, printable_name, short_repr
 
 LARGEST_FILE = 100_000
 """Maximum size of a config file, in bytes: about 15,000 numbers, read in a second. Longer lists of points
@@ -30,7 +30,7 @@ MAX_DEPTH = 20
 
 def read_text(path: Path) -> str:
     """Text of a UTF-8 file of at most LARGEST_FILE bytes; InputError if the file cannot be read."""
-    where = named(path)
+    where = printable_name(path)
     try:
         if path.exists() and not (path.is_file() or path.is_dir()):
             raise InputError(f"{where} is not a file")  # opening a pipe would wait for its writer
@@ -71,10 +71,10 @@ def parse(text: str, where: str) -> Any:
         mark = getattr(error, "problem_mark", None)
         place = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
         context, problem = (getattr(error, name, None) or "" for name in ("context", "problem"))
-        message = named(" ".join(f"{context} {problem}".split()) or " ".join(str(error).split()))
+        message = printable_name(" ".join(f"{context} {problem}".split()) or " ".join(str(error).split()))
         raise InputError(f"{where}{place}: not valid YAML: {message}") from None
     except (ValueError, OverflowError, RecursionError) as error:
-        raise InputError(f"{where}: not valid YAML: {named(error)}") from None
+        raise InputError(f"{where}: not valid YAML: {printable_name(error)}") from None
 
 
 class _DataOnly(Parser):
@@ -87,10 +87,10 @@ class _DataOnly(Parser):
         if getattr(event, "anchor", None):
             mark = "*" if isinstance(event, AliasEvent) else "&"
             raise InputError(
-                f"anchors and aliases ({named(mark + event.anchor)}) are not allowed in a config"
+                f"anchors and aliases ({printable_name(mark + event.anchor)}) are not allowed in a config"
             )
         if getattr(event, "tag", None):
-            raise InputError(f"tags ({named(event.tag)}) are not allowed in a config")
+            raise InputError(f"tags ({printable_name(event.tag)}) are not allowed in a config")
         if isinstance(event, ScalarEvent):
             _refuse_scalar(event)
         name = type(event).__name__
@@ -104,10 +104,10 @@ def _refuse_scalar(event: ScalarEvent) -> None:
     """Raises InputError for a YAML scalar that can be neither a key nor a value of a config."""
     text = event.value
     if len(text) > MAX_TEXT_LENGTH:
-        raise InputError(f"{short(text)} has {len(text)} characters, more than any value of a config")
+        raise InputError(f"{short_repr(text)} has {len(text)} characters, more than any value of a config")
     if not text.isprintable():
-        raise InputError(f"{short(text)} has characters that cannot be printed")
+        raise InputError(f"{short_repr(text)} has characters that cannot be printed")
     if event.style is None and text == "<<":
         raise InputError("merge keys (<<) are not allowed in a config")
     if event.style is None and overflows(text):
-        raise InputError(f"{short(text)} is too large for a floating-point number")
+        raise InputError(f"{short_repr(text)} is too large for a floating-point number")

@@ -19,9 +19,9 @@ from ..axes import words
 from ..material import with_profile_read
 from ..schema import Config
 from ..tasks import CONFIGS, makes_diagram
-from ..values import Axis, axis_of, named, short
+from ..values import Axis, axis_of, printable_name, short_repr
 from .parsing import MAX_DEPTH, parse, read_text
-from .refusals import MAX_KEY_LENGTH, dotted, nearest, sentence_of
+from .refusals import MAX_KEY_LENGTH, dotted, sentence_of, similar_keys
 
 LONGEST_HEADER = 10_000
 """Maximum number of characters of a CSV file's header. `read_points` refuses a file with a longer first
@@ -35,13 +35,13 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
     YAML text lists the overrides as comments.
     """
     text = read_text(path)
-    where = named(path)
+    where = printable_name(path)
     tree = parse(text, where)
     if not isinstance(tree, dict):
-        problem = "is empty" if tree is None else f"is {short(tree)}, not a mapping of keys to values"
+        problem = "is empty" if tree is None else f"is {short_repr(tree)}, not a mapping of keys to values"
         raise InputError(f"{where}: the config {problem}; give task and parameters")
     for override in overrides:
-        _override(tree, override)
+        _apply_override(tree, override)
         text += f"\n# --set {override}"
     try:
         return validated(with_files_read(tree, path.parent)), text
@@ -66,7 +66,7 @@ def canonical(config: Config) -> dict[str, Any]:
     """
     tree = config.model_dump(mode="json", exclude_none=True)
     if config.parameters.arm is not None:
-        tree["parameters"] |= {name: axis.resolved for name, axis in config.parameters.axes.items()}
+        tree["parameters"] |= {name: axis.json_value for name, axis in config.parameters.axes.items()}
     return tree
 
 
@@ -111,7 +111,7 @@ def _without_those_of_the_arm(parameters: dict[str, Any], in_diagram: bool) -> d
     return {
         name: value
         for name, value in parameters.items()
-        if not (name in made and isinstance(value, Axis) and value.agrees(made[name]))
+        if not (name in made and isinstance(value, Axis) and value.equals_within_rounding(made[name]))
     }
 
 
@@ -127,16 +127,18 @@ def yaml_of(tree: dict[str, Any]) -> str:
 def text_of(config: Config) -> str:
     """YAML text of a config, with only the keys that differ from their defaults."""
     given = config.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
-    axes = {name: _written(value) for name, value in given["parameters"].items()}
+    axes = {name: _config_notation(value) for name, value in given["parameters"].items()}
     options = {
-        name: {key: _written(axis) for key, axis in value.items()} if isinstance(value, dict) else value
+        name: {key: _config_notation(axis) for key, axis in value.items()}
+        if isinstance(value, dict)
+        else value
         for name, value in given.get(config.task, {}).items()
     }
     asked = {config.task: options} if options else {}
     return yaml_of({"task": config.task} | given | {"parameters": axes} | asked)
 
 
-def _written(axis: Any) -> Any:
+def _config_notation(axis: Any) -> Any:
     """An axis in the notation of a config file (a number, a list or a range); for an arm, a mapping of the
     quantities to this notation. Other values are returned unchanged. axis: resolved.
     """
@@ -144,16 +146,16 @@ def _written(axis: Any) -> Any:
         return axis
     if "length" in axis:
         own = {"drag": drags_written(axis["drag"]["values"])} if "drag" in axis else {}
-        return {name: _written(value) for name, value in axis.items()} | own
+        return {name: _config_notation(value) for name, value in axis.items()} | own
     values = axis.get("values", axis)
     return values[0] if isinstance(values, list) and len(values) == 1 else values
 
 
-def _override(tree: dict, override: str) -> None:
+def _apply_override(tree: dict, override: str) -> None:
     """Sets a key of the parsed config `tree`, in place. override: text "a.b=value" of one --set, with a YAML
     value.
     """
-    where = named(f"--set {override}", MAX_KEY_LENGTH)
+    where = printable_name(f"--set {override}", MAX_KEY_LENGTH)
     if not override.isprintable():
         raise InputError(f"{where} has characters that cannot be printed")
     key, equals, value = override.partition("=")
@@ -170,7 +172,7 @@ def _override(tree: dict, override: str) -> None:
         if not isinstance(node, dict):
             parent = dotted(path[: i + 1])
             rest = dotted(path[i + 1 :])
-            raise InputError(f"{where}: {parent} is {short(node)}, which has no key {rest}")
+            raise InputError(f"{where}: {parent} is {short_repr(node)}, which has no key {rest}")
     node[path[-1]] = parse(value, where)
 
 
@@ -179,12 +181,12 @@ def _task(tree: dict) -> str:
     known = words(tuple(CONFIGS), "or")
     if "task" not in tree:
         others = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]
-        close = nearest("task", others)
+        close = similar_keys("task", others)
         problem = f"unknown key {dotted(close)}; did you mean task?" if close else "task is missing;"
         raise InputError(f"{problem} it should be {known}")
     task = tree["task"]
     if not isinstance(task, str) or task not in CONFIGS:
-        raise InputError(f"task = {short(task)} is not allowed; it should be {known}")
+        raise InputError(f"task = {short_repr(task)} is not allowed; it should be {known}")
     for name in CONFIGS:
         if name in tree and name != task:
             section: Any = CONFIGS[task].model_fields[task].annotation

@@ -12,7 +12,7 @@ from pydantic.fields import FieldInfo
 from ...model.parameters import PARAMETERS
 from ..axes import words
 from ..schema import Config
-from ..values import named, short
+from ..values import printable_name, short_repr
 
 MAX_KEY_LENGTH = 100
 """Maximum number of characters of a key in a message; longer keys are shortened."""
@@ -45,39 +45,48 @@ def sentence_of(config: type[Config], problem: Any) -> str:
         text = str(problem["ctx"]["error"])
         return f"{key}: {text}" if key and not text.startswith(key) else text
     if kind == "invalid_key":
-        return f"{short(value)} is not a key; keys are words"
+        return f"{short_repr(value)} is not a key; keys are words"
     key_alone = location[-1] if location else ""
     field = _section(config, location[:-1]).model_fields.get(key_alone)
     allowed = allowed_values_text(field) if field else problem["msg"]
-    return f"{key} = {short(value)} is not allowed; it should be {allowed}"
+    return f"{key} = {short_repr(value)} is not allowed; it should be {allowed}"
 
 
 def hint_of(key: str, known: Sequence[str], there_are: str = "known keys are") -> str:
     """Hint for an unknown key: "did you mean ...?" with similar known keys, or a list of all known keys.
     there_are: beginning of the list.
     """
-    close = nearest(key, known)
+    close = similar_keys(key, known)
     return f"did you mean {words(tuple(close), 'or')}?" if close else f"{there_are} {', '.join(known)}"
 
 
-def nearest(key: str, known: Sequence[str]) -> list[str]:
+def similar_keys(key: str, known: Sequence[str]) -> list[str]:
     """The known keys that are most similar to an unknown key, in the given order; empty if no key is similar.
 
     A known key is similar if the unknown key differs only in capitals and underscores, is the beginning or a
     substring of MIN_SUBSTRING_LENGTH or more letters of the known key, or has at most one typing error in
     LETTERS_PER_TYPING_ERROR letters.
     """
-    near = [(slips, name) for name in known if (slips := _slips(_plain(key), _plain(name))) is not None]
+    near = [
+        (slips, name)
+        for name in known
+        if (
+            slips := _typing_error_count(
+                _without_case_and_underscores(key), _without_case_and_underscores(name)
+            )
+        )
+        is not None
+    ]
     least = min((slips for slips, _ in near), default=0)
     nearest_ones = [name for slips, name in near if slips == least]
     return nearest_ones if key and len(nearest_ones) <= MAX_SUGGESTIONS else []
 
 
-def _plain(key: str) -> str:
+def _without_case_and_underscores(key: str) -> str:
     return key.lower().replace("_", "")
 
 
-def _slips(key: str, name: str) -> float | None:
+def _typing_error_count(key: str, name: str) -> float | None:
     """Number of typing errors in `key` if `name` was meant, 0.5 for a substring; None if the two are not
     similar.
     """
@@ -88,11 +97,11 @@ def _slips(key: str, name: str) -> float | None:
     longest = max(len(key), len(name))
     if LETTERS_PER_TYPING_ERROR * abs(len(key) - len(name)) > longest:  # the edit distance is no smaller
         return None
-    distance = _edits(key, name)
+    distance = _edit_distance(key, name)
     return distance if LETTERS_PER_TYPING_ERROR * distance <= longest else None
 
 
-def _edits(a: str, b: str) -> int:
+def _edit_distance(a: str, b: str) -> int:
     """Edit distance of the words a and b: number of inserted, deleted, changed and exchanged neighbouring
     letters.
     """
@@ -122,7 +131,7 @@ def full_names_of(config: type[Config], location: Sequence[str]) -> list[str]:
 
 def dotted(location: Sequence[str]) -> str:
     """Full name of a key, like "parameters.F.num", from the names of its sections and its own name."""
-    return named(".".join(location), MAX_KEY_LENGTH)
+    return printable_name(".".join(location), MAX_KEY_LENGTH)
 
 
 def _section(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]:

@@ -68,7 +68,7 @@ class BranchConfig(Config):
 
     @property
     def names(self) -> tuple[str, ...]:
-        return (*all_but(self.branch.along, NONLINEAR_PARAMETERS), *self.added)
+        return (*all_but(self.branch.along, NONLINEAR_PARAMETERS), *self.optional_names)
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:

@@ -67,7 +67,7 @@ class LimitCycleConfig(Config):
         By default the parameter with the most values; the first parameter if several have equally many
         values.
         """
-        sizes = self.parameters.alone
+        sizes = self.parameters.single_parameter_sizes
         given = self.limit_cycle.along
         if given == LONGEST:
             return max(sizes, key=lambda name: sizes[name], default=given)
@@ -89,7 +89,7 @@ class LimitCycleConfig(Config):
 
     @property
     def meaning(self) -> dict[str, Any]:
-        meant = super().meaning
+        meant = super().settings_of_results
         options = meant[self.task]
         return meant | {self.task: options | ({"along": self.along} if "along" in options else {})}
 
@@ -99,7 +99,7 @@ class LimitCycleConfig(Config):
         self.refuse_unused()
         arm = self.parameters.arm
         along = self.limit_cycle.along
-        if along in AXIS_OF and (arm is None or along not in {arm.load, *arm.given}):
+        if along in AXIS_OF and (arm is None or along not in {arm.load, *arm.quantity_axes}):
             raise ValueError(
                 f"limit_cycle.along is {along} but parameters.arm.{along} is not given; give it, or one of "
                 f"{words(NONLINEAR_PARAMETERS, 'or')}"
@@ -109,10 +109,10 @@ class LimitCycleConfig(Config):
                 "limit_cycle.start: neighbour needs a grid, in which a point has neighbours; remove it, or "
                 "give axes instead of parameters.points"
             )
-        if self.limit_cycle.start == "neighbour" and self.along not in self.parameters.alone:
+        if self.limit_cycle.start == "neighbour" and self.along not in self.parameters.single_parameter_sizes:
             raise ValueError(
                 f"limit_cycle.start: neighbour needs an axis that changes a single parameter, but the axes "
-                f"of parameters.arm are {' and '.join(self.parameters.over)}; give several values of "
+                f"of parameters.arm are {' and '.join(self.parameters.arm_axes)}; give several values of "
                 f"{words((*AXIS_OF, *NONLINEAR_PARAMETERS), 'or')}, or remove it"
             )
         return self

@@ -48,7 +48,7 @@ class PhaseDiagramOptions(StrictSection):
     `criticality`."""
 
     @property
-    def third(self) -> tuple[str, Axis] | None:
+    def bautin_parameter(self) -> tuple[str, Axis] | None:
         """Returns (name, values) of the third parameter, in `bautin_along`; None if `bautin_along` is not
         given.
         """
@@ -105,8 +105,8 @@ class PhaseDiagramConfig(LinearConfig):
         """Axial drag for criticality and cycles: the given value, else the value of the arm, else the
         default.
         """
-        if "gamma1" in self.parameters.numbers:
-            return self.parameters.numbers["gamma1"]
+        if "gamma1" in self.parameters.constant_parameters:
+            return self.parameters.constant_parameters["gamma1"]
         if self.parameters.arm is not None:
             return float(self.parameters.arm.grid_axes()["gamma1"].array()[0])
         return DEFAULTS["gamma1"]
@@ -117,10 +117,10 @@ class PhaseDiagramConfig(LinearConfig):
 
     @property
     def meaning(self) -> dict[str, Any]:
-        """`Config.meaning`, with the parameter values along a row and, for boundary curves, the names of the
-        logarithmic axes.
+        """`Config.settings_of_results`, with the parameter values along a row and, for boundary curves, the
+        names of the logarithmic axes.
         """
-        meant = super().meaning
+        meant = super().settings_of_results
         axes = self.parameters.axes
         line = self.plane[0]
         asked: dict[str, Any] = {line: {"values": axes[line].array().tolist()}}
@@ -135,8 +135,8 @@ class PhaseDiagramConfig(LinearConfig):
             meant |= {"together": {"logarithmic": [name for name in self.plane if axes[name].logarithmic]}}
         if asked_of_curves:
             meant["together"]["criticality"] = {"gamma1": self.gamma1}
-        if self.phase_diagram.third is not None:
-            name, axis = self.phase_diagram.third
+        if self.phase_diagram.bautin_parameter is not None:
+            name, axis = self.phase_diagram.bautin_parameter
             meant["together"]["bautin_along"] = {name: axis.array().tolist(), "log": axis.logarithmic}
         return meant
 
@@ -150,7 +150,7 @@ class PhaseDiagramConfig(LinearConfig):
                 "computed along the curves: set phase_diagram.curves: true or remove "
                 "phase_diagram.criticality"
             )
-        if "gamma1" in self.parameters.numbers and not (options.criticality or options.cycles):
+        if "gamma1" in self.parameters.constant_parameters and not (options.criticality or options.cycles):
             raise ValueError(
                 "parameters.gamma1 is given but the task phase_diagram does not use it without "
                 "phase_diagram.criticality: true or phase_diagram.cycles: true; remove it or set one of these"
@@ -166,8 +166,8 @@ class PhaseDiagramConfig(LinearConfig):
                 f"{every}"
             )
         self.parameters.require(LINEAR_PARAMETERS, or_points=False)
-        if self.parameters.over:
-            several = next(name for name in self.parameters.over if name not in (*AXIS_OF, "drag"))
+        if self.parameters.arm_axes:
+            several = next(name for name in self.parameters.arm_axes if name not in (*AXIS_OF, "drag"))
             moves = "no parameter" if several in FLUID else "several parameters at once"
             why = (
                 "is relative to flutter" if several in RELATIVE else f"has several values, which move {moves}"
@@ -194,9 +194,9 @@ class PhaseDiagramConfig(LinearConfig):
 
     @model_validator(mode="after")
     def _third_beside_the_plane(self) -> "PhaseDiagramConfig":
-        if self.phase_diagram.third is None:
+        if self.phase_diagram.bautin_parameter is None:
             return self
-        name, axis = self.phase_diagram.third
+        name, axis = self.phase_diagram.bautin_parameter
         low, high = axis.array()[[0, -1]]
         given = self.parameters.axes.get(name)
         value = np.array([PARAMETERS[name].default]) if given is None else given.array()

@@ -67,7 +67,7 @@ class SpectrumConfig(LinearConfig):
 
     @property
     def meaning(self) -> dict[str, Any]:
-        meant = super().meaning
+        meant = super().settings_of_results
         if "follow" in meant["spectrum"] and not self._could_follow:  # `follow` then has no effect
             meant["spectrum"]["follow"] = True
         return meant
@@ -75,12 +75,12 @@ class SpectrumConfig(LinearConfig):
     @model_validator(mode="after")
     def _only_what_is_used(self) -> "SpectrumConfig":
         self.parameters.require(self.names)
-        if "gamma1" in self.parameters.numbers and not self.spectrum.longitudinal:
+        if "gamma1" in self.parameters.constant_parameters and not self.spectrum.longitudinal:
             raise ValueError(
                 "parameters.gamma1 is given but not used: the transverse spectrum does not depend on it; "
                 "remove it or set spectrum.longitudinal: true"
             )
-        if self.spectrum.longitudinal and "gamma1" not in self.parameters.numbers:
+        if self.spectrum.longitudinal and "gamma1" not in self.parameters.constant_parameters:
             raise ValueError("parameters.gamma1 is missing; spectrum.longitudinal: true needs it")
         self.refuse_unused()
         return self

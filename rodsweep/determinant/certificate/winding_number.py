@@ -22,7 +22,7 @@ from ...model.rod import Coefficients, Rod
 from ..value import scaled_determinant
 from .box import eigenvalue_box, zero_free_radius_of_rod
 from .dominance import phase_over_dominated_segment
-from .reach import node_at
+from .zero_free_disc import zero_free_disc_at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -120,7 +120,7 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
     t = 0.0
     total = 0.0
     nodes = 1
-    here = node_at(start, coefficients)
+    here = zero_free_disc_at(start, coefficients)
     while t < length:
         if not here.reach > COUNT.min_reach * abs(here.w) or nodes > COUNT.max_edge_nodes:
             return 0.0, -nodes
@@ -128,7 +128,9 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
         ahead = min(COUNT.max_step * here.reach, length - t)
         while True:
             inside = ahead < here.reach
-            there = node_at(start + direction * (t + ahead) if ahead < length - t else end, coefficients)
+            there = zero_free_disc_at(
+                start + direction * (t + ahead) if ahead < length - t else end, coefficients
+            )
             nodes += 1
             if inside or abs(there.w - here.w) < max(here.reach, there.reach):
                 break

@@ -10,9 +10,9 @@ from bokeh.events import Pan, PanEnd
 from bokeh.models import CustomJS, Range1d
 
 from ...arrays import Array
-from ..look import template_text
+from ..page_style import template_text
 from ..scales import PictureAxis
-from ..solving.letting_go import Tip
+from ..solving.tip_release import Tip
 from .card import (
     NEUTRAL_COLOUR,
     POINT_COLOUR,

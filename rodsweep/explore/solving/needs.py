@@ -6,8 +6,8 @@ A question is not sent if this part of the state has not changed since the last 
 from dataclasses import replace
 
 from ..state import PageState
-from .letting_go import Tip
 from .questions import Question
+from .tip_release import Tip
 
 Needs = tuple[PageState, Tip | None]
 """Part of the page's state, and position of the dragged tip, on which an answer depends."""

@@ -21,7 +21,7 @@ from ...post.branch_curves import RodBranches
 from ..state import LAWS, PageState, rod_of
 from .branches import drawn_branches
 from .diagrams import Dataset, cycle_diagram, diagram, words_of
-from .letting_go import Tip, bent, motion, motion_film_answer
+from .tip_release import Tip, dragged_equilibrium, motion, motion_film_answer
 
 AnswerVariables = dict[str, Any]
 """Variables of an answer, by name: arrays, and texts such as `status`, `sentence` and `message`."""
@@ -107,7 +107,9 @@ def growth(state: PageState) -> AnswerVariables:
 
 def cycle(state: PageState) -> AnswerVariables:
     """Limit cycle with shapes of the arm over a period. x, y: coordinates of the straight arm."""
-    return variables(state.subject().cycle(shapes=SHAPE_COUNT, progress=False)) | bent(state, None)
+    return variables(state.subject().cycle(shapes=SHAPE_COUNT, progress=False)) | dragged_equilibrium(
+        state, None
+    )
 
 
 def film(state: PageState) -> AnswerVariables:
@@ -156,7 +158,7 @@ ANSWERS: dict[str, Callable[[PageState], AnswerVariables]] = {
 }
 """For each kind of question about the state of the page, the function that answers the question."""
 ANSWERS_TO_TIP: dict[str, Callable[[PageState, Tip], AnswerVariables]] = {
-    "bent": bent,
+    "bent": dragged_equilibrium,
     "motion": motion,
     "film": motion_film_answer,
 }

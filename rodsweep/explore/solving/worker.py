@@ -16,7 +16,7 @@ from types import FrameType
 from typing import Any
 
 from ...errors import Refusal
-from ...sweep.stop import NoClaims, RankListener, StopRequest
+from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ...watch import SolvePosition, reporting_to
 from .questions import Question, Reply, answer_to
 
@@ -78,7 +78,7 @@ def reply_to(question: Question, cancellation: Cancellation, send: Callable[[Rep
         try:
             cancellation.is_solving = True
             outcome = "answer"
-            with reporting_to(RankListener(NoClaims(send_progress), StopRequest())):
+            with reporting_to(RankListener(SingleRankCommunication(send_progress), StopRequest())):
                 content = answer_to(question)
         finally:
             cancellation.is_solving = False

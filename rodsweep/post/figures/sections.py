@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from ...config.arm.axes import STORED_ALONG
-from ...config.document.refusals import nearest
-from ...config.values import short
+from ...config.document.refusals import similar_keys
+from ...config.values import short_repr
 from ...errors import InputError
 from ...model.arm.drag import DRAGS
 from ...model.arm.quantities import ALL_QUANTITIES
@@ -55,7 +55,7 @@ def _cut(view: View, name: str, value: float) -> View:
     axes = view.over or (*view.parameters, *listed)
     if name not in axes:
         known = ", ".join(axes)
-        close = nearest(name, list(axes))
+        close = similar_keys(name, list(axes))
         hint = f"did you mean {close[0]}?" if close else f"the points differ in {known}"
         followed = f"; {name} is not an axis of points in this file" if name in NONLINEAR_PARAMETERS else ""
         raise InputError(f"--at {name}={value:.15g}: {view.path} has no such axis{followed}; {hint}")
@@ -111,7 +111,7 @@ def choices_of(given: Mapping[str, float | str]) -> dict[str, float | str]:
     try:
         return {str(n): value if isinstance(value, str) else float(value) for n, value in given.items()}
     except (AttributeError, TypeError, ValueError):
-        shown = short(given)
+        shown = short_repr(given)
         raise InputError(
             f"at = {shown} is not allowed; give numbers by parameter, as at={{'k1': 150}}"
         ) from None

@@ -19,11 +19,11 @@ from ...results.file.provenance import now
 from ...results.file.view import View
 from ...wording import counted
 from ..figures.request import Shapes
-from ..whole_file import atomic_write, require_name
+from ..output_files import atomic_write, require_output_path
 from .dark_colours import dark_page_colour
 from .page_tables import MAX_ROWS
 from .pictures import Pictures, pictures_of
-from .reported import ReportContents, report_contents
+from .report_contents import ReportContents, report_contents
 from .vector_picture import VectorPicture
 
 QUOTED = re.compile("`([^`]*)`")
@@ -31,10 +31,10 @@ QUOTED = re.compile("`([^`]*)`")
 
 
 def require_page(output: Path, inputs: Sequence[Path]) -> None:
-    """Raises InputError if `output` is not a valid name for an HTML page, see `require_name`. inputs: result
-    files, which must not be overwritten.
+    """Raises InputError if `output` is not a valid name for an HTML page, see `require_output_path`. inputs:
+    result files, which must not be overwritten.
     """
-    require_name(output, (".html",), "page", inputs)
+    require_output_path(output, (".html",), "page", inputs)
 
 
 def write_report(views: Sequence[View], output: Path, shapes: Shapes | None = None) -> str:

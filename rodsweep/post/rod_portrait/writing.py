@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from ..origin import origin_lines
+from ..cost_and_provenance import origin_lines
+from ..output_files import atomic_write, require_output_path
 from ..report import rendered
 from ..report.page_tables import page_tables
 from ..report.pictures import CaptionedPicture, Pictures
 from ..report.vector_picture import vector_picture
-from ..whole_file import atomic_write, require_name
 from .paragraph import paragraph
 from .picture import portrait_figure
 from .results import RodResults
@@ -23,8 +23,9 @@ HIDDEN_TABLES = ("mode_shapes", "shapes", "harmonics", "multipliers", "samples")
 
 
 def require_portrait(output: Path) -> None:
-    """Raises InputError if `output` is not a valid name for an image or an HTML page, see `require_name`."""
-    require_name(
+    """Raises InputError if `output` is not a valid name for an image or an HTML page, see
+    `require_output_path`."""
+    require_output_path(
         output, (*IMAGE_SUFFIXES, PAGE_SUFFIX), "page" if output.suffix == PAGE_SUFFIX else "picture"
     )
 

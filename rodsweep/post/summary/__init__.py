@@ -19,7 +19,7 @@ from ...results.file.view import View
 from ...results.layouts import lacks_joint_variables_in
 from ...results.layouts.variables import DIMENSIONS, MISSING
 from ...wording import counted, is_or_are, plural
-from ..origin import origin_lines, rank_lines, time_lines
+from ..cost_and_provenance import origin_lines, rank_lines, time_lines
 from ..tables.alignment import blocks, column_cells, point_aligned, refolded
 from .arm.answer import arm_answer
 from .arm.arm import arm_lines

@@ -14,7 +14,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ...config.values import named
+from ...config.values import printable_name
 
 SEAL_ATTRIBUTE = "seal"
 """Name of the attribute that holds the digests of all variables and attributes."""
@@ -76,7 +76,7 @@ def digests_of(file: h5py.File) -> Digests:
     variables = {}
     for name, data in _variables(file):
         if data.dtype.kind not in NUMBERS or data.shape is None:
-            raise ValueError(f"its variable {named(name, 40)} has no numbers")
+            raise ValueError(f"its variable {printable_name(name, 40)} has no numbers")
         dimensions = _dimensions(name, data)
         variables[name] = variable_digest(data.dtype, data.shape, dimensions, data.attrs, _blocks(data))
     return {"attributes": attribute_digests(file.attrs), "variables": variables}
@@ -98,8 +98,8 @@ def refuse_changed(file: h5py.File) -> None:
                 raise ValueError(f"its {noun} {name} was changed after rodsweep wrote it")
         for name in now.keys() - before.keys():
             raise ValueError(
-                f"its {noun} {named(name, 40)} was not written by rodsweep; names of your own begin with "
-                f"{USER_PREFIX}"
+                f"its {noun} {printable_name(name, 40)} was not written by rodsweep; names of your own "
+                f"begin with {USER_PREFIX}"
             )
 
 
@@ -110,7 +110,7 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
     """
     places = set()
     for name in file:
-        shown = named(name, 40)
+        shown = printable_name(name, 40)
         if not isinstance(file.get(name, getlink=True), h5py.HardLink):
             raise ValueError(f"{shown} is a link, and a result has no links")
         data = file[name]
@@ -135,7 +135,9 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
     HDF5's own functions for dimensions are not used, because they crash on damaged attributes.
     """
     attributes = data.attrs
-    changed = ValueError(f"the dimensions of {named(name, 40)} were changed after rodsweep wrote them")
+    changed = ValueError(
+        f"the dimensions of {printable_name(name, 40)} were changed after rodsweep wrote them"
+    )
     if "CLASS" in attributes:
         number = attributes.get("_Netcdf4Dimid", 0)  # number of the dimension, in files that xarray wrote
         stored = [attributes["CLASS"], attributes.get("NAME"), attributes.get("_Netcdf4Coordinates", number)]

@@ -67,7 +67,7 @@ def create_file(path: Path, plan: Plan) -> None:
         for name, extent in plan.layout.extents.items():
             _write_scale(file, name, plan.coordinates.get(name, np.arange(1, extent + 1)))
         for variable in plan.layout.variables:
-            data = _contiguous(file, variable, plan.points.shape + plan.layout.inner(variable))
+            data = _contiguous(file, variable, plan.points.shape + plan.layout.point_shape(variable))
             _describe(file, data, variable, (*plan.dimensions, *variable.extra))
         add_variables(file, plan.constants())
         add_variables(file, [filled for filled in plan.quantities if not is_axis(filled[0])])

@@ -113,7 +113,7 @@ def parameters_of(path: Path, layout: Layout) -> Points:
 def points_in(file: h5py.File, layout: Layout) -> Points:
     """All points of the sweep of an open result file, computed or missing."""
     names = layout.parameters
-    over = {name: file[name][...] for name in layout.over}
+    over = {name: file[name][...] for name in layout.arm_axes}
     if not over:
         return Points(names, tuple(file[name][...] for name in names), is_grid="point" not in file)
     columns = tuple(np.broadcast_to(table, file["status"].shape).ravel() for table in on_grid(file, layout))
@@ -128,9 +128,9 @@ def on_grid(variables: Mapping[str, Any], layout: Layout) -> Iterator[np.ndarray
     varies along this axis only.
     """
     for name in layout.parameters:
-        along = [-1 if axis == name else 1 for axis in layout.over]
+        along = [-1 if axis == name else 1 for axis in layout.arm_axes]
         table = variables[name][...]
-        yield table.reshape(along) if name in layout.over else table
+        yield table.reshape(along) if name in layout.arm_axes else table
 
 
 def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bool:

@@ -38,7 +38,7 @@ def header_of_existing_file(path: Path, plan: Plan, journals: Path) -> ResultHea
     try:
         return read_header(path)
     except IncompleteFile as error:
-        raise InputError(f"{error}; the file is left unchanged: {_ways_out(plan, journals)}") from None
+        raise InputError(f"{error}; the file is left unchanged: {_remedies_clause(plan, journals)}") from None
 
 
 def require_same_config(header: ResultHeader, plan: Plan, journals: Path) -> None:
@@ -46,7 +46,7 @@ def require_same_config(header: ResultHeader, plan: Plan, journals: Path) -> Non
     the plan. journals: journal directory of the file.
     """
     change = change_between(header.config, plan.config)
-    ways = _ways_out(plan, journals)
+    ways = _remedies_clause(plan, journals)
     try:
         extension_of(header, parameters_of(header.path, header.layout), plan)
         ways += "; --extend computes only the missing points"
@@ -55,7 +55,7 @@ def require_same_config(header: ResultHeader, plan: Plan, journals: Path) -> Non
     raise InputError(f"{header.path} was made from another config ({change}); {ways}")
 
 
-def _ways_out(plan: Plan, journals: Path) -> str:
+def _remedies_clause(plan: Plan, journals: Path) -> str:
     """Clause with the remedies for an existing file that prevents the run of a plan. journals: journal
     directory of the file.
     """

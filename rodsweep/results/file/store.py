@@ -33,12 +33,12 @@ from ..run.journal import (
 )
 from .combination.extension import extension_of
 from .creation import Plan, add_variables, create_file
+from .current_state import SNAPSHOT
 from .exchange import FileReplacement, disk_refusals, identity
 from .points import missing_ranges, parameters_of, statuses, write_points
 from .provenance import merged_history, reasons_added
-from .recent import SNAPSHOT
 from .refusals import header_of_existing_file, require_room, require_same_config
-from .validation import ResultHeader, is_rodsweep_file, reading
+from .validation import ResultHeader, damage_refusals, is_rodsweep_file
 
 BACKUPS = "before-*.h5"
 """Pattern of the names of copies of the file before an unfinished extension, in the journal directory."""
@@ -74,7 +74,7 @@ class Store:
             header = self._header()
             if header.fingerprint == self.plan.fingerprint:
                 snapshot = {SNAPSHOT: ""} if self.attributes().get(SNAPSHOT) else {}
-                self.fold(self._new_title() | snapshot)
+                self.add_journals(self._new_title() | snapshot)
             elif extend:
                 self._extend(header)
             else:
@@ -95,7 +95,7 @@ class Store:
         with self.exchange.replacing(None) as copy:
             create_file(copy, self.plan)
         if own and not fresh:
-            self.fold({})
+            self.add_journals({})
             self.notes.append("the file was missing; a new file holds the points of its journal")
 
     def _extend(self, header: ResultHeader) -> None:
@@ -103,7 +103,7 @@ class Store:
         extension = extension_of(header, parameters_of(self.path, header.layout), self.plan)
         require_room(self.path, self.plan)
         blocks = read_journals(self.journals, header.layout, header.fingerprint, header.points)
-        self._fold_blocks(blocks, header.layout, header.fingerprint, {})
+        self._add_blocks(blocks, header.layout, header.fingerprint, {})
         done = header.points - index_count(self.missing())
         history = merged_history([header.attributes])
         with self.exchange.replacing(None) as copy:
@@ -114,14 +114,14 @@ class Store:
                 with h5py.File(copy, "r+") as file:
                     file.attrs.update(history)
             if anew:
-                before = self._keep_before()
+                before = self._backup_path()
                 self.notes.append(
                     f"{anew} of {done} stored points are computed anew; until all are done, {before} has them"
                 )
         drop_files(self.journals, CHECKPOINTS)
-        self.fold({})
+        self.add_journals({})
 
-    def _keep_before(self) -> Path:
+    def _backup_path(self) -> Path:
         """Path of a copy of the file in the journal directory, kept until the extension is complete."""
         number = 1 + sum(1 for _ in self.journals.glob(BACKUPS))
         copy = self.journals / BACKUPS.replace("*", str(number))
@@ -142,21 +142,21 @@ class Store:
 
     def attributes(self) -> dict[str, Any]:
         """Attributes of the result file, by name."""
-        with reading(self.path), h5py.File(self.path, "r") as file:
+        with damage_refusals(self.path), h5py.File(self.path, "r") as file:
             return dict(file.attrs)
 
     def missing(self) -> list[IndexRange]:
         """Ranges of flat indices of points not computed yet, in order."""
-        with reading(self.path):
+        with damage_refusals(self.path):
             return missing_ranges(self.path)
 
     def finish(self, attributes: dict[str, Any], variables: Sequence[Filled] = ()) -> None:
         """Adds journalled points, attributes, `variables`, and variables computed from all points to the
         file.
         """
-        self.fold(attributes, lambda file: (*variables, *self.plan.afterwards(file)))
+        self.add_journals(attributes, lambda file: (*variables, *self.plan.afterwards(file)))
 
-    def fold(
+    def add_journals(
         self, attributes: dict[str, Any], additions: Callable[[h5py.File], Sequence[Filled]] | None = None
     ) -> None:
         """Adds journalled points, attributes and variables by one replacement; deletes the journals.
@@ -166,7 +166,7 @@ class Store:
         plan = self.plan
         self.restore()
         blocks = read_journals(self.journals, plan.layout, plan.fingerprint, plan.points.count)
-        self._fold_blocks(blocks, plan.layout, plan.fingerprint, attributes, additions)
+        self._add_blocks(blocks, plan.layout, plan.fingerprint, attributes, additions)
         if not self.missing():
             for pattern in (CHECKPOINTS, BACKUPS):
                 drop_files(self.journals, pattern)
@@ -174,9 +174,9 @@ class Store:
     def restore(self) -> None:
         """Creates a moved or deleted file again; EnvironmentIncomplete if another file replaced it."""
         with disk_refusals(self.path, self._kept):
-            self._restore_if_gone()
+            self._restore_missing_file()
 
-    def _restore_if_gone(self) -> None:
+    def _restore_missing_file(self) -> None:
         if identity(self.path) == self.exchange.left:
             return
         if not self.path.exists():
@@ -193,7 +193,7 @@ class Store:
                 f"the result file was changed or replaced during the run: {error}"
             ) from None
 
-    def _fold_blocks(
+    def _add_blocks(
         self,
         blocks: Iterator[np.ndarray],
         layout: Layout,
@@ -204,7 +204,7 @@ class Store:
         """Writes records, (n,) in each block, of journals with the fingerprint into the file; deletes the
         journals.
 
-        layout: layout of the records. attributes, additions: as in `fold`.
+        layout: layout of the records. attributes, additions: as in `add_journals`.
         """
         with disk_refusals(self.path, self._kept):
             journals = journals_of(self.journals, fingerprint)
@@ -229,7 +229,7 @@ class Store:
         """Number of points with each status, by the name of the status."""
         names = {MISSING: "missing", **dict(self.plan.flags)}
         counts: dict[str, int] = {}
-        with reading(self.path):
+        with damage_refusals(self.path):
             for _, status in statuses(self.path):
                 for value, n in zip(*np.unique(status, return_counts=True), strict=True):
                     name = names.get(int(value), f"unknown ({value})")

@@ -41,7 +41,7 @@ class IncompleteFile(InputError):
 
 
 @contextmanager
-def reading(path: Path) -> Iterator[None]:
+def damage_refusals(path: Path) -> Iterator[None]:
     """Context that turns the exceptions DAMAGES, for a damaged or foreign file, into IncompleteFile."""
     try:
         yield
@@ -83,7 +83,7 @@ def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, ResultHeader
         raise IncompleteFile(
             f"{path} is a config, not a result file; `rodsweep run` makes a result file from it"
         )
-    with reading(path):
+    with damage_refusals(path):
         is_framed = check_frame(path)
         file = h5py.File(path, "r")
         try:
@@ -112,7 +112,7 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Result
     check_content: whether the content is compared with the seal. Raises InputError for a format that this
     version does not read.
     """
-    attributes = {name: cleaned(value) for name, value in file.attrs.items()}
+    attributes = {name: escape_control_characters(value) for name, value in file.attrs.items()}
     if attributes.get("program") != PROGRAM:
         raise ValueError("it is not a result of rodsweep")
     _refuse_other_format(path, attributes)
@@ -126,7 +126,7 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Result
     return ResultHeader(path, attributes, config, fingerprint, layout, file["status"].size)
 
 
-def cleaned(value: Any) -> Any:
+def escape_control_characters(value: Any) -> Any:
     """Value of an attribute; control characters of a text are escaped, because a terminal would obey them."""
     if isinstance(value, bytes):
         value = value.decode(errors="replace")
@@ -157,7 +157,7 @@ def require_matching_arguments(file: h5py.File, layout: Layout) -> None:
     Every variable must be contiguous and have the type and shape of the layout.
     """
     shape = tuple(len(file[name]) for name in layout.dimensions(is_list="point" in file))
-    expected = {v.name: (shape + layout.inner(v), np.dtype(v.dtype)) for v in layout.variables}
+    expected = {v.name: (shape + layout.point_shape(v), np.dtype(v.dtype)) for v in layout.variables}
     expected |= {name: ((extent,), file[name].dtype) for name, extent in layout.extents.items()}
     for name, (extents, kind) in expected.items():
         data = file[name]

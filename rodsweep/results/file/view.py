@@ -14,8 +14,8 @@ from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import PARAMETERS
 from ..layouts.variables import TYPED_UNIT
 from .content import is_user_added
-from .recent import insert_records, journalled_points, journalled_reasons, read_file_and_journals
-from .validation import cleaned, open_whole, reading, refuse_absent
+from .current_state import insert_records, journalled_points, journalled_reasons, read_file_and_journals
+from .validation import damage_refusals, escape_control_characters, open_whole, refuse_absent
 
 LARGEST_CHECKED = 10**9
 """Size of a file, in bytes, up to which its numbers are compared with the seal before use. In a larger file
@@ -34,7 +34,7 @@ class Variables(Mapping[str, np.ndarray]):
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self.read:
-            with reading(self.path):
+            with damage_refusals(self.path):
                 values = self.file[name][...]
                 if len(self.recent) and name in self.recent.dtype.fields:
                     insert_records(values, name, self.recent)
@@ -42,7 +42,7 @@ class Variables(Mapping[str, np.ndarray]):
         return self.read[name]
 
     def __contains__(self, name: object) -> bool:
-        with reading(self.path):
+        with damage_refusals(self.path):
             return name in self.file and not is_user_added(str(name))
 
     def __iter__(self) -> Iterator[str]:
@@ -183,9 +183,9 @@ def _view(path: Path) -> View:
     refuse_absent(path)
     # Opened only once, because a run may replace the file at any instant.
     file, header = open_whole(path, values=path.stat().st_size <= LARGEST_CHECKED)
-    with reading(path):
+    with damage_refusals(path):
         status = file["status"]
-        words = str(cleaned(status.attrs["flag_meanings"])).split()
+        words = str(escape_control_characters(status.attrs["flag_meanings"])).split()
         flags = dict(zip((int(v) for v in status.attrs["flag_values"]), words, strict=True))
         recent = journalled_points(header, status[...].ravel())
         variables = Variables(path, file, recent)
@@ -193,4 +193,4 @@ def _view(path: Path) -> View:
         typed = {name: str(file[name].attrs[TYPED_UNIT]) for name in stored if TYPED_UNIT in file[name].attrs}
     layout = header.layout
     attributes = header.attributes | journalled_reasons(header)
-    return View(path, attributes, variables, layout.parameters, flags, len(recent), layout.over, typed)
+    return View(path, attributes, variables, layout.parameters, flags, len(recent), layout.arm_axes, typed)

@@ -111,7 +111,7 @@ def with_si(layout: Layout, config: Mapping[str, Any]) -> Layout:
     if config.get("parameters", {}).get("arm") is None:
         return layout
     variables = (*layout.variables, *si_variables_of(layout, config).values(), *VALIDITY)
-    return replace(layout, variables=variables, over=arm_axis_names(config))
+    return replace(layout, variables=variables, arm_axes=arm_axis_names(config))
 
 
 def si_variables_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Variable]:
@@ -190,7 +190,7 @@ def arm_variables(parameters: Axes, points: Points) -> tuple[Filled, ...]:
             _filled(arm, name, values, (STORED_ALONG[name],) if np.ndim(values) else ())
             for name, values in arm.grid_quantities().items()
         )
-    numbers = {name: axis.array()[0] for name, axis in arm.given.items() if name not in points.over}
+    numbers = {name: axis.array()[0] for name, axis in arm.quantity_axes.items() if name not in points.over}
     own = points.units | {name: column for name, column in points.by_name.items() if name not in points.over}
     return (
         *(_filled(arm, name, values, (name,)) for name, values in points.over.items()),

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
 
 NO_NAMES: Mapping[str, str] = {}
-"""No exceptions: in `recorded`, a field has the name of its variable."""
+"""No exceptions: in `outcome_values`, a field has the name of its variable."""
 TYPED_UNIT = "typed_unit"
 """Name of the attribute of a variable with the unit in which the user typed the values."""
 MISSING = -1
@@ -139,7 +139,7 @@ MESH = (
 """Variables that describe the mesh of a point."""
 
 
-def recorded(
+def outcome_values(
     variables: Iterable[Variable], *outcomes: Any, prefix: str = "", names: Mapping[str, str] = NO_NAMES
 ) -> dict[str, Any]:
     """Values of variables by name, from fields of solver outcomes: of the first outcome that has the field.
@@ -160,7 +160,7 @@ def _field(name: str, outcomes: Sequence[Any]) -> Any:
     return getattr(_field(whole, outcomes), part)
 
 
-def listed(
+def value_lists(
     variables: Iterable[Variable], rows: Sequence[Mapping[str, Any]], room: int | None = None
 ) -> dict[str, list[Any]]:
     """List of the values of each variable, by name. rows: for each item, the values of all variables by name.
@@ -185,7 +185,7 @@ class ExtensionRule:
     values: tuple[Any, ...] = ()
     """Values of the option, in increasing order; empty for numbers and booleans."""
 
-    def is_more(self, before: Any, now: Any) -> bool:
+    def requests_more_data(self, before: Any, now: Any) -> bool:
         """Whether the value `now` of the option requests more data than the value `before`."""
         if self.values:
             return self.values.index(now) > self.values.index(before)
@@ -210,7 +210,7 @@ class Layout:
     """Length of each extra dimension, by name."""
     parameters: tuple[str, ...] = LINEAR_PARAMETERS
     """Names of the parameters of a point: dimensions of a grid, or variables along the dimension `point`."""
-    over: tuple[str, ...] = ()
+    arm_axes: tuple[str, ...] = ()
     """Names of the dimensions of a grid over an arm's quantities; empty for a grid of parameters or a
     list."""
     needs_all_points: bool = False
@@ -218,24 +218,24 @@ class Layout:
 
     def dimensions(self, is_list: bool) -> tuple[str, ...]:
         """Names of the dimensions of the points; is_list: whether the points come from a list."""
-        return self.over or (("point",) if is_list else self.parameters)
+        return self.arm_axes or (("point",) if is_list else self.parameters)
 
     @property
     def record(self) -> np.dtype:
         """NumPy type of the record of a point: its flat index, then every variable."""
-        fields: list[Any] = [(v.name, v.dtype, self.inner(v)) for v in self.variables]
+        fields: list[Any] = [(v.name, v.dtype, self.point_shape(v)) for v in self.variables]
         return np.dtype([("index", "<i8"), *fields])
 
     @property
     def bytes_per_point(self) -> int:
         """Size of all variables at a point, in bytes; it may exceed the largest size of a NumPy record."""
-        return sum(np.dtype(v.dtype).itemsize * prod(self.inner(v)) for v in self.variables)
+        return sum(np.dtype(v.dtype).itemsize * prod(self.point_shape(v)) for v in self.variables)
 
     @property
     def empty_point(self) -> dict[str, NDArray[Any]]:
-        """Fill values of every variable of a point, by name, each of the shape `inner`."""
-        return {v.name: np.full(self.inner(v), v.fill, v.dtype) for v in self.variables}
+        """Fill values of every variable of a point, by name, each of the shape `point_shape`."""
+        return {v.name: np.full(self.point_shape(v), v.fill, v.dtype) for v in self.variables}
 
-    def inner(self, variable: Variable) -> tuple[int, ...]:
+    def point_shape(self, variable: Variable) -> tuple[int, ...]:
         """Shape of a variable at a single point: lengths of its extra dimensions."""
         return tuple(self.extents[d] for d in variable.extra)

@@ -47,8 +47,8 @@ class Journal:
         self.directory = directory
         self.name = f"rank-{rank:06d}-{os.getpid()}"
         self._create()
-        self._write(_head(fingerprint))
-        self.head = len(_head(fingerprint))
+        self._write(_journal_header(fingerprint))
+        self.head = len(_journal_header(fingerprint))
 
     def append(self, index: int, values: dict, reasons: Sequence[str] = ()) -> None:
         """Writes the record of the finished point at a flat index; values: every variable by name.
@@ -57,7 +57,7 @@ class Journal:
         """
         # One assignment, because assigning single fields takes three times as long.
         self.page[()] = (index, *(values[name] for name in self.names))
-        self._write(b"".join(map(_sealed, (*self._text(reasons), self.page.tobytes()))))
+        self._write(b"".join(map(_with_checksum, (*self._text(reasons), self.page.tobytes()))))
 
     def append_all(
         self, index: np.ndarray, values: dict[str, np.ndarray], reasons: Sequence[str] = ()
@@ -73,7 +73,7 @@ class Journal:
         data = records.tobytes()
         size = records.itemsize
         parts = (data[at : at + size] for at in range(0, len(data), size))
-        self._write(b"".join(map(_sealed, (*self._text(reasons), *parts))))
+        self._write(b"".join(map(_with_checksum, (*self._text(reasons), *parts))))
 
     def _text(self, lines: Sequence[str]) -> Iterator[bytes]:
         """Yields records that hold lines of text instead of the values of a point."""
@@ -136,12 +136,14 @@ def drop_files(directory: Path, pattern: str) -> None:
 
 def journals_of(directory: Path, fingerprint: str) -> list[Path]:
     """Paths of the journals in a directory that have points and this fingerprint."""
-    return [path for path in sorted(directory.glob(JOURNALS)) if _points_of(path) == _head(fingerprint)]
+    return [
+        path for path in sorted(directory.glob(JOURNALS)) if _points_of(path) == _journal_header(fingerprint)
+    ]
 
 
 def other_journals(directory: Path, fingerprint: str) -> list[Path]:
     """Paths of the journals in a directory that have points and another fingerprint or a damaged head."""
-    known = (b"", _head(fingerprint))
+    known = (b"", _journal_header(fingerprint))
     return [path for path in sorted(directory.glob(JOURNALS)) if _points_of(path) not in known]
 
 
@@ -165,7 +167,7 @@ def kept_sentence(directory: Path, fingerprint: str) -> str:
     return f"; what is done is kept in {directory}" if journals_of(directory, fingerprint) else ""
 
 
-def _head(fingerprint: str) -> bytes:
+def _journal_header(fingerprint: str) -> bytes:
     """First two lines of a journal with this fingerprint."""
     return JOURNAL_HEAD + fingerprint.encode() + b"\n"
 
@@ -179,7 +181,7 @@ def _points_of(path: Path) -> bytes:
         return head if file.read(1) else b""
 
 
-def _sealed(record: bytes) -> bytes:
+def _with_checksum(record: bytes) -> bytes:
     """The bytes of a record followed by its checksum."""
     return record + zlib.crc32(record).to_bytes(CHECKSUM_BYTES, "little")
 
@@ -229,7 +231,7 @@ def _rows(path: Path, layout: Layout, fingerprint: str) -> Iterator[np.ndarray]:
     """Yields the records of a journal with their checksums, each a row of bytes, (records, bytes)."""
     size = layout.record.itemsize + CHECKSUM_BYTES
     with path.open("rb") as file:
-        file.seek(len(_head(fingerprint)))
+        file.seek(len(_journal_header(fingerprint)))
         while block := file.read(max(1, BYTES_A_BLOCK // size) * size):
             raw = np.frombuffer(block, np.uint8)
             yield raw[: len(raw) // size * size].reshape(-1, size)

@@ -92,14 +92,14 @@ class ArcPoint:
         return self.cycle.converged.workspace
 
     @property
-    def at(self) -> float:
+    def coordinate(self) -> float:
         """Coordinate of the continuation parameter: 1/k for a stiffness k, otherwise the value itself."""
         return self.orbit.form.rod.coordinate(self.scale.name)
 
     @property
     def parameter_rate(self) -> float:
         """Derivative of the scaled parameter coordinate by arc length; it changes sign at a fold."""
-        return self.derivatives.rate
+        return self.derivatives.parameter_slope
 
     @property
     def deflection(self) -> float:
@@ -115,7 +115,7 @@ class ArcPoint:
 
     def condition(self, length: float) -> BorderCondition:
         """The condition that the next cycle has the arc length `length` from this cycle."""
-        return BorderCondition.at(self.scale, self.ahead, self.orbit, length)
+        return BorderCondition.at_arc_length(self.scale, self.ahead, self.orbit, length)
 
     def predicted(self, length: float) -> Orbit:
         """Predicted orbit at the arc length `length` ahead, on the cubic through this cycle and the previous
@@ -135,11 +135,11 @@ class ArcPoint:
         # Both tangents on one mesh: the cubic combines their values node by node.
         slope = np.append(carried_change(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])
         step = float(self.ahead @ (self.scale.components(self.orbit) - self.scale.components(last)))
-        rate = float(self.ahead @ self.scale.moved(last, slope))
+        rate = float(self.ahead @ self.scale.directional_derivative(last, slope))
         # Without progress along the tangent the two cycles do not define a cubic: the tangent alone predicts.
         if not (step > 0 and rate > 0):
             return np.array([self.tangent, 0 * slope, 0 * slope])
-        apart = np.append(last.values - self.orbit.values, coordinate - self.at)
+        apart = np.append(last.values - self.orbit.values, coordinate - self.coordinate)
         # Hermite interpolation at the lengths -step and 0, with `slope` rescaled to the same length unit.
         A = (apart + step * self.tangent) * step**-2
         B = (self.tangent - slope / rate) * (0.5 / step)
@@ -153,7 +153,7 @@ def branch_derivatives(found: ConvergedOrbit, scale: Scale, tangent: Array) -> B
     In the result curvature and multiplier rate are 0, to be set by the caller.
     """
     own = Scale.of(found.orbit, scale.name, scale.min_deflection_unit)
-    ahead = own.moved(found.orbit, tangent)
+    ahead = own.directional_derivative(found.orbit, tangent)
     unit = float(np.linalg.norm(ahead))
     return BranchDerivatives(own, tangent / unit, ahead / unit, 0.0, 0.0)
 
@@ -163,12 +163,12 @@ def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix) 
     components (deflection, log period, parameter), (3,); the tangent makes an acute angle with `side`."""
     tangent = matrix.direction(side)
     # A null vector has no sign; the branch must not turn back.
-    return tangent if scale.moved(orbit, tangent) @ side > 0 else -tangent
+    return tangent if scale.directional_derivative(orbit, tangent) @ side > 0 else -tangent
 
 
 def next_point(start: ArcPoint, accuracy: float) -> ArcPoint:
     """The next cycle of a branch after `start`; raises Unsolvable if the shortest step fails."""
-    end, length = advance(partial(_stepped, start, accuracy), start.length, ARC_STEPS)
+    end, length = advance(partial(_step_to_length, start, accuracy), start.length, ARC_STEPS)
     # The cubic through two cycles with tangents errs in the fourth power of the step, hence the order.
     return replace(end.solution, length=ARC_STEPS.next_length(length, end, ARC_STEPS.prediction_order))
 
@@ -176,23 +176,25 @@ def next_point(start: ArcPoint, accuracy: float) -> ArcPoint:
 def cycle_at_length(start: ArcPoint, length: float, accuracy: float) -> ArcPoint:
     """The cycle at the arc length `length` from `start`; raises Unsolvable if no cycle is found, or if the
     prediction error or the angle is so large that the cycle may lie on another branch."""
-    return ARC_STEPS.accepted(_stepped(start, accuracy, length)).solution
+    return ARC_STEPS.accepted(_step_to_length(start, accuracy, length)).solution
 
 
-def _stepped(start: ArcPoint, accuracy: float, length: float) -> StepResult[ArcPoint]:
+def _step_to_length(start: ArcPoint, accuracy: float, length: float) -> StepResult[ArcPoint]:
     """The cycle at the arc length `length` from `start`, with the prediction error and the cosine of the
     angle between the tangents; raises Unsolvable. The next step is given the same length."""
     condition = start.condition(length)
     predicted = start.predicted(length)
     tolerance = newton_tolerance(accuracy)
-    found = condition.solved(predicted, tolerance, start.workspace, matrix_distance(accuracy))
+    found = condition.solve_cycle(predicted, tolerance, start.workspace, matrix_distance(accuracy))
     off = relative_change(predicted, found.orbit.values - predicted.values)
     if start.before is None and off <= ARC_STEPS.max_error:
         off = (
             ARC_STEPS.target_error
         )  # the error of the tangent predictor does not predict the error of the cubic
     tangent = tangent_at(found.orbit, start.scale, start.ahead, bordered_matrix_of(found))
-    cosine = float(start.scale.moved(found.orbit, tangent) @ start.ahead)  # both have unit length
+    cosine = float(
+        start.scale.directional_derivative(found.orbit, tangent) @ start.ahead
+    )  # both have unit length
     return StepResult(
         cycle_with_calibrated_errors(start, found, tangent, length, length, accuracy), off, cosine
     )
@@ -213,7 +215,7 @@ def cycle_with_calibrated_errors(
     """
     cycle = with_calibrated_errors(start.calibration.at_parameter, found, accuracy)
     derivatives = branch_derivatives(found, start.scale, tangent)
-    curvature = (derivatives.rate - start.parameter_rate) / length
+    curvature = (derivatives.parameter_slope - start.parameter_rate) / length
     changed = multiplier_change(cycle.multipliers, start.cycle.multipliers) / length
     return ArcPoint(
         cycle=cycle,

@@ -102,19 +102,19 @@ class BranchCurve:
         """Appends a special point that lies behind the present last cycle."""
         self.special.append(replace(special, after=len(self.points) - 1))
 
-    def add_found(self, between: Sequence[SpecialPoint], explained: bool) -> None:
+    def add_special_points(self, between: Sequence[SpecialPoint], explained: bool) -> None:
         """Appends the special points `between`, which lie between the present last cycle and the next cycle.
         explained: whether these points explain every multiplier that crosses the unit circle there."""
         for special in between:
             self.add(special)
         self.multipliers_explained &= explained
 
-    def judge(self, points: Sequence[BranchPoint]) -> None:
+    def replace_last_cycles(self, points: Sequence[BranchPoint]) -> None:
         """Replaces the last len(points) cycles by `points`, the same cycles with measured or interpolated
         errors."""
         self.points[-len(points) :] = points
 
-    def cut(self, count: int) -> None:
+    def remove_last_cycles(self, count: int) -> None:
         """Removes the last `count` cycles, and all special points behind the first removed cycle."""
         del self.points[-count:]
         self.special[:] = [point for point in self.special if point.after < len(self.points)]

@@ -16,12 +16,12 @@ from ..changes.unstable_modes import Crossing
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import FAILURES, cause_of, solved
 from ..status import PointStatus
-from .beginning import hopf_point
 from .branch_curve import BranchCurve
+from .branch_start import hopf_point
+from .computing_time import fractions_before_branches
 from .following import BranchLimits, follow_asymmetric_branch, follow_branch
 from .special.point import SPECIAL_POINT, EndReason
 from .symmetry import SymmetryBreaking, symmetry_breakings_in
-from .work import fractions_before_branches
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -72,18 +72,18 @@ class BranchDerivatives:
     """Modulus of the derivative of the largest multiplier by arc length."""
 
     @property
-    def rate(self) -> float:
+    def parameter_slope(self) -> float:
         """Derivative of the scaled parameter coordinate by arc length; 0 at a fold."""
         return float(self.ahead[2])
 
-    def slide(self, off: float) -> float:
+    def arc_length_for_change(self, off: float) -> float:
         """Arc length over which the scaled parameter coordinate changes by `off`. Near a fold the parameter
         may never change by `off`; the result there has the modulus 2 sqrt(|off/curvature|), an upper bound of
         the arc length."""
         # Away from a fold the quadratic term changes the linear solution by an eighth at most.
-        if self.rate**2 >= 4 * abs(self.curvature * off):
-            return off / self.rate
-        way = np.copysign(1.0, off * self.rate)
+        if self.parameter_slope**2 >= 4 * abs(self.curvature * off):
+            return off / self.parameter_slope
+        way = np.copysign(1.0, off * self.parameter_slope)
         # At a fold `off` is quadratic in the length s: rate s + curvature s^2/2 = off. This is an upper bound
         # of the root.
         return float(way * 2 * (abs(off) / max(abs(self.curvature), EXPONENTS.least_divisor)) ** 0.5)
@@ -119,18 +119,18 @@ class BranchCalibration:
     def largest(self, accuracy: float) -> float:
         """The error that must not exceed the relative accuracy: the largest error, divided by
         sensitivity/`max_sensitivity` if this ratio exceeds 1."""
-        return self._demanded.errors(accuracy).largest
+        return self._limiting.errors(accuracy).largest
 
-    def planned(self, accuracy: float) -> OrbitMesh:
+    def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
         """The cheapest mesh expected to reach a relative accuracy of the cycle."""
-        return self._demanded.planned(accuracy)
+        return self._limiting.cheapest_mesh(accuracy)
 
-    def planned_for_parameter(self, accuracy: float) -> OrbitMesh:
+    def cheapest_mesh_for_parameter(self, accuracy: float) -> OrbitMesh:
         """The cheapest mesh expected to reach a relative accuracy of the parameter at equal deflection."""
-        return self._of_parameter.planned(accuracy)
+        return self._parameter_only.cheapest_mesh(accuracy)
 
     @cached_property
-    def _demanded(self) -> Calibration:
+    def _limiting(self) -> Calibration:
         """Errors from which the mesh is chosen: errors at equal parameter, reduced as in `largest`, and the
         parameter error."""
         # Errors at equal p are proportional to the slope dy/dp; a steep slope is no defect of the mesh.
@@ -141,7 +141,7 @@ class BranchCalibration:
         return replace(self.at_parameter, space=parts[0], time=parts[1])
 
     @cached_property
-    def _of_parameter(self) -> Calibration:
+    def _parameter_only(self) -> Calibration:
         """A calibration in which every error equals the parameter error at equal deflection."""
         numbers = [PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH]
         parts = [self.at_parameter.space.copy(), self.at_parameter.time.copy()]
@@ -149,7 +149,9 @@ class BranchCalibration:
             part[numbers] = own
         return replace(self.at_parameter, space=parts[0], time=parts[1])
 
-    def towards(self, other: "BranchCalibration", share: float, sensitivity: float) -> "BranchCalibration":
+    def interpolate(
+        self, other: "BranchCalibration", share: float, sensitivity: float
+    ) -> "BranchCalibration":
         """Interpolated errors of a cycle on the branch between two measured cycles with the same mesh. other:
         errors of the second measured cycle. share: fraction of the arc length from the first measured cycle
         to the second at which the interpolated cycle lies. sensitivity: |(p/y) dy/dp| of the interpolated
@@ -186,12 +188,12 @@ def measured_errors(
     mesh = mesh_of(found.orbit)
     orbit = found.orbit
     finer, share = finer_meshes(mesh)
-    condition = BorderCondition.at(derivatives.scale, derivatives.ahead, orbit)
+    condition = BorderCondition.at_arc_length(derivatives.scale, derivatives.ahead, orbit)
     rough = CyclePath(orbit)
     multipliers = multipliers_of(found)[0]
     parts = np.empty((2, MULTIPLIER + 2))
     for part, target in zip(parts, finer, strict=True):
-        fine = condition.on(
+        fine = condition.on_mesh(
             target, found, BRANCH_ERRORS.newton_tolerance_share * accuracy, COMPARISON.matrix_distance
         )
         part[:] = _difference(rough, multipliers, fine, derivatives)
@@ -211,7 +213,7 @@ def _difference(
     orbit = rough.orbit
     scale = derivatives.scale
     deflection, _, off = scale.components(orbit) - scale.components(fine.orbit)
-    length = derivatives.slide(off)
+    length = derivatives.arc_length_for_change(off)
     target = mesh_of(fine.orbit)
     along = np.append(carried_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1])
     # The fine cycle is moved along the branch to the parameter value of the rough cycle.
@@ -220,9 +222,9 @@ def _difference(
         length * derivatives.multiplier_rate
     )
     by_deflection = abs(derivatives.ahead[0])
-    by_parameter = abs(derivatives.rate)
+    by_parameter = abs(derivatives.parameter_slope)
     # Distance of the two branches across their common tangent, in (deflection, parameter).
-    apart = abs(off * derivatives.ahead[0] - deflection * derivatives.rate)
+    apart = abs(off * derivatives.ahead[0] - deflection * derivatives.parameter_slope)
     own = apart / max(by_deflection, BRANCH_ERRORS.min_deflection_share * by_parameter)
     return np.array([*path_differences(rough, CyclePath(slid)), change, own])
 
@@ -237,5 +239,5 @@ def sensitivity_of(path: CyclePath, derivatives: BranchDerivatives) -> float:
     y = path.extrema["tip_y_max"]
     other = ahead.extrema["tip_y_max"]
     return abs((other - y) / (BRANCH_ERRORS.sensitivity_step * y)) / max(
-        abs(derivatives.rate), EXPONENTS.least_divisor
+        abs(derivatives.parameter_slope), EXPONENTS.least_divisor
     )

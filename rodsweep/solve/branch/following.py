@@ -12,10 +12,12 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable
 from .arc import ARC_STEPS, ArcPoint, arc_length_between, cycle_at_length, next_point
-from .beginning import HopfBranchStart, first_cycle, hopf_as_special_point
 from .branch_curve import BranchCurve, BranchEnd
+from .branch_record import BranchRecord, end_point
+from .branch_start import HopfBranchStart, first_cycle, hopf_as_special_point
+from .computing_time import fraction_done
+from .mesh_choice import measurement_due
 from .range_end import cycle_at_range_end, range_end_condition
-from .settling import measurement_due
 from .special.least_stretch import least_stretch_of_cycle
 from .special.locating import special_point_between
 from .special.point import EndReason, SpecialKind, SpecialPoint
@@ -27,8 +29,6 @@ from .symmetry import (
     reaches_symmetric_cycle,
     symmetry_breaking_between,
 )
-from .trail import BranchRecord, end_point
-from .work import fraction_done
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
     hopf = limits.hopfs[number]
     curve = BranchCurve(start_hopf=number)
     curve.add(hopf_as_special_point(hopf))
-    return _followed(curve, limits, lambda: first_cycle(hopf, limits.accuracy, limits.workspace))
+    return _follow_to_end(curve, limits, lambda: first_cycle(hopf, limits.accuracy, limits.workspace))
 
 
 def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> BranchCurve:
@@ -68,22 +68,22 @@ def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> Bra
     def first() -> ArcPoint:
         return first_asymmetric_cycle(breaking, name, limits.accuracy, limits.workspace)
 
-    return _followed(curve, limits, first)
+    return _follow_to_end(curve, limits, first)
 
 
-def _followed(curve: BranchCurve, limits: BranchLimits, first: Callable[[], ArcPoint]) -> BranchCurve:
+def _follow_to_end(curve: BranchCurve, limits: BranchLimits, first: Callable[[], ArcPoint]) -> BranchCurve:
     """The branch `curve` with its first special point, followed to its end. first: solves the first cycle."""
     if limits.max_cycles < 1:
-        curve.end(BranchEnd(_end_beside(curve, EndReason.list_full), complete=False, list_full=True))
+        curve.end(BranchEnd(_end_without_cycle(curve, EndReason.list_full), complete=False, list_full=True))
         return curve
     try:
         start = first()
     except Unsolvable as why:
-        curve.end(BranchEnd(_end_beside(curve, EndReason.no_cycle_found, str(why)), complete=False))
+        curve.end(BranchEnd(_end_without_cycle(curve, EndReason.no_cycle_found, str(why)), complete=False))
         return curve
-    outside = _beyond(start, limits)
+    outside = _passed_range_end(start, limits)
     if outside >= 0:
-        curve.end(BranchEnd(_end_beside(curve, limits.reasons[outside]), complete=True))
+        curve.end(BranchEnd(_end_without_cycle(curve, limits.reasons[outside]), complete=True))
         return curve
     return follow_from_cycle(curve, start, limits)
 
@@ -94,7 +94,7 @@ def follow_from_cycle(curve: BranchCurve, first: ArcPoint, limits: BranchLimits)
     going: ArcPoint | BranchEnd = first
     while isinstance(going, ArcPoint):
         report(partial(_place_on, curve, going, limits))
-        going = _next(trail, going, limits)
+        going = _append_next_cycle(trail, going, limits)
     trail.end(going)
     return curve
 
@@ -105,15 +105,16 @@ def _place_on(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> Solv
     name = start.scale.name
     # The end of the range towards which the parameter moves at present.
     aim = limits.ends[1 if start.ahead[-1] > 0 else 0]
-    value = PARAMETERS[name].value(start.at)
+    value = PARAMETERS[name].value(start.coordinate)
     aim_value = PARAMETERS[name].value(aim)
     words = f"{name} = {value:.5g} on the way to {aim_value:.5g}, {counted(len(curve.points), 'cycle')}"
     return SolvePosition(
-        words, fraction_done(PARAMETERS[name].coordinate(curve.special[0].at), start.at, aim)
+        words,
+        fraction_done(PARAMETERS[name].coordinate(curve.special[0].at), start.coordinate, aim),
     )
 
 
-def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
+def _end_without_cycle(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
     """The end of a branch without cycles, at its first special point. message: cause of a failure."""
     born = curve.special[0]
     return replace(
@@ -126,18 +127,18 @@ def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> Spe
     )
 
 
-def _beyond(point: ArcPoint, limits: BranchLimits) -> int:
+def _passed_range_end(point: ArcPoint, limits: BranchLimits) -> int:
     """0 if a cycle lies below the parameter range, 1 if it lies above, -1 if it lies within."""
     low, high = limits.ends
-    if point.at < low:
+    if point.coordinate < low:
         return 0
-    return 1 if point.at > high else -1
+    return 1 if point.coordinate > high else -1
 
 
-def _next(trail: BranchRecord, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
+def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
     """Returns the next cycle after `start`, or the end of the branch. The special points between the two
     cycles and the next cycle are appended to the branch."""
-    curve = trail.curve
+    curve = record.curve
     if len(curve.points) >= limits.max_cycles:
         return BranchEnd(end_point(start, EndReason.list_full), complete=False, list_full=True)
     try:
@@ -145,7 +146,7 @@ def _next(trail: BranchRecord, start: ArcPoint, limits: BranchLimits) -> ArcPoin
         if _passed_mirror_image(start, end, limits):
             # Beyond this point the branch continues through the mirror images of its cycles.
             return (_end_at_hopf if start.orbit.symmetric else _end_at_breaking)(start, end, limits)
-        outside = _beyond(end, limits)
+        outside = _passed_range_end(end, limits)
         range_end = range_end_condition(start, limits.ends[outside]) if outside >= 0 else None
         if range_end is not None:
             end = cycle_at_range_end(start, end, range_end, limits.accuracy)
@@ -158,8 +159,8 @@ def _next(trail: BranchRecord, start: ArcPoint, limits: BranchLimits) -> ArcPoin
                 special_point_between(SpecialKind.left_the_model, start, end, limits.accuracy), complete=True
             )
         _add_special_points(curve, start, end, limits)
-        trail.append(end)
-        last = trail.settle(range_end) if range_end is not None or measurement_due(end) else end
+        record.append(end)
+        last = record.assign_errors(range_end) if range_end is not None or measurement_due(end) else end
     except Unsolvable as why:
         message = f"no further cycle of the branch is found: {why}"
         return BranchEnd(end_point(start, EndReason.no_cycle_found, message), complete=False)
@@ -176,7 +177,7 @@ def _add_special_points(curve: BranchCurve, start: ArcPoint, end: ArcPoint, limi
     """Appends the special points between the last cycle `start` and the next cycle `end` to a branch."""
 
     step = partial(cycle_at_length, accuracy=limits.accuracy)
-    curve.add_found(*special_points(start, end, step, limits.accuracy))
+    curve.add_special_points(*special_points(start, end, step, limits.accuracy))
 
 
 def _passed_mirror_image(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> bool:
@@ -220,13 +221,13 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
     tangent = start.tangent
     # From d to 0 the parabola p = p0 + k d^2 changes by half as much as its tangent at d.
     share = start.deflection / (2 * start.ahead[0] * start.scale.deflection_unit)
-    at = start.at - share * tangent[-1]
+    at = start.coordinate - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
     rounding = max(BRANCH_END.parameter_tolerance, limits.accuracy)
     for number, hopf in enumerate(limits.hopfs):
-        tolerance = BRANCH_END.extrapolation_tolerance * abs(start.at - hopf.coordinate) + rounding * abs(
-            hopf.coordinate
-        )
+        tolerance = BRANCH_END.extrapolation_tolerance * abs(
+            start.coordinate - hopf.coordinate
+        ) + rounding * abs(hopf.coordinate)
         period_tolerance = BRANCH_END.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
         period_tolerance += BRANCH_END.period_tolerance * hopf.period
         if abs(at - hopf.coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:

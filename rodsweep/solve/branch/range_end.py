@@ -36,6 +36,6 @@ def cycle_at_range_end(
     length = zero_along_step(beyond, ends, segment.length, 0.0, BRANCH_END.range_end_tolerance)
     tolerance = newton_tolerance(accuracy)
     predicted = segment.predicted(length)
-    found = range_end.solved(predicted, tolerance, start.workspace, matrix_distance(accuracy))
+    found = range_end.solve_cycle(predicted, tolerance, start.workspace, matrix_distance(accuracy))
     tangent = tangent_at(found.orbit, scale, start.ahead, bordered_matrix_of(found))
     return cycle_with_calibrated_errors(start, found, tangent, length, length, accuracy)

@@ -24,11 +24,11 @@ from ..orbit.orbit_mesh import stages_for, wanted_mesh
 from ..orbit.symmetry import NO_SYMMETRY
 from ..point import Unsolvable
 from .arc import ARC_STEPS, ArcPoint, arc_length_between
-from .beginning import ALONG_DEFLECTION
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import BorderedMatrix
 from .bordered.scale import Scale, deflection_of
-from .settling import first_measured_cycle
+from .branch_start import ALONG_DEFLECTION
+from .mesh_choice import first_measured_cycle
 from .special.point import SpecialKind, SpecialPoint
 
 
@@ -167,8 +167,8 @@ def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: f
     """
     scale = whole.scale
     border = np.sign(change) * ALONG_DEFLECTION
-    condition = BorderCondition.at(scale, border, start)
-    rough = condition.solved(start, REFINEMENT.nearby_tolerance, whole.workspace)
+    condition = BorderCondition.at_arc_length(scale, border, start)
+    rough = condition.solve_cycle(start, REFINEMENT.nearby_tolerance, whole.workspace)
     near = rough.orbit
     expected = asymmetry(start)
     found = float(asymmetry(near) @ expected) / float(expected @ expected)
@@ -176,7 +176,7 @@ def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: f
         raise Unsolvable("Newton's method converged to a cycle without the predicted asymmetry")
     aim = max(accuracy, REFINEMENT.first_accuracy)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
-    first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
+    first = condition.on_mesh(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
     return first_measured_cycle(first, scale, border, abs(change) / scale.deflection_unit, accuracy)
 
 
@@ -235,13 +235,13 @@ def _nearest(start: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float
     if falls <= 0:
         return -1
     # Parameter and period are quadratic in the asymmetry.
-    period, at = (orbit.period, start.at) + float(present @ present) / falls / 2 * start.tangent[-2:]
+    period, at = (orbit.period, start.coordinate) + float(present @ present) / falls / 2 * start.tangent[-2:]
     for which, breaking in enumerate(known):
         symmetric = breaking.point.orbit
         if symmetric is None:
             continue
         place = symmetric.form.rod.coordinate(start.scale.name)
-        tolerance = BRANCH_END.extrapolation_tolerance * abs(start.at - place)
+        tolerance = BRANCH_END.extrapolation_tolerance * abs(start.coordinate - place)
         tolerance += max(BRANCH_END.parameter_tolerance, accuracy) * abs(place)
         period_tolerance = BRANCH_END.extrapolation_tolerance * abs(start.orbit.period - symmetric.period)
         period_tolerance += max(BRANCH_END.period_tolerance, accuracy) * symmetric.period

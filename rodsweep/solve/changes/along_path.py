@@ -121,7 +121,7 @@ def transitions(
         ends = found.searched(start, stop)
         counts = ModeCounter(problem, found.gaps, certify)
         # Without load the operator is self-adjoint and negative: no mode is unstable, no count is needed.
-        unstable = 0 if path.name == "F" and start == 0 else counts.first(*ends, found.crossings)
+        unstable = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, found.crossings)
         oscillates = tracer.anchor(path.variable(ends[0])).oscillates
         ordered = sorted(changes + found.crossings, key=lambda c: c.at)
         crossings, at_end = counts.along(ordered, ends, unstable)
@@ -154,7 +154,7 @@ def pair_crossings(
     counts = ModeCounter(problem, found.gaps, certify)
     ends = found.searched(start, stop)
     ordered = sorted(found.crossings, key=lambda c: c.at)
-    unstable = 0 if path.name == "F" and start == 0 else counts.first(*ends, ordered)
+    unstable = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, ordered)
     crossings, at_end = counts.along(ordered, ends, unstable)
     return _with_range(_counted(counts, unstable, crossings, at_end), found, (start, stop))
 

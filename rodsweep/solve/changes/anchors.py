@@ -47,27 +47,29 @@ class Anchor:
         """Whether the leading eigenvalues are a complex pair."""
         return bool(self.w[0].imag != 0)
 
-    def partner(self) -> tuple[float, float] | None:
+    def squared_pair_difference(self) -> tuple[float, float] | None:
         """((w1 - w2)^2 time^2, its derivative by p) for the two leading eigenvalues w1, w2; None if w1 is
         real and w2 is not."""
         if self.oscillates:
-            gap, slope = self._times_time(2 * self.w[0].imag, 2 * self.slope[0].imag)
+            gap, slope = self._in_units_of_time(2 * self.w[0].imag, 2 * self.slope[0].imag)
             # (w1 - w2)^2 is negative for a pair, positive for two real eigenvalues, and smooth through 0.
             return -(gap**2), -2 * gap * slope
         if self.w[1].imag != 0:
             return None
-        gap, slope = self._times_time((self.w[0] - self.w[1]).real, (self.slope[0] - self.slope[1]).real)
+        gap, slope = self._in_units_of_time(
+            (self.w[0] - self.w[1]).real, (self.slope[0] - self.slope[1]).real
+        )
         return gap**2, 2 * gap * slope
 
-    def rival(self) -> tuple[float, float] | None:
+    def leading_growth_gap(self) -> tuple[float, float] | None:
         """(Re(w1 - w) time, its derivative by p), where w is the first complex eigenvalue if w1 is real, and
         the first real eigenvalue if w1 is complex; None if no such w is among the leading eigenvalues."""
         for w, slope in zip(self.w[1:], self.slope[1:], strict=True):
             if (w.imag != 0) != self.oscillates:
-                return self._times_time((self.w[0] - w).real, (self.slope[0] - slope).real)
+                return self._in_units_of_time((self.w[0] - w).real, (self.slope[0] - slope).real)
         return None
 
-    def _times_time(self, value: float, slope: float) -> tuple[float, float]:
+    def _in_units_of_time(self, value: float, slope: float) -> tuple[float, float]:
         """(value time, its derivative by p) of a quantity `value` with derivative `slope`; the factor `time`
         preserves zeros and signs."""
         return float(value * self.time), float(slope * self.time + value * self.lengthening)
@@ -105,7 +107,10 @@ def next_anchor(left: Anchor, right: Anchor) -> tuple[float, bool]:
     The leading eigenvalue must be real at both anchors, or a pair at both anchors.
     """
     h = right.p - left.p
-    for a, b in ((left.partner(), right.partner()), (left.rival(), right.rival())):
+    for a, b in (
+        (left.squared_pair_difference(), right.squared_pair_difference()),
+        (left.leading_growth_gap(), right.leading_growth_gap()),
+    ):
         if a is None and b is None:
             continue
         if a is None or b is None:

@@ -184,8 +184,8 @@ class Tracer:
         """The double eigenvalue between an anchor `pair` with a leading pair and an anchor `real` with two
         real leading eigenvalues; None if Newton's method does not find it.
         """
-        below = pair.partner()
-        above = real.partner()
+        below = pair.squared_pair_difference()
+        above = real.squared_pair_difference()
         width = abs(pair.p - real.p)
         if below is None or above is None:
             return None

@@ -80,7 +80,7 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
 
     def search() -> Thresholds:
         found = transitions(Path(rod, "F"), 0.0, end, request.certify, request.crossings)
-        return judged(found, request.accuracy, request.certify, request.crossings)
+        return thresholds_with_status(found, request.accuracy, request.certify, request.crossings)
 
     return solved(search, lambda cause: empty_thresholds(ThresholdStatus.failed, end, cause))
 
@@ -92,7 +92,7 @@ def empty_thresholds(status: ThresholdStatus, end: float, message: str = "") -> 
     return Thresholds(status=status, transitions=found, end=end, message=message)
 
 
-def judged(found: Transitions, accuracy: float, certify: bool, most: int) -> Thresholds:
+def thresholds_with_status(found: Transitions, accuracy: float, certify: bool, most: int) -> Thresholds:
     """The result of a search with its status: the first of the problems tested below, or ok. accuracy,
     certify: as requested. most: maximum number of changes in the list."""
     status = ThresholdStatus.ok

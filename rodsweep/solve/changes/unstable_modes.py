@@ -98,29 +98,29 @@ class ModeCounter:
         self.certify = certify
         self.doubts: list[str] = []
 
-    def at(self, value: float) -> int:
+    def count_at(self, value: float) -> int:
         """Number of unstable modes at the parameter value `value`, by the winding number; -1 if undecided."""
         number = self.problem.count(0.0, self.path.variable(value)).number
         return -1 if number is None else number
 
-    def amid(self, a: float, b: float) -> int:
+    def count_between(self, a: float, b: float) -> int:
         """Number of unstable modes at a position between the parameter values a and b, by the winding number;
         -1 if the count is undecided at all positions tried."""
         known = self.problem.counted_amid(*sorted((self.path.variable(a), self.path.variable(b))))
         if known is not None:
             return known
         for share in CHANGE_COUNTS.places:
-            number = self.at(a + share * (b - a))
+            number = self.count_at(a + share * (b - a))
             if number >= 0:
                 return number
         return -1
 
-    def first(self, start: float, stop: float, hopfs: list[Crossing]) -> int:
+    def count_at_start(self, start: float, stop: float, hopfs: list[Crossing]) -> int:
         """Number of unstable modes at `start`, or, if that count is undecided, at a position before the first
         of `hopfs`, of `gaps` and of `stop`; -1 if undecided."""
-        number = self.at(start)
+        number = self.count_at(start)
         until = min([stop, *(c.at for c in hopfs), *(a for a, _ in self.gaps)])
-        return number if number >= 0 else self.amid(start, until)
+        return number if number >= 0 else self.count_between(start, until)
 
     def along(
         self, ordered: list[Crossing], ends: tuple[float, float], unstable: int
@@ -155,7 +155,7 @@ class ModeCounter:
             return unstable
         if b - a <= CHANGE_COUNTS.too_close * abs(b):
             return -1 if inside else unstable
-        counted = self.amid(a, b)
+        counted = self.count_between(a, b)
         if inside or unstable < 0:
             return counted
         if counted != unstable:

@@ -30,7 +30,7 @@ class BoundaryProblem(Protocol[Curve]):
     def distance(self, curve: Curve, seed: int) -> float:
         """Distance of the seed point `seed` from a curve, in units of the length of a row."""
 
-    def same(self, one: Curve, other: Curve) -> bool:
+    def are_identical(self, one: Curve, other: Curve) -> bool:
         """Whether the curves `one` and `other` are identical."""
 
 
@@ -90,6 +90,6 @@ def trace_boundaries(
         for i, off in search.distances.items():
             if off > agree:
                 search.distances[i] = min(off, problem.distance(curve, i))
-        if not any(problem.same(curve, other) for other in search.curves):
+        if not any(problem.are_identical(curve, other) for other in search.curves):
             search.curves.append(curve)
     return search

@@ -17,7 +17,7 @@ import numpy as np
 
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
-from ..motion.held_tip import equilibrium_at_tip
+from ..motion.fixed_tip import equilibrium_at_tip
 from ..motion.integrator import forget_integrators
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import Unsolvable, solved

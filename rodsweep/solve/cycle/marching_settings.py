@@ -1,4 +1,4 @@
-"""Settings for a limit cycle by time integration alone (`marched`)."""
+"""Settings for a limit cycle by time integration alone (`by_integration`)."""
 
 from dataclasses import dataclass
 

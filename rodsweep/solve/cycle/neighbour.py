@@ -130,11 +130,11 @@ def _next_mesh(
     fits = found.errors.largest <= NEIGHBOUR.max_error_of_same_mesh * accuracy
     if known.reach and not fits:
         # Scaled errors that are too large are measured on this mesh before another mesh is planned.
-        return present, known.outdated
+        return present, known.rates_only
     share = inf if not fits else _share_of_cost(found, before, name)
-    planned = known.planned(accuracy) if share else present
+    planned = known.cheapest_mesh(accuracy) if share else present
     if share and planned.cost <= share * present.cost:
-        return planned, known.outdated
+        return planned, known.rates_only
     return present, known
 
 
@@ -148,7 +148,7 @@ def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -
         return NEIGHBOUR.max_new_mesh_cost_when_calibrated
     step = relative_parameter_difference(before.predictor.orbit.form, found.orbit.form, name)
     # A mesh whose errors must be measured anyway may as well be another one.
-    return 0.0 if found.calibration.lasts(step) else NEIGHBOUR.max_new_mesh_cost
+    return 0.0 if found.calibration.is_valid_after(step) else NEIGHBOUR.max_new_mesh_cost
 
 
 def cycle_from_neighbour(
@@ -166,10 +166,10 @@ def cycle_from_neighbour(
             "the rods have different unknowns: Omega is an unknown only at small rotational drag"
         )
     found = _converged(neighbour, form, name, accuracy, workspace)
-    known = neighbour.calibration.at(
+    known = neighbour.calibration.scaled_on_chain(
         found.orbit, relative_parameter_difference(neighbour.predictor.orbit.form, form, name)
     )
-    if known.holds:
+    if known.is_valid:
         cycle = with_calibrated_errors(known, found, accuracy)
         if cycle.errors.largest <= accuracy:
             return cycle

@@ -9,7 +9,7 @@ from enum import IntEnum
 from math import nan
 
 from ...model.rod import Rod
-from ..hopf.hopf_beside import SubcriticalHopf, subcritical_hopf_beside
+from ..hopf.subcritical_hopf import SubcriticalHopf, subcritical_hopf_near
 from ..point import FAILURES
 from ..status import PointStatus
 from .status import CycleStatus
@@ -37,7 +37,7 @@ def second_state(rod: Rod, status: PointStatus, stable: bool | None) -> tuple[Se
     if status != CycleStatus.straight:
         return SecondState.straight, nan, "the straight rod is stable as well"
     try:
-        beside = subcritical_hopf_beside(rod)
+        beside = subcritical_hopf_near(rod)
     except FAILURES:
         return SecondState.not_known, nan, ""
     if beside is None:

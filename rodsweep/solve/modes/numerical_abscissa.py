@@ -8,7 +8,7 @@ import numpy as np
 from ...determinant.arm.hull.hull import hull_of
 from ...determinant.certificate.box import eigenvalue_box
 from ...discretization.straight.dense_form import AnyPencil, dense_form
-from ...discretization.straight.slaving import tip_layer_ratio
+from ...discretization.straight.tip_layer import tip_layer_ratio
 from ...model.adjoint import hermitian_tip_coefficients
 from ...model.rod import Rod
 from .propagator import shifted_inverse

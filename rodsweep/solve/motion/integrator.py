@@ -18,8 +18,8 @@ from ...discretization.beam import Beam
 from ...discretization.elements.mesh import Mesh
 from ...discretization.state_layout import plane_layout
 from ..backend.c_functions import call
-from ..backend.kept import LruPool
 from ..backend.petsc import PETSc
+from ..backend.solver_pools import LruPool
 from .callbacks import Workspace
 from .step_record import end_step, take_steps
 from .time_scheme import TimeScheme
@@ -189,7 +189,7 @@ class Integrator:
         return named.get(reason, RunEnding.too_many_steps)
 
     @property
-    def kept_bytes(self) -> int:
+    def memory_bytes(self) -> int:
         """Estimate of the memory in bytes: the dense Jacobian, its LU factors and a copy."""
         return 3 * 8 * self.vector.size**2
 

@@ -8,7 +8,7 @@ from ...discretization.straight.arm_pencil import ArmPencil
 from ...discretization.straight.arm_resolution import ArmMesh
 from ...discretization.straight.pencil import PencilMatrices, fields_of_vectors, finite_eigenvalues
 from ...model.rod import Rod
-from ..backend.kept import LruPool
+from ..backend.solver_pools import LruPool
 from .shift_invert import KRYLOV, LoadedPencil, ShiftInvertSolver
 
 

@@ -15,8 +15,8 @@ from ...determinant.certificate.winding_number import EigenvalueCount
 from ...determinant.roots.roots import Roots
 from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.compiled.settings import CompiledSettings
-from ..backend.kept import forget_all
 from ..backend.petsc import PETSC_ERRORS
+from ..backend.solver_pools import destroy_pooled_solvers
 from ..point import cause_of
 from .problem import TransverseProblem
 
@@ -111,7 +111,7 @@ def candidates_on(
         raw = solver.solve(problem.rod, problem.shift, wanted, tight)
         kept = solver.vectors(len(raw)) if vectors else None
     except PETSC_ERRORS as error:
-        forget_all()
+        destroy_pooled_solvers()
         failure = cause_of(error)
     kept_roots = problem.roots(raw, CANDIDATES.max_waves_per_node * mesh.elements * mesh.order)
     kept = kept[:, kept_roots.indices] if kept is not None else None

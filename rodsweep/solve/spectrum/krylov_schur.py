@@ -11,7 +11,7 @@ from ...discretization.elements.resolution import Resolution
 from ...discretization.straight.pencil import Pencil, assemble_pencil, fields_of_vectors, finite_eigenvalues
 from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
-from ..backend.kept import LruPool
+from ..backend.solver_pools import LruPool
 from .shift_invert import KRYLOV, LoadedPencil, ShiftInvertSolver
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from ...discretization.elements.resolution import RESOLUTION, mesh_accuracy
 from ...model.rod import Rod
-from ..backend.kept import forget_all
+from ..backend.solver_pools import destroy_pooled_solvers
 from ..point import solved
 from .candidates import Candidates, CountComparison, candidates_on, compare_with_count
 from .problem import TransverseProblem, transverse_problem
@@ -42,7 +42,7 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """The leading `request.modes` eigenvalues of a rod; a failure is returned as a status, never raised."""
 
     def failed(cause: str) -> Spectrum:
-        forget_all()
+        destroy_pooled_solvers()
         return failed_spectrum(SpectrumStatus.failed, request, cause)
 
     if rod.uniform and not rod.standard:

@@ -207,7 +207,7 @@ class ShiftInvertSolver(ABC):
         return X
 
     @property
-    def kept_bytes(self) -> int:
+    def memory_bytes(self) -> int:
         """Estimated memory of a solver, in bytes: matrices with factors, Krylov space and projected matrices.
 
         Destroying a solver frees 0.5 to 0.9 of this estimate, measured with up to 640 Krylov vectors; pencils

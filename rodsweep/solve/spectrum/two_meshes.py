@@ -16,7 +16,7 @@ from ...arrays import Array, Complex
 from ...discretization.elements.resolution import RESOLUTION, mesh_accuracy
 from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.rod import Rod
-from ..backend.kept import forget_all
+from ..backend.solver_pools import destroy_pooled_solvers
 from ..point import Unsolvable, solved
 from .problem import TransverseProblem, transverse_problem
 from .spectrum import Spectrum, SpectrumRequest, failed_spectrum, vectors_on_nodes
@@ -57,7 +57,7 @@ def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """
 
     def failed(cause: str) -> Spectrum:
-        forget_all()
+        destroy_pooled_solvers()
         return failed_spectrum(SpectrumStatus.failed, request, cause)
 
     return solved(lambda: _solve(rod, request), failed)

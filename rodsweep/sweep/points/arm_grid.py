@@ -43,10 +43,10 @@ def grid_of_arms(
     profile of all arms. Raises ValueError if the rod model applies to no point.
     """
     arms, statuses = zip(*(_arm_or_status(section, values) for values in section.sections()), strict=True)
-    loads = section.given[section.load_axis].array() if section.load_axis else np.zeros(1)
+    loads = section.quantity_axes[section.load_axis].array() if section.load_axis else np.zeros(1)
     crossed = dict(zip(beside, np.meshgrid(*beside.values(), indexing="ij"), strict=True))
     shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
-    own = (*all_but("F", NONLINEAR_PARAMETERS), *section.tapering)
+    own = (*all_but("F", NONLINEAR_PARAMETERS), *section.cone_parameters)
     table = {name: _of_each(arms, methodcaller("parameter", name)) for name in own}
     units = {name: _of_each(arms, attrgetter(name)) for name in ARM_UNITS}
     forces = _forces(section, arms, crossed.get("taper"), flutter)
@@ -59,7 +59,7 @@ def grid_of_arms(
         if section.load_axis in RELATIVE:
             units[section.load] = table["F"] * units[SCALE_OF[section.load]]
     table |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
-    builds = tuple(arm.build if arm else STANDARD for arm in arms) if section.varies else ()
+    builds = tuple(arm.build if arm else STANDARD for arm in arms) if section.is_nonuniform else ()
     if "F" in table:
         shares = build.relative_crushing_forces(table.get("taper", np.ones(1)))
         if builds:
@@ -68,7 +68,7 @@ def grid_of_arms(
         coverage[(coverage == SLENDER) & crushed] = CRUSHED
     if (coverage != SLENDER).all():
         _refuse_all(section, beside, bool((coverage == NO_FLUTTER).any()), forces)
-    axes = {name: section.given[name].array() for name in section.several}
+    axes = {name: section.quantity_axes[name].array() for name in section.varying_quantities}
     over = axes | {name: column for name, column in beside.items() if len(column) > 1}
     columns = tuple(np.broadcast_to(table[name], shape).ravel() for name in names)
     at_points = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
@@ -89,7 +89,7 @@ def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[Sl
     quantities of the arm in SI units, by name.
     """
     try:
-        return section.made(values), SLENDER
+        return section.arm_of(values), SLENDER
     except UncoveredArm as error:
         return None, error.status
 
@@ -147,7 +147,7 @@ def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bo
     """Raises ValueError with the reason why the rod model applies to no point. no_flutter: whether some arm
     does not flutter.
     """
-    section.made(section.firsts, loaded=True)
+    section.arm_of(section.first_values, loaded=True)
     for force in forces.ravel():
         if force.failure:
             raise ValueError(f"parameters.arm.{section.load}: {force.failure}")

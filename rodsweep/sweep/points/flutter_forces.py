@@ -60,7 +60,7 @@ def _arms(section: ArmSection) -> Iterable[SlenderArm]:
     """Yields the arms of a config section to which the rod model applies, without load."""
     for values in section.sections():
         try:
-            yield section.made(values)
+            yield section.arm_of(values)
         except UncoveredArm:
             continue
         except ValueError as error:

@@ -26,7 +26,7 @@ def grid_size(config: Config) -> int:
     """Number of points of a grid of parameters, without computing the values on the axes; 0 for a list or a
     grid over an arm's quantities.
     """
-    if config.parameters.is_list or config.parameters.over:
+    if config.parameters.is_list or config.parameters.arm_axes:
         return 0
     return math.prod(config.parameters.axes[name].size for name in config.names)
 
@@ -38,13 +38,13 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
     they are computed here.
     """
     parameters = config.parameters
-    for name, value in parameters.numbers.items():
+    for name, value in parameters.constant_parameters.items():
         refuse_outside(PARAMETERS[name].allowed, name, (value,))
     if parameters.points is not None:
         columns = read_points(directory / parameters.points, config.names, config.build)
         return Points(config.names, columns, is_grid=False)
     axes = {name: axis.array() for name, axis in parameters.axes.items()}
-    if parameters.arm is not None and parameters.over:
+    if parameters.arm is not None and parameters.arm_axes:
         for name, column in axes.items():
             refuse_outside(PARAMETERS[name].allowed, name, column)
         try:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...config.axes import words
-from ...config.values import cell_number, short
+from ...config.values import cell_number, short_repr
 from ...errors import InputError
 from ...model.material.build import STANDARD, Build
 from ...model.parameters import PARAMETERS
@@ -58,7 +58,7 @@ def _header_fault(header: list[str]) -> str:
     A header without parameter names is not quoted: it may be anything.
     """
     if set(header) & set(PARAMETERS) and all(cell.isidentifier() for cell in header):
-        return f"the header is {short(','.join(header))}"
+        return f"the header is {short_repr(','.join(header))}"
     return "the first line names no parameter"
 
 

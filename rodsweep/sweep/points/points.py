@@ -63,7 +63,7 @@ class Points:
         return self.by_name if self.is_grid else self.over
 
     @property
-    def moved(self) -> tuple[str, ...]:
+    def varying_parameters(self) -> tuple[str, ...]:
         """Name of the only parameter that varies along each axis; "" for an axis along which several
         parameters or no parameters vary.
         """

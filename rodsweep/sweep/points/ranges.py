@@ -67,7 +67,7 @@ class Shard:
     def __str__(self) -> str:
         return f"{self.number}/{self.of}"
 
-    def part(self, todo: Sequence[IndexRange], units: int) -> list[IndexRange]:
+    def ranges_of_shard(self, todo: Sequence[IndexRange], units: int) -> list[IndexRange]:
         """Ranges of the units in `todo` that belong to this shard.
 
         Blocks of the sweep's `units` units are assigned to the shards in turn.

@@ -118,7 +118,7 @@ def sharing_equal_rods(solver: Solver, points: Points, layout: Layout) -> Solver
             return solver.record(index, outcome.outcome) | {SECONDS.name: 0.0}
         return solver.record(index, outcome)
 
-    return solver.within(once, record=record)
+    return solver.with_wrapper(once, record=record)
 
 
 @dataclass(slots=True)
@@ -158,7 +158,7 @@ class SkippingSolver:
     def solver(self) -> Solver:
         """The solver of all points, with or without a rod."""
         statuses = (*self.inner.statuses, *NoRodStatus)
-        return self.inner.within(self._solve, self._together, record=self._record, statuses=statuses)
+        return self.inner.with_wrapper(self._solve, self._together, record=self._record, statuses=statuses)
 
     def _solve(self, index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
         if self.coverage[index] == SLENDER:

@@ -139,7 +139,7 @@ class ArmValidity:
         at_rest = AT_REST_STATUSES.get(self.task, ())
         self.searched = [int(each) for each in statuses if each.succeeded or each.name in at_rest]
         """Values of the statuses at which the solver missed no motion."""
-        sections = [axis.size for name, axis in self.section.given.items() if name in ALL_BUT_LOAD]
+        sections = [axis.size for name, axis in self.section.quantity_axes.items() if name in ALL_BUT_LOAD]
         self.each = points.count // int(np.prod(sections)) if points.over else points.count
         """Number of consecutive points with the same arm."""
         self.arm = lru_cache(CACHED_ARM_COUNT)(_arm_of_number(self.section))
@@ -232,10 +232,10 @@ def _arm_of_number(section: ArmSection) -> Callable[[int], SlenderArm]:
     Arms are numbered in row-major order of the axes of the config's section `arm`. The axes are evaluated
     once, because their evaluation takes longer than a point.
     """
-    axes = {name: axis.array() for name, axis in section.given.items() if name in ALL_BUT_LOAD}
+    axes = {name: axis.array() for name, axis in section.quantity_axes.items() if name in ALL_BUT_LOAD}
 
     def arm(number: int) -> SlenderArm:
         places = np.unravel_index(number, [len(column) for column in axes.values()])
-        return section.made({name: float(axes[name][i]) for name, i in zip(axes, places, strict=True)})
+        return section.arm_of({name: float(axes[name][i]) for name, i in zip(axes, places, strict=True)})
 
     return arm

@@ -61,14 +61,14 @@ class DiagramCurves:
             self.special[number] = row.special
         return row
 
-    def starts(self, units: "SpecialBoundaries", wanted: Sequence[int]) -> "dict[int, Any]":
+    def initial_data(self, units: "SpecialBoundaries", wanted: Sequence[int]) -> "dict[int, Any]":
         """Special points cached on this rank, by number of the row, for the rows on which the half curves
-        `wanted` start.
+        `units_to_solve` start.
         """
         rows = {units.row_of(unit) for unit in wanted}
         return {row: self.special[row] for row in rows if row in self.special}
 
-    def take(self, starts: "Mapping[int, Any]") -> None:
+    def add_initial_data(self, starts: "Mapping[int, Any]") -> None:
         """Caches special points of rows solved on other ranks. starts: special points by number of the
         row.
         """
@@ -123,8 +123,8 @@ class DiagramCurves:
         criticalities = self._criticality(plane, found) if options.criticality or options.cycles else []
         if options.criticality:
             variables += criticality_record(criticalities, names, self.task.config.gamma1)
-        if options.third is not None:
-            variables += self._bautin_curves(plane, criticalities, *options.third)
+        if options.bautin_parameter is not None:
+            variables += self._bautin_curves(plane, criticalities, *options.bautin_parameter)
         if units is not None:
             curves = with_hopf_ends(
                 units.curves(results), plane, criticalities, unstored_specials(view, self._finite)

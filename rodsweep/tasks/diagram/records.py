@@ -21,7 +21,7 @@ from ...results.layouts.phase_diagram import (
     cycle_curve_variables,
     cycle_variables,
 )
-from ...results.layouts.variables import Filled, Variable, listed, recorded
+from ...results.layouts.variables import Filled, Variable, outcome_values, value_lists
 
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
@@ -117,7 +117,7 @@ def _columns(
     rows: for each item along the dimension, the objects whose attributes are the values.
     """
     along = [v for v in declared.values() if v.extra == (dimension,) and v.name.startswith(prefix)]
-    return listed(along, [recorded(along, *row, prefix=prefix) for row in rows])
+    return value_lists(along, [outcome_values(along, *row, prefix=prefix) for row in rows])
 
 
 def _filled(declared: Mapping[str, Variable], values: Mapping[str, Any]) -> list[Filled]:
@@ -142,8 +142,8 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     """
     variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL,)]
     own = {f"cycle_special_{line}": "at", "cycle_special_tip_y_max_error": "size_error"}
-    rows = [recorded(variables, point, prefix="cycle_special_", names=own) for point in result.special]
-    values: dict[str, Any] = listed(variables, rows, MAX_CYCLE_SPECIAL)
+    rows = [outcome_values(variables, point, prefix="cycle_special_", names=own) for point in result.special]
+    values: dict[str, Any] = value_lists(variables, rows, MAX_CYCLE_SPECIAL)
     values |= {"cycle_special_count": len(result.special), "stable_states": result.stable_states}
     return values | {"seconds": result.seconds, "status": int(result.status)}
 

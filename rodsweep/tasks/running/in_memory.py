@@ -66,7 +66,7 @@ def view_in_memory(
         plan.layout.parameters,
         {MISSING: "missing", **dict(plan.flags)},
         journalled=0,
-        over=plan.layout.over,
+        over=plan.layout.arm_axes,
         typed={variable.name: variable.typed for variable, _ in plan.quantities if variable.typed},
     )
 

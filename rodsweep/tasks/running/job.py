@@ -209,4 +209,4 @@ def attributes_of(job: Job, statuses: Sequence[PointStatus], kernels: str) -> di
         provenance.KERNELS_ATTRIBUTE: kernels,
     }
     versions = {f"{name}_version": value for name, value in petsc.versions().items()}
-    return attributes | job.config.parameters.numbers | versions | provenance.provenance()
+    return attributes | job.config.parameters.constant_parameters | versions | provenance.provenance()

@@ -11,12 +11,11 @@ from surveyed import survey_only
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.rod import Rod
-from rodsweep.solve import further_kernels
-from rodsweep.solve.branch import beginning as begun
-from rodsweep.solve.branch import branches, following
-from rodsweep.solve.branch.beginning import first_cycle, hopf_point
+from rodsweep.solve import seldom_used_kernels
+from rodsweep.solve.branch import branch_start, branches, following
 from rodsweep.solve.branch.bordered import matrix
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
+from rodsweep.solve.branch.branch_start import first_cycle, hopf_point
 from rodsweep.solve.branch.branches import BranchRequest, BranchStatus, solve_branches
 from rodsweep.solve.branch.following import BranchLimits, follow_branch
 from rodsweep.solve.branch.special.augmented.functions import pair_nearest_unit_circle
@@ -97,9 +96,9 @@ def test_a_fold_needs_no_compilation_beyond_that_of_the_installation(monkeypatch
         called.append(tuple(map(numba.typeof, arguments)))
         return reduced_variations(*arguments)
 
-    for module in (further_kernels, matrix):
+    for module in (seldom_used_kernels, matrix):
         monkeypatch.setattr(module, "reduced_variations", recorded)
-    further_kernels.warm_up()
+    seldom_used_kernels.warm_up()
     (compiled,) = called
     (curve,) = solve_branches(SHORT, BranchRequest("F", 0.0, 200.0, 1e-4, True, 500, 50)).curves
     assert "fold" in kinds(curve)
@@ -192,9 +191,9 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
         SpecialKind.torus, PlaneAxis("F", 150.0, 220.0), PlaneAxis("k2", 97.0, 103.0), NewtonWorkspace(), -1.0
     ).followed(torus, 100.0)
     assert end is CurveEnd.edge
-    assert points[0].at == pytest.approx(torus.at, abs=points[0].error + torus.error)
+    assert points[0].parameter == pytest.approx(torus.at, abs=points[0].error + torus.error)
     for point in points:
-        assert point.error <= 1e-7 * point.at
+        assert point.error <= 1e-7 * point.parameter
         # By the eigenvalues of a matrix of its own, where the curve has the eigenvector of one near by.
         pair = pair_nearest_unit_circle(BorderedMatrix(point.orbit, point.scale, NewtonWorkspace()))
         assert abs(pair) == pytest.approx(1.0, abs=1e-7)
@@ -242,7 +241,7 @@ def test_branch_that_cannot_be_followed_says_where_and_why(monkeypatch):
     made = following.next_point
 
     def lost(here, accuracy):
-        if here.at > 75:
+        if here.coordinate > 75:
             raise Unsolvable("there is no cycle near on the branch")
         return made(here, accuracy)
 
@@ -310,9 +309,10 @@ def test_a_fold_close_to_crushing_is_located_from_both_ends_of_its_branch():
 
 def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkeypatch):
     """The sixth Hopf point of a rod that is soft in shear; the mesh's own one lies beyond."""
-    smallest = begun.BEGINNING.first_amplitudes[-1]
-    monkeypatch.setattr(begun, "BEGINNING", replace(begun.BEGINNING, first_amplitudes=(smallest,)))
-    monkeypatch.setattr(begun, "first_measured_cycle", lambda first, *others: first.orbit)
+    smallest = branch_start.BRANCH_START.first_amplitudes[-1]
+    beginning = replace(branch_start.BRANCH_START, first_amplitudes=(smallest,))
+    monkeypatch.setattr(branch_start, "BRANCH_START", beginning)
+    monkeypatch.setattr(branch_start, "first_measured_cycle", lambda first, *others: first.orbit)
     path = Path(Rod(F=159.0, k1=1597.4434592561727, k2=19.205853519589944, gamma3=2.45e-8, gamma1=0.72), "F")
     (crossing,) = pair_crossings(path, 159.0, 161.0, False).crossings
     orbit = first_cycle(hopf_point(path, crossing), 2.0785686460875202e-05, NewtonWorkspace())

@@ -16,9 +16,9 @@ from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc import cycle_at_length, next_point
-from rodsweep.solve.branch.beginning import first_cycle, hopf_point
+from rodsweep.solve.branch.branch_start import first_cycle, hopf_point
+from rodsweep.solve.branch.mesh_choice import measurement_due, solve_on_sufficient_mesh
 from rodsweep.solve.branch.range_end import cycle_at_range_end, range_end_condition
-from rodsweep.solve.branch.settling import measurement_due, solve_on_sufficient_mesh
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.branch.special.points import special_points
 from rodsweep.solve.changes.along_path import pair_crossings
@@ -75,7 +75,7 @@ def branch_of_this(rod, kind, F):
         for point in special_points(here, there, partial(cycle_at_length, accuracy=ACCURACY), ACCURACY)[0]:
             if point.kind == kind:
                 special = point
-        if special is not None and (there.at - F) * (here.at - F) <= 0:
+        if special is not None and (there.coordinate - F) * (here.coordinate - F) <= 0:
             edge = range_end_condition(here, F)
             return special, solve_on_sufficient_mesh(
                 cycle_at_range_end(here, there, edge, ACCURACY), ACCURACY, edge

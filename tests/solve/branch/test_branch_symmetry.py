@@ -14,8 +14,8 @@ from rodsweep.post.branch_curves import StoredBranch, StoredSpecialPoint
 from rodsweep.post.summary.branch import _ends
 from rodsweep.solve.branch import following
 from rodsweep.solve.branch.arc import next_point
-from rodsweep.solve.branch.beginning import hopf_point
 from rodsweep.solve.branch.branch_curve import BranchCurve
+from rodsweep.solve.branch.branch_start import hopf_point
 from rodsweep.solve.branch.branches import BranchesOfRod, BranchStatus
 from rodsweep.solve.branch.following import (
     BranchLimits,
@@ -23,7 +23,7 @@ from rodsweep.solve.branch.following import (
     follow_branch,
     follow_from_cycle,
 )
-from rodsweep.solve.branch.settling import solve_on_sufficient_mesh
+from rodsweep.solve.branch.mesh_choice import solve_on_sufficient_mesh
 from rodsweep.solve.branch.special import locating
 from rodsweep.solve.branch.special.point import SPECIAL_POINT, EndReason, SpecialKind
 from rodsweep.solve.branch.special.points import special_kinds_between

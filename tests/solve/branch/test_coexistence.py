@@ -154,11 +154,13 @@ def test_rise_along_a_branch_is_known_with_the_factors_of_a_cycle_near_by():
     (fold,) = [point for point in row.special if point.kind == SpecialKind.fold]
     scale = Scale.of(fold.orbit, "F", 0.0)
     own = BorderedMatrix(fold.orbit, scale, NewtonWorkspace())
-    ahead = scale.moved(fold.orbit, own.direction(np.array([1.0, 0.0, 0.0])))
+    ahead = scale.directional_derivative(fold.orbit, own.direction(np.array([1.0, 0.0, 0.0])))
     border = ahead / np.linalg.norm(ahead)
     truth = FoldFunction(own, border, small=False).value(fold.orbit)
     other = (
-        BorderCondition.at(scale, border, fold.orbit, 1e-4).solved(fold.orbit, 1e-10, NewtonWorkspace()).orbit
+        BorderCondition.at_arc_length(scale, border, fold.orbit, 1e-4)
+        .solve_cycle(fold.orbit, 1e-10, NewtonWorkspace())
+        .orbit
     )
     function = FoldFunction(BorderedMatrix(other, scale, NewtonWorkspace()), border, small=False)
     before = abs(function.value(fold.orbit) - truth)
@@ -227,7 +229,7 @@ def test_another_axial_drag_is_another_config(tmp_path):
     marks = []
     for more in ("", ", gamma1: 1", ", gamma1: 2"):
         path.write_text(DIAGRAM.replace("k2: 1.0e4", "k2: 1.0e4" + more.replace(", ", "\n  ")))
-        marks.append(make_job(path, ()).config.meaning)
+        marks.append(make_job(path, ()).config.settings_of_results)
     assert marks[0] == marks[1] != marks[2]
 
 
@@ -265,10 +267,10 @@ def test_accuracy_of_cycles_makes_another_config_only_with_cycles(tmp_path):
         "cycles: true, cycle_accuracy: 1e-7",
     ):
         path.write_text(DIAGRAM.replace("cycles: true", options))
-        meanings.append(make_job(path, ()).config.meaning)
+        meanings.append(make_job(path, ()).config.settings_of_results)
     assert meanings[0] == meanings[1] != meanings[2]
     path.write_text(DIAGRAM.replace("cycles: true", "cycles: false"))
-    assert "cycle_accuracy" not in make_job(path, ()).config.meaning["phase_diagram"]
+    assert "cycle_accuracy" not in make_job(path, ()).config.settings_of_results["phase_diagram"]
 
 
 def test_axial_drag_without_cycles_is_refused(tmp_path):

@@ -25,10 +25,10 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
+from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.cycle import CycleRequest
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
-from rodsweep.solve.cycle.marched import solve_by_integration
 from rodsweep.solve.cycle.neighbour import Neighbour
 from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh
 from rodsweep.solve.hopf.criticality import CriticalityRequest, solve_criticality

@@ -11,8 +11,8 @@ from surveyed import RODS
 
 from rodsweep.discretization.elements.periodic import time_derivative
 from rodsweep.model.rod import Rod
+from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.cycle.marched import solve_by_integration
 from rodsweep.solve.cycle.status import MarchedStatus
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 

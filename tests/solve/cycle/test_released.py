@@ -10,7 +10,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import Cycle, CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.transient.motion_mesh import motion_mesh
 from rodsweep.solve.cycle.transient.shape_trace import SHAPE_TRACE
-from rodsweep.solve.motion.held_tip import equilibrium_at_tip
+from rodsweep.solve.motion.fixed_tip import equilibrium_at_tip
 from rodsweep.solve.motion.integrator import integrator
 from rodsweep.solve.motion.time_scheme import TimeScheme
 

@@ -9,7 +9,7 @@ from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.limit_cycle import SECOND_STATES
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.second_state import SecondState, second_state
-from rodsweep.solve.hopf.hopf_beside import subcritical_hopf_beside
+from rodsweep.solve.hopf.subcritical_hopf import subcritical_hopf_near
 
 FIG_2C = (200.0, 1e4, 1e-4)
 SUBCRITICAL = (100.0, 1e4, 0.1)
@@ -26,25 +26,25 @@ def test_words_have_the_numbers_of_the_solver():
     [(FIG_2C, 45.0), (SUBCRITICAL, 20.0), (FIG_2C, 0.0), (FIG_2C, -5.0), ((1e4, 1e4, 1e-4), 37.0)],
 )
 def test_rod_below_a_supercritical_hopf_point_or_far_from_any_has_no_second_state(rod, F):
-    assert subcritical_hopf_beside(rod_of(F, *rod)) is None
+    assert subcritical_hopf_near(rod_of(F, *rod)) is None
     state, at, message = second_state(rod_of(F, *rod), CycleStatus.straight, True)
     assert (state, message) == (SecondState.none_known, "")
     assert np.isnan(at)
 
 
 def test_rod_below_a_subcritical_hopf_point_has_its_unstable_cycle():
-    beside = subcritical_hopf_beside(rod_of(HOPF * (1 - 1e-4), *SUBCRITICAL))
+    beside = subcritical_hopf_near(rod_of(HOPF * (1 - 1e-4), *SUBCRITICAL))
     assert pytest.approx(HOPF, rel=1e-8) == beside.F
     assert beside.unstable_y == pytest.approx(A * 1e-2, rel=1e-3)
 
 
 def test_rod_above_a_subcritical_restabilization_has_its_unstable_cycle():
-    assert pytest.approx(155.600159298791, rel=1e-10) == subcritical_hopf_beside(rod_of(180.0, *FIG_2C)).F
+    assert pytest.approx(155.600159298791, rel=1e-10) == subcritical_hopf_near(rod_of(180.0, *FIG_2C)).F
 
 
 def test_the_nearer_of_two_subcritical_hopf_points_is_named():
     """At k1 = 100 the rod flutters from 43.02 to 68.44; its second Hopf point is subcritical too."""
-    assert pytest.approx(68.4391325, rel=1e-8) == subcritical_hopf_beside(rod_of(69.0, *SUBCRITICAL)).F
+    assert pytest.approx(68.4391325, rel=1e-8) == subcritical_hopf_near(rod_of(69.0, *SUBCRITICAL)).F
 
 
 @pytest.mark.parametrize(

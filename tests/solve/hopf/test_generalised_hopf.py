@@ -410,7 +410,7 @@ def test_the_default_drag_asks_for_the_same_and_an_arm_has_its_own(tmp_path):
     meanings = []
     for text in (DIAGRAM, given, given.replace("gamma1: 1", "gamma1: 0.5")):
         path.write_text(text)
-        meanings.append(make_job(path, ()).config.meaning)
+        meanings.append(make_job(path, ()).config.settings_of_results)
     assert meanings[0] == meanings[1] != meanings[2]
     path.write_text(
         "task: phase_diagram\nparameters:\n  arm: {length: 10 cm, radius: 5 mm, young: 100 kPa, "

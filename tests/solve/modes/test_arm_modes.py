@@ -9,7 +9,7 @@ from scipy.linalg import expm
 from surveyed import RODS
 
 from rodsweep.discretization.straight.dense_form import dense_form
-from rodsweep.discretization.straight.slaving import tip_layer_ratio
+from rodsweep.discretization.straight.tip_layer import tip_layer_ratio
 from rodsweep.discretization.straight.transverse_mesh import mesh_for, pencil_on
 from rodsweep.model.adjoint import tip_layer_factor
 from rodsweep.model.material.build import Build

@@ -160,7 +160,9 @@ def test_steps_keep_their_digits_however_much_perturbations_grow(period, growth)
         (tangent, 0 * right),
     ):
         assert np.abs(A @ change - sides).max() < 1e-9 * (np.abs(A) @ np.abs(change)).max()
-    assert border @ matrix.scale.moved(orbit, matrix.step(border, 0.1)) == pytest.approx(0.1, rel=1e-9)
+    assert border @ matrix.scale.directional_derivative(orbit, matrix.step(border, 0.1)) == pytest.approx(
+        0.1, rel=1e-9
+    )
     expected = np.linalg.solve(np.vstack([A, tangent]), np.append(right, 0.0))
     found = matrix.step(border, 0.1)
     found = found - tangent * (tangent @ found) / (tangent @ tangent)

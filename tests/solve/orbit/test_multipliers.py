@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.state_layout import plane_layout
-from rodsweep.solve.orbit.matrix.legs import Legs
 from rodsweep.solve.orbit.matrix.multipliers import MULTIPLIERS, compressed, nonzero_eigenvalues
+from rodsweep.solve.orbit.matrix.shooting_intervals import ShootingIntervals
 from rodsweep.solve.orbit.newton import multiplier_change
 from rodsweep.solve.orbit.symmetry import REFLECTION
 
@@ -64,7 +64,7 @@ def test_multipliers_over_legs_keep_their_digits_below_a_product_of_1e15():
         for before, growth, after in zip(bases, growths, turned, strict=True)
     ]
     orbit = SimpleNamespace(symmetry=REFLECTION, form=SimpleNamespace(layout=layout))
-    found = np.sort(Legs(tuple(range(legs + 1)), np.array(maps)).multipliers(orbit).real)
+    found = np.sort(ShootingIntervals(tuple(range(legs + 1)), np.array(maps)).multipliers(orbit).real)
     assert found == pytest.approx(np.sort(growths.prod(axis=0)), rel=1e-8)
 
 

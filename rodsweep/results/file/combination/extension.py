@@ -106,8 +106,8 @@ def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
 
     Raises InputError, naming the difference, if the plan lacks a point or a result of the stored file.
     """
-    theirs = config_of(header.config).meaning
-    ours = config_of(plan.config).meaning
+    theirs = config_of(header.config).settings_of_results
+    ours = config_of(plan.config).settings_of_results
     task = theirs["task"]
     _refuse(header, config_difference(task, ours["task"], "task"))
     line_grew = False
@@ -125,7 +125,7 @@ def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
         if name not in ours[task] or ours[task][name] == value:
             continue
         increase = INCREASES[task].get(name)
-        if increase is None or not increase.is_more(value, ours[task][name]):
+        if increase is None or not increase.requests_more_data(value, ours[task][name]):
             _refuse(header, config_difference(value, ours[task][name], f"{task}.{name}"))
         else:
             grown.append((increase, value))
@@ -159,7 +159,7 @@ def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPointMap:
         places[axis] = _same_from_the_start(places[axis], new.shape[axis], plan.chains.upward)
     if plan.stretches:
         axis = plan.stretches.axis
-        before = stretches_along_longest_axis(old.shape, old.moved)
+        before = stretches_along_longest_axis(old.shape, old.varying_parameters)
         same = _same_stretches(places[axis], new.shape[axis])
         places[axis] = np.where(same & (before is not None and before.axis == axis), places[axis], -1)
     return StoredPointMap(old.shape, new.shape, tuple(places))

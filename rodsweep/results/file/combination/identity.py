@@ -1,7 +1,7 @@
 """Comparison of configs: whether two configs request the same results, and a text on their difference.
 
-Configs are compared by `Config.meaning`. The notation of an axis, the title, the name of a list of points,
-and unused options are not compared.
+Configs are compared by `Config.settings_of_results`. The notation of an axis, the title, the name of a list
+of points, and unused options are not compared.
 """
 
 import json
@@ -26,9 +26,9 @@ def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
     columns: `Points.identity`, (n,) each. Raises ValueError for an invalid config.
     """
     asked = config_of(config)
-    meant = {"meaning": asked.meaning, "grid": not asked.parameters.is_list}
-    if asked.parameters.over:
-        meant["over"] = asked.parameters.over
+    meant = {"meaning": asked.settings_of_results, "grid": not asked.parameters.is_list}
+    if asked.parameters.arm_axes:
+        meant["over"] = asked.parameters.arm_axes
     digest = sha256(json.dumps(meant, sort_keys=True).encode())
     for column in columns:
         digest.update(len(column).to_bytes(8, "little"))
@@ -55,15 +55,15 @@ def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
     return (
         config_difference(kinds[0], kinds[1], "parameters")
         or config_difference(written[0], written[1], "parameters")
-        or config_difference(configs[0].meaning, configs[1].meaning)
+        or config_difference(configs[0].settings_of_results, configs[1].settings_of_results)
         or "the points listed in parameters.points differ"
     )
 
 
 def _kind(parameters: Axes) -> str:
     """Text stating whether the points of a config are a grid, a grid over an arm's quantities, or a list."""
-    if parameters.over:
-        return f"a grid over {' and '.join(parameters.over)}"
+    if parameters.arm_axes:
+        return f"a grid over {' and '.join(parameters.arm_axes)}"
     return "a list of points" if parameters.is_list else "a grid"
 
 

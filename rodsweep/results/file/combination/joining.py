@@ -114,10 +114,10 @@ def _place(points: Points, index: int) -> str:
 def joined_file_of(sources: Sequence[ResultHeader], planner: Planner) -> JoinedFile:
     """The `JoinedFile` of sources with different points; raises InputError if the files cannot be joined."""
     first, *others = sources
-    meant = config_of(first.config).meaning
+    meant = config_of(first.config).settings_of_results
     grids = [parameters_of(source.path, source.layout) for source in sources]
     for other, points in zip(others, grids[1:], strict=True):
-        theirs = config_of(other.config).meaning
+        theirs = config_of(other.config).settings_of_results
         apart = config_difference(
             meant | {"together": None}, theirs | {"together": None}, places=(first.path.name, other.path.name)
         )

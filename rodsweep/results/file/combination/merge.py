@@ -42,13 +42,15 @@ def merge(output: Path, paths: Sequence[Path], planner: Planner) -> MergeResult:
     points in a journal, and for grids that do not form a larger grid; EnvironmentIncomplete if the disk
     fails.
     """
-    sources = _opened(paths)
+    sources = _read_headers(paths)
     with disk_refusals(output):
         exchange = FileReplacement(output)
     try:
         with disk_refusals(output, lambda: "; the shards are untouched"):
             if output.exists():  # the file may have appeared while another run held the lock
-                sources = _opened([output, *(path for path in paths if not os.path.samefile(output, path))])
+                sources = _read_headers(
+                    [output, *(path for path in paths if not os.path.samefile(output, path))]
+                )
             if all(_is_continued(sources[0], source) for source in sources):
                 return _merge(exchange, sources, planner)
             return _join(exchange, joined_file_of(sources, planner))
@@ -95,7 +97,7 @@ def _finished(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResu
     )
 
 
-def _opened(paths: Sequence[Path]) -> list[ResultHeader]:
+def _read_headers(paths: Sequence[Path]) -> list[ResultHeader]:
     """Headers of the result files at `paths`; raises InputError for a file with points in its journal."""
     files = []
     for path in paths:

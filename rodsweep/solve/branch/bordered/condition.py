@@ -29,7 +29,9 @@ class BorderCondition:
     value: float
 
     @classmethod
-    def at(cls, scale: Scale, border: Array, orbit: Orbit, length: float = 0.0) -> "BorderCondition":
+    def at_arc_length(
+        cls, scale: Scale, border: Array, orbit: Orbit, length: float = 0.0
+    ) -> "BorderCondition":
         """The condition that a new orbit lies farther along `border`, (3,), than the given `orbit`, by the
         arc length `length`."""
         return cls(scale, border, float(border @ scale.components(orbit)) + length)
@@ -38,7 +40,7 @@ class BorderCondition:
         """Residual of the condition at an orbit: `value` minus `border` . `scale.components(orbit)`."""
         return self.value - float(self.border @ self.scale.components(orbit))
 
-    def solved(
+    def solve_cycle(
         self, orbit: Orbit, tolerance: float, workspace: NewtonWorkspace, distance: float = np.inf
     ) -> ConvergedOrbit:
         """The cycle near `orbit` that fulfils the condition, by Newton's method; raises Unsolvable.
@@ -73,12 +75,12 @@ class BorderCondition:
                 last = change
         raise Unsolvable(f"Newton's method on the branch does not converge; its last step is {change:.0e}")
 
-    def on(
+    def on_mesh(
         self, mesh: OrbitMesh, found: ConvergedOrbit, tolerance: float, distance: float = np.inf
     ) -> ConvergedOrbit:
         """The cycle `found` solved again on the mesh `mesh` under this condition; raises Unsolvable.
-        tolerance, distance: as in `solved`."""
-        return self.solved(mesh.carry(found.orbit), tolerance, found.workspace, distance)
+        tolerance, distance: as in `solve_cycle`."""
+        return self.solve_cycle(mesh.carry(found.orbit), tolerance, found.workspace, distance)
 
 
 def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:

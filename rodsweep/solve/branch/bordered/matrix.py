@@ -9,7 +9,6 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ...orbit.matrix.elimination import eliminate
-from ...orbit.matrix.legs import legs_of
 from ...orbit.matrix.linearisation import (
     change_along,
     jump_of,
@@ -20,6 +19,7 @@ from ...orbit.matrix.linearisation import (
 )
 from ...orbit.matrix.phase import phase, phase_change, phase_row
 from ...orbit.matrix.right_sides import right_sides
+from ...orbit.matrix.shooting_intervals import shooting_intervals_of
 from ...orbit.matrix.substitution import substitute
 from ...orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from ...orbit.newton import ConvergedOrbit
@@ -48,12 +48,12 @@ class BorderedMatrix:
         self._memory = MatrixMemory(workspace, K, s, n)
         right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
         ends = eliminate(orbit.points, V, orbit.duration, p, self._memory.factors, self._columns)
-        self._legs = legs_of(self._memory.factors, p.mass)
-        m = len(self._legs.maps)
+        self._shooting_intervals = shooting_intervals_of(self._memory.factors, p.mass)
+        m = len(self._shooting_intervals.maps)
         self._matrix = np.zeros((m * n + 2, m * n + 2))
         for j in range(m):
             rows = slice(j * n, (j + 1) * n)
-            self._matrix[rows, rows] = self._legs.maps[j]
+            self._matrix[rows, rows] = self._shooting_intervals.maps[j]
             # A leg ends where the next leg starts; the last leg ends at the symmetric image of the first
             # start.
             if j < m - 1:
@@ -62,7 +62,7 @@ class BorderedMatrix:
                 self._matrix[rows, :n] -= p.symmetry
         for place, c in ((-2, 0), (-1, 2)):
             own = slice(c, c + 1)
-            self._matrix[:-2, place] = -self.closing(np.zeros(n), self._columns[:, :, own], ends[own])
+            self._matrix[:-2, place] = -self.border_sides(np.zeros(n), self._columns[:, :, own], ends[own])
         row = np.empty(n)
         phase_row(orbit.start, p.rod, p.matrices, row)
         self._matrix[-2, :n] = row
@@ -73,7 +73,7 @@ class BorderedMatrix:
     def step(self, border: Array, length: float) -> Array:
         """Newton's step at the orbit, (N + 1,), under the condition that `border` . `Scale.components`,
         border: (3,), grows by `length`."""
-        return self.solved(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
+        return self.solve(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
 
     def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
         """Approximate Newton's step, (N + 1,), at a neighbouring `orbit` with a similar parameter, from the
@@ -82,14 +82,14 @@ class BorderedMatrix:
         p = self.orbit.semidiscrete
         columns, ends = reduced_residuals(orbit.points, orbit.duration, orbit.semidiscrete, p, factors)
         right = np.append(self._jump(orbit, columns, ends), length)
-        return self.solved(border, right, columns[:, :, 0], 1.0)
+        return self.solve(border, right, columns[:, :, 0], 1.0)
 
     def direction(self, border: Array) -> Array:
         """Tangent of the branch, (N + 1,), of unit arc length, at an acute angle to `border`, (3,)."""
         # The null vector of all rows except the last, normalised by the border; residuals are not needed.
         right = np.append(np.zeros(len(self._right)), 1.0)
-        change = self.solved(border, right, self._columns[:, :, 1], 0.0)
-        return change / np.linalg.norm(self.scale.moved(self.orbit, change))
+        change = self.solve(border, right, self._columns[:, :, 1], 0.0)
+        return change / np.linalg.norm(self.scale.directional_derivative(self.orbit, change))
 
     def residual_variations(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
         """Returns (stages, ends): derivatives of the eliminated stage residuals, (K, s, m, n), and of the end
@@ -123,9 +123,9 @@ class BorderedMatrix:
     def partial_multipliers(self) -> Complex:
         """Multipliers over the solved time interval, (rank,): eigenvalues of the propagator, composed with
         the reflection for a symmetric orbit."""
-        if len(self._legs.maps) == 1:
+        if len(self._shooting_intervals.maps) == 1:
             return partial_multipliers(self.propagator, self.orbit)
-        return self._legs.multipliers(self.orbit)
+        return self._shooting_intervals.multipliers(self.orbit)
 
     def multipliers(self) -> Complex:
         """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
@@ -143,7 +143,7 @@ class BorderedMatrix:
         matrix[-1, -1] = 1.0
         return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._columns[:, :, 1], 0.0)
 
-    def closing(self, jump: Array, columns: Array, ends: Array) -> Array:
+    def border_sides(self, jump: Array, columns: Array, ends: Array) -> Array:
         """Right-hand sides, (m n,), of the closing conditions: each leg (interval of multiple shooting) ends
         where the next leg starts.
 
@@ -151,18 +151,18 @@ class BorderedMatrix:
         (K, s, 1, n). ends: change of the last leg's end caused by `columns` for a fixed start, (1, n).
         """
         p = self.orbit.semidiscrete
-        sides = -self._legs.ends(self._memory.factors, columns, ends, p)[:, 0]
+        sides = -self._shooting_intervals.ends(self._memory.factors, columns, ends, p)[:, 0]
         sides[-1] += jump
         return sides.ravel()
 
     def _jump(self, orbit: Orbit, columns: Array, ends: Array) -> Array:
         """Right-hand sides of the closing conditions of an orbit and of the phase condition, (m n + 1,);
-        columns, ends: as in `closing`."""
+        columns, ends: as in `border_sides`."""
         p = orbit.semidiscrete
-        right = self.closing(jump_of(orbit.points, p), columns, ends)
+        right = self.border_sides(jump_of(orbit.points, p), columns, ends)
         return np.append(right, -phase(orbit.start, p.rod, p.matrices))
 
-    def solved(self, border: Array, right: Array, sides: Array, share: float) -> Array:
+    def solve(self, border: Array, right: Array, sides: Array, share: float) -> Array:
         """Solution of the bordered linear system, (N + 1,). border: last row, in components (deflection, log
         period, parameter), (3,).
 
@@ -184,7 +184,7 @@ class BorderedMatrix:
         columns = np.ascontiguousarray(stages[:, :, None])
         starts = found[:-2].reshape(-1, n).copy()
         factors = self._memory.factors
-        out = self._legs.substituted(factors, starts, columns, self.orbit.semidiscrete)
+        out = self._shooting_intervals.substituted(factors, starts, columns, self.orbit.semidiscrete)
         return np.concatenate([found[:n], out.ravel(), found[-2:]])
 
 

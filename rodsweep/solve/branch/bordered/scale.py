@@ -53,7 +53,7 @@ class Scale:
         at = orbit.form.rod.coordinate(self.name) / self.coordinate_unit
         return np.array([deflection, np.log(orbit.period), at])
 
-    def moved(self, orbit: Orbit, change: Array) -> Array:
+    def directional_derivative(self, orbit: Orbit, change: Array) -> Array:
         """Derivative of `components` at an orbit, (3,), along a change of orbit values and parameter
         coordinate, (N + 1,)."""
         deflection = float(deflection_row(orbit) @ change[: orbit.form.unknowns]) / self.deflection_unit

@@ -48,18 +48,18 @@ class SpecialBoundaries:
     rows: PlaneAxis
     special: Sequence[RowSpecialPoint]
 
-    def wanted(self, results: Mapping[int, Arrays]) -> list[int]:
+    def units_to_solve(self, results: Mapping[int, Arrays]) -> list[int]:
         """Units to solve next: first the units needed now, then units that may be needed later; empty if the
         curves are complete. results: results of the solved units."""
         needed: list[int] = []
         likely: list[int] = []
         for curves, search in self._searches(results):
             needed += search.missing_units
-            likely += curves.likely(search)
+            likely += curves.possible_units(search)
         return needed + likely if needed else []
 
     def curves(self, results: Mapping[int, Arrays]) -> Boundaries[CycleCurve]:
-        """All curves, from the results of the units of work; valid if `wanted(results)` is empty."""
+        """All curves, from the results of the units of work; valid if `units_to_solve(results)` is empty."""
         found = [search.boundaries for _, search in self._searches(results)]
         curves = tuple(traced.curve for one in found for traced in one.curves)
         return Boundaries(curves, max(one.agreement for one in found), sum(one.untraced for one in found))
@@ -88,7 +88,7 @@ class SpecialBoundaries:
         """Index of the row on which the curve of a unit starts."""
         return self.special[unit // 2].number
 
-    def where(self, unit: int) -> str:
+    def unit_label(self, unit: int) -> str:
         """Text for a unit in the progress display: kind of the curve, starting row and direction."""
         place, behind = divmod(unit, 2)
         one = self.special[place]
@@ -129,7 +129,7 @@ class _CurvesOfKind:
         on = half is not None and half.end is not CurveEnd.closed
         return [behind] if on and behind not in self.results else []
 
-    def likely(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
+    def possible_units(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
         """Units that may be needed later: of all special points on the rows of the needed units."""
         rows = {self.special[unit // 2].row for unit in search.missing_units}
         beside = sorted((i for i in search.open_seeds if self.special[i].row in rows), key=self._place)
@@ -156,9 +156,9 @@ class _CurvesOfKind:
         near = curve.distances.get(seed, math.inf)
         lies_off = near > CURVE_IDENTITY.max_distance
         # Between its last cycle and the Hopf point a curve is extrapolated: no cycle is solved there.
-        return 0.0 if lies_off and self._vanishes(curve.curve, self.special[seed]) else near
+        return 0.0 if lies_off and self._lies_on_extrapolation(curve.curve, self.special[seed]) else near
 
-    def same(self, one: _TracedCurve, other: _TracedCurve) -> bool:
+    def are_identical(self, one: _TracedCurve, other: _TracedCurve) -> bool:
         """Whether two curves are identical: their ends coincide within a tolerance."""
         pairs = zip(self._ends(one.curve), self._ends(other.curve), strict=True)
         distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
@@ -174,7 +174,7 @@ class _CurvesOfKind:
         order."""
         return sorted((p.place, self.line.scaled(p.at)) for p in (curve.points[0], curve.points[-1]))
 
-    def _vanishes(self, curve: CycleCurve, one: RowSpecialPoint) -> bool:
+    def _lies_on_extrapolation(self, curve: CycleCurve, one: RowSpecialPoint) -> bool:
         """Whether a special point lies on the extrapolation of a curve to a Hopf point."""
         if one.tip_y_max >= CYCLE_CURVES.min_amplitude:
             return False
@@ -227,23 +227,23 @@ def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: R
         return math.inf
     place = limits.rows.scaled(one.row)
     best = math.inf
-    at = limits.line.scaled(one.at)
     for a, b in zip(points[:-1], points[1:], strict=True):
-        if not min(a.place, b.place) <= place <= max(a.place, b.place) or not _near(limits, a, b, one):
+        low, high = sorted((a.row_coordinate, b.row_coordinate))
+        if not low <= place <= high or not _near(limits, a, b, one):
             continue
         try:
             crossing = limits.on_row(a, b, place)
         except Unsolvable:
             continue
         if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY.max_period_difference:
-            best = min(best, abs(limits.line.scaled(crossing.at) - at))
+            best = min(best, abs(limits.line.scaled(crossing.parameter) - limits.line.scaled(one.at)))
     return best
 
 
 def _near(limits: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
     """Whether the special point `one` may lie on a curve between its successive points `a` and `b`."""
     x = limits.line.scaled(one.at)
-    ends = sorted(limits.line.scaled(p.at) for p in (a, b))
+    ends = sorted(limits.line.scaled(p.parameter) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
     on_line = ends[0] - CURVE_IDENTITY.max_chord_distance <= x <= ends[1] + CURVE_IDENTITY.max_chord_distance
     ratio = 1 + CURVE_IDENTITY.max_period_change

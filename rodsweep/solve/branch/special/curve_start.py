@@ -11,11 +11,11 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit_mesh import mesh_of, stages_for
 from ...point import Unsolvable
 from ..arc import tangent_at
-from ..beginning import ALONG_DEFLECTION, BEGINNING
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import Scale, deflection_of
+from ..branch_start import ALONG_DEFLECTION, BRANCH_START
 from .family import CycleFamily
-from .on_curve import ACROSS_CURVE, SolvedPoint
+from .on_curve import CURVE_SECANT, SolvedPoint
 from .point import SpecialPoint
 
 
@@ -51,16 +51,21 @@ def first_point_of_curve(
         mesh,
         order=ceil(CURVE_START.order_share * mesh.order),
         intervals=ceil(CURVE_START.interval_share * mesh.intervals),
-        stages=stages_for(ACROSS_CURVE.accuracy),
+        stages=stages_for(CURVE_SECANT.accuracy),
     )
     orbit = rough.carry(orbit)
-    least = abs(deflection_of(orbit)) * BEGINNING.min_deflection_amplitude / special.tip_y_max
+    least = abs(deflection_of(orbit)) * BRANCH_START.min_deflection_amplitude / special.tip_y_max
     scale = Scale.of(orbit, line, least)
     matrix = BorderedMatrix(orbit, scale, workspace)
-    ahead = scale.moved(orbit, tangent_at(orbit, scale, ALONG_DEFLECTION, matrix))
+    ahead = scale.directional_derivative(orbit, tangent_at(orbit, scale, ALONG_DEFLECTION, matrix))
     place = rows.scaled(row)
     start = SolvedPoint(
-        orbit=orbit, scale=scale, ahead=ahead / np.linalg.norm(ahead), place=place, at=special.at, row=row
+        orbit=orbit,
+        scale=scale,
+        ahead=ahead / np.linalg.norm(ahead),
+        row_coordinate=place,
+        parameter=special.at,
+        row_parameter=row,
     )
-    family = CycleFamily.about(special.kind, rows, start, workspace)
-    return family.point(orbit, place, np.array([1.0, 0.0]))
+    family = CycleFamily.near_point(special.kind, rows, start, workspace)
+    return family.correct_with_error(orbit, place, np.array([1.0, 0.0]))

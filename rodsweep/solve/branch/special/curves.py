@@ -107,9 +107,8 @@ class SpecialCurveProblem:
 
     def _report(self, points: Sequence[SolvedPoint]) -> None:
         """Reports the last point of a curve to the progress display."""
-        report(
-            lambda: SolvePosition(f"{self.rows.name} = {points[-1].row:.5g}, {counted(len(points), 'point')}")
-        )
+        words = f"{self.rows.name} = {points[-1].row_parameter:.5g}, {counted(len(points), 'point')}"
+        report(lambda: SolvePosition(words))
 
     def step(self, behind: Sequence[SolvedPoint], length: float) -> StepResult[SolvedPoint]:
         """The point one step beyond the last point, with the prediction error and the cosine of the angle
@@ -117,19 +116,17 @@ class SpecialCurveProblem:
         last = behind[-1]
         if len(behind) == 1:
             start = last.orbit
-            place = last.place + self.side * length
+            place = last.row_coordinate + self.side * length
             across = ALONG_BRANCH
             slope = 0.0
             rates = None
         else:
             start, place = self._predicted(behind, self._step_before_crushing(behind, length))
-            way = np.append(
-                last.scale.components(start) - last.scale.components(last.orbit), place - last.place
-            )
-            across = last.across(way)
+            change = last.scale.components(start) - last.scale.components(last.orbit)
+            across = last.normal(np.append(change, place - last.row_coordinate))
             slope = chord_slope(*behind[-2:])
-            rates = last.rates
-        point = self._family(last).point(start, place, across, slope, rates, last)
+            rates = last.normal_derivatives
+        point = self._family(last).correct_with_error(start, place, across, slope, rates, last)
         mesh = mesh_of(point.orbit)
         predicted = start if mesh == mesh_of(start) else mesh.carry(start)
         # Prediction and point can be compared only on the same mesh.
@@ -141,7 +138,7 @@ class SpecialCurveProblem:
         return StepResult(point, off, float(one @ other / np.linalg.norm(one) / np.linalg.norm(other)))
 
     def _family(self, point: SolvedPoint) -> CycleFamily:
-        return CycleFamily.about(self.kind, self.rows, point, self.workspace)
+        return CycleFamily.near_point(self.kind, self.rows, point, self.workspace)
 
     def _predicted(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
         """(orbit, rows' axis coordinate) predicted a step beyond the last point; raises Unsolvable."""
@@ -158,7 +155,8 @@ class SpecialCurveProblem:
         def distance(longest: float) -> float:
             weights = lagrange_weights(lengths, longest)
             rod = known[-1].orbit.form.rod
-            at, place = (float(np.dot(weights, [getattr(p, n) for p in known])) for n in ("at", "place"))
+            at = float(np.dot(weights, [point.parameter for point in known]))
+            place = float(np.dot(weights, [point.row_coordinate for point in known]))
             values = {"F": rod.F, "k1": rod.k1, self.line.name: at, self.rows.name: self.rows.value(place)}
             return 1 - CYCLE_CURVES.crushing_margin / 2 - values["F"] / values["k1"]
 
@@ -171,15 +169,16 @@ class SpecialCurveProblem:
     ) -> tuple[Orbit, float]:
         """(orbit, rows' axis coordinate): sums over `points` with weights, (points,); raises Unsolvable."""
         values = np.dot(weights, [mesh.carry(point.orbit).values for point in points])
-        at, place = (float(np.dot(weights, [getattr(p, n) for p in points])) for n in ("at", "place"))
+        at = float(np.dot(weights, [point.parameter for point in points]))
+        place = float(np.dot(weights, [point.row_coordinate for point in points]))
         changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
         return orbit_with_parameters(replace(mesh.carry(points[-1].orbit), values=values), changed), place
 
     def margins(self, point: SolvedPoint) -> Array:
         """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges and from
         `crushing_margin`, smallest h1, and largest tip y minus `min_amplitude`."""
-        x = self.line.scaled(point.at)
-        y = point.place
+        x = self.line.scaled(point.parameter)
+        y = point.row_coordinate
         rod = point.orbit.form.rod
         crushing = 1 - CYCLE_CURVES.crushing_margin - rod.F / rod.k1
         stretch = least_stretch_of_orbit(point.orbit)
@@ -203,7 +202,7 @@ class SpecialCurveProblem:
                 point = self._where_zero(inner, outer, margin, ends)
         except Unsolvable:
             return None
-        return replace(point, errors=outer.errors and outer.errors.carried)
+        return replace(point, errors=outer.errors and outer.errors.for_next_point)
 
     def _where_zero(
         self, inner: SolvedPoint, outer: SolvedPoint, margin: int, ends: tuple[float, float]
@@ -231,15 +230,16 @@ class SpecialCurveProblem:
     def between(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
         """The point near the fraction `share` of the chord from `one` to `other`; raises Unsolvable."""
         start, place = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
-        across = other.across(other.step_from(one))
-        return self._family(other).nearest(start, place, across, other.rates)
+        across = other.normal(other.step_from(one))
+        return self._family(other).correct(start, place, across, other.normal_derivatives)
 
     def on_row(self, one: SolvedPoint, other: SolvedPoint, place: float) -> SolvedPoint:
         """The point of the curve at the rows' axis coordinate `place` between two points; raises
         Unsolvable."""
-        share = (place - one.place) / (other.place - one.place) if other.place != one.place else 0.0
+        length = other.row_coordinate - one.row_coordinate
+        share = (place - one.row_coordinate) / length if length else 0.0
         start, _ = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
-        return self._family(other).nearest(start, place, ALONG_BRANCH, other.rates)
+        return self._family(other).correct(start, place, ALONG_BRANCH, other.normal_derivatives)
 
     def _why_lost(self, last: SolvedPoint) -> CurveEnd:
         """Reason why a curve was lost beyond its last point: `resonance`, or `not_followed` if unknown."""

@@ -101,7 +101,9 @@ class CurvePoint:
     def of(cls, point: SolvedPoint) -> "CurvePoint":
         """The stored quantities of a solved point of a curve."""
         period = point.orbit.period
-        return cls(point.at, point.row, point.place, point.error, period, point.tip_y_max)
+        return cls(
+            point.parameter, point.row_parameter, point.row_coordinate, point.error, period, point.tip_y_max
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,18 +27,18 @@ from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import Scale
 from .augmented.functions import AUGMENTED, FoldFunction, TorusFunction
 from .augmented.nearby_cycles import NearbyCycleSolver
-from .on_curve import ACROSS_CURVE, CurveErrors, NormalDerivatives, SolvedPoint, orbit_with_parameters
+from .on_curve import CURVE_SECANT, CurveErrors, NormalDerivatives, SolvedPoint, orbit_with_parameters
 from .point import SpecialKind
 
 
-class _CycleAcross(NamedTuple):
+class _SecantIterate(NamedTuple):
     """A cycle solved by the secant method. at: distance from the predicted point in the direction across the
     curve. vectors: tangent or eigenvector of the test function. test: value of the test function."""
 
     orbit: Orbit
     vectors: Array
     test: float
-    at: float
+    distance: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,18 +58,18 @@ class CycleFamily:
     workspace: NewtonWorkspace
 
     @classmethod
-    def about(
+    def near_point(
         cls, kind: SpecialKind, rows: PlaneAxis, point: SolvedPoint, workspace: NewtonWorkspace
     ) -> "CycleFamily":
         """The family of the cycles near the point `point` of a curve of special points. Other arguments as in
         the class."""
-        small = kind == SpecialKind.fold and point.tip_y_max < ACROSS_CURVE.small_fold_cycle
+        small = kind == SpecialKind.fold and point.tip_y_max < CURVE_SECANT.small_fold_cycle
         return cls(kind, rows, point.scale, point.ahead, small, workspace)
 
-    def placed(self, orbit: Orbit, place: float) -> Orbit:
-        """The orbit with unchanged values, for the rod whose rows' parameter has the axis coordinate `place`;
-        raises Unsolvable."""
-        return orbit_with_parameters(orbit, {self.rows.name: self.rows.value(place)})
+    def orbit_at_row(self, orbit: Orbit, row_coordinate: float) -> Orbit:
+        """The orbit with unchanged values, for the rod whose rows' parameter has the axis coordinate
+        `row_coordinate`; raises Unsolvable."""
+        return orbit_with_parameters(orbit, {self.rows.name: self.rows.value(row_coordinate)})
 
     def function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:
         """The test function that is zero at special points of this kind, for cycles near the orbit of
@@ -78,67 +78,70 @@ class CycleFamily:
             return FoldFunction(matrix, self.border, self.small)
         return TorusFunction(matrix)
 
-    def nearest(
+    def correct(
         self,
         start: Orbit,
-        place: float,
-        across: Array,
-        rates: NormalDerivatives | None = None,
-        same: bool = False,
+        row_coordinate: float,
+        normal: Array,
+        derivatives: NormalDerivatives | None = None,
+        is_other_mesh: bool = False,
     ) -> SolvedPoint:
         """The point of the curve near the orbit `start`, found by the secant method across the curve; raises
         Unsolvable.
 
-        place: rows' axis coordinate of `start`. across: direction of the search, (2,), in components (along
-        the branch, along the rows' axis). rates: approximate derivatives across the curve. same: whether
-        `rates` were computed at the same point on another mesh.
+        row_coordinate: rows' axis coordinate of `start`. normal: direction of the search, (2,), in components
+        (along the branch, along the rows' axis). derivatives: approximate derivatives across the curve.
+        is_other_mesh: whether `derivatives` were computed at the same point on another mesh.
         """
         # Derivatives along another direction across the curve would mislead the secant method.
-        known = rates if rates and rates.direction @ across >= ACROSS_CURVE.min_cosine else None
-        search = _SecantAcross(self, start, place, across, known, same)
-        for _ in range(ACROSS_CURVE.max_secants):
+        usable = derivatives and derivatives.direction @ normal >= CURVE_SECANT.min_cosine
+        known = derivatives if usable else None
+        search = _SecantState(self, start, row_coordinate, normal, known, is_other_mesh)
+        for _ in range(CURVE_SECANT.max_secants):
             found = search.next()
             if found is not None:
                 return found
         raise Unsolvable("the secant method across the curve does not converge")
 
-    def point(
+    def correct_with_error(
         self,
         start: Orbit,
-        place: float,
-        across: Array,
+        row_coordinate: float,
+        normal: Array,
         slope: float = 0.0,
-        rates: NormalDerivatives | None = None,
-        before: SolvedPoint | None = None,
+        derivatives: NormalDerivatives | None = None,
+        previous: SolvedPoint | None = None,
     ) -> SolvedPoint:
         """The point of the curve near `start` with an error estimate, on a finer mesh if necessary; raises
         Unsolvable.
 
-        start, place, across, rates: as in `nearest`. slope: `chord_slope` of the curve, by which a
-        displacement along the curve is not counted as an error. before: previous point of the curve, whose
-        measured error is used if it still applies.
+        start, row_coordinate, normal, derivatives: as in `correct`. slope: `chord_slope` of the curve, by
+        which a displacement along the curve is not counted as an error. previous: previous point of the
+        curve, whose measured error is used if it still applies.
         """
-        last = self.nearest(start, place, across, rates)
-        if before and before.errors and before.errors.hold_at(last):
-            return replace(last, errors=before.errors.carried)
-        for _ in range(ACROSS_CURVE.max_finer_meshes):
+        last = self.correct(start, row_coordinate, normal, derivatives)
+        if previous and previous.errors and previous.errors.apply_at(last):
+            return replace(last, errors=previous.errors.for_next_point)
+        for _ in range(CURVE_SECANT.max_finer_meshes):
             mesh = mesh_of(last.orbit)
-            longer = ceil(ACROSS_CURVE.more_intervals * mesh.intervals)
-            finer = replace(mesh, order=mesh.order + ACROSS_CURVE.more_orders, intervals=longer)
+            longer = ceil(CURVE_SECANT.more_intervals * mesh.intervals)
+            finer = replace(mesh, order=mesh.order + CURVE_SECANT.more_orders, intervals=longer)
             if not finer.allowed:
                 break
-            fine = self.nearest(finer.carry(last.orbit), last.place, across, last.rates, same=True)
+            known = last.normal_derivatives
+            fine = self.correct(finer.carry(last.orbit), last.row_coordinate, normal, known, True)
             # The solutions on both meshes may be displaced along the curve; the slope removes this
             # displacement from the error.
-            off = abs(fine.at - last.at - slope * (fine.place - last.place))
-            error = ACROSS_CURVE.error_factor * off + ACROSS_CURVE.secant_error * abs(fine.at)
-            if error <= ACROSS_CURVE.accuracy * abs(fine.at):
-                return replace(last, errors=CurveErrors(error / abs(last.at), smooth_tails(last.orbit), mesh))
+            off = abs(fine.parameter - last.parameter - slope * (fine.row_coordinate - last.row_coordinate))
+            error = CURVE_SECANT.error_factor * off + CURVE_SECANT.secant_error * abs(fine.parameter)
+            if error <= CURVE_SECANT.accuracy * abs(fine.parameter):
+                errors = CurveErrors(error / abs(last.parameter), smooth_tails(last.orbit), mesh)
+                return replace(last, errors=errors)
             last = fine
         raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
 
 
-class _SecantAcross:
+class _SecantState:
     """State of the secant method across a curve. All cycles are corrected with the matrix factors of the
     first cycle."""
 
@@ -152,67 +155,68 @@ class _SecantAcross:
         same: bool,
     ) -> None:
         self.family = family
-        self.place = place
+        self.row_coordinate = place
         self.direction = direction
-        self.rates = rates
-        self.orbit = family.placed(start, place)
-        self.at = 0.0
-        self.before: _CycleAcross | None = None
+        self.derivatives = rates
+        self.orbit = family.orbit_at_row(start, place)
+        self.distance = 0.0
+        self.previous: _SecantIterate | None = None
         self.length = float(family.border @ family.scale.components(start))
-        self.trusted = ACROSS_CURVE.max_linear_step if same else ACROSS_CURVE.max_carried_step
+        self.max_last_step = CURVE_SECANT.max_linear_step if same else CURVE_SECANT.max_carried_step
         """Longest last secant step until the derivatives are computed from two cycles of this search."""
         contraction = rates.contraction if rates and not family.small else inf
-        self.near = NearbyCycleSolver(family, self.orbit, contraction)
+        self.nearby = NearbyCycleSolver(family, self.orbit, contraction)
 
     def next(self) -> SolvedPoint | None:
         """Makes one secant step and returns the point of the curve, or None if more steps are needed; raises
         Unsolvable."""
-        present = self._solved_here()
-        enough = self.trusted
-        if own := self._rates_since(present):
-            self.rates = own
-            self.trusted = ACROSS_CURVE.max_linear_step
-            enough = ACROSS_CURVE.max_linear_product / own.span
-        rates = self.rates
+        present = self._solve_at_distance()
+        enough = self.max_last_step
+        if own := self._derivatives_from_last(present):
+            self.derivatives = own
+            self.max_last_step = CURVE_SECANT.max_linear_step
+            enough = CURVE_SECANT.max_linear_product / own.span
+        rates = self.derivatives
         # Without derivatives any small step suffices: the two cycles then give derivatives.
-        step = -present.test / rates.test if rates else ACROSS_CURVE.first_secant
-        if not abs(step) <= ACROSS_CURVE.longest_secant:
+        step = -present.test / rates.test if rates else CURVE_SECANT.first_secant
+        if not abs(step) <= CURVE_SECANT.longest_secant:
             raise Unsolvable("the secant method leaves the curve")
         if rates and abs(step) <= enough:
-            return self._point(step, replace(rates, contraction=self.near.contraction))
-        if self.before:  # the vectors are extrapolated along a line, like the cycle
-            change = (present.vectors - self.before.vectors) / (present.at - self.before.at)
-            self.near.predict(present.vectors + step * change)
+            return self._point(step, replace(rates, contraction=self.nearby.contraction))
+        if self.previous:  # the vectors are extrapolated along a line, like the cycle
+            change = (present.vectors - self.previous.vectors) / (present.distance - self.previous.distance)
+            self.nearby.predict(present.vectors + step * change)
         if rates:
-            self.orbit = self._moved(step, rates)
-        self.before = present
-        self.at += step
+            self.orbit = self._predicted_orbit(step, rates)
+        self.previous = present
+        self.distance += step
         return None
 
-    def _solved_here(self) -> _CycleAcross:
+    def _solve_at_distance(self) -> _SecantIterate:
         """The cycle at the present distance `at` across the curve, with its test function; raises
         Unsolvable."""
         family = self.family
-        rates = self.rates
-        length = self.length + self.at * float(self.direction[0])
-        self.orbit = family.placed(self.orbit, self.place + self.at * float(self.direction[1]))
+        rates = self.derivatives
+        length = self.length + self.distance * float(self.direction[0])
+        row = self.row_coordinate + self.distance * float(self.direction[1])
+        self.orbit = family.orbit_at_row(self.orbit, row)
         slope = abs(rates.test) if rates else 1.0
-        enough = AUGMENTED.tolerance if rates else AUGMENTED.tolerance_share * ACROSS_CURVE.first_secant
+        enough = AUGMENTED.tolerance if rates else AUGMENTED.tolerance_share * CURVE_SECANT.first_secant
         condition = BorderCondition(family.scale, family.border, length)
-        self.orbit, test = self.near.solved(self.orbit, condition, slope, enough)
-        return _CycleAcross(self.orbit, self.near.function.vectors, test, self.at)
+        self.orbit, test = self.nearby.solve(self.orbit, condition, slope, enough)
+        return _SecantIterate(self.orbit, self.nearby.function.vectors, test, self.distance)
 
-    def _rates_since(self, present: _CycleAcross) -> NormalDerivatives | None:
+    def _derivatives_from_last(self, present: _SecantIterate) -> NormalDerivatives | None:
         """Derivatives across the curve from the last cycle and the cycle `present`; None if `present` is the
         first cycle or if the distance between the two cycles is too small."""
-        before = self.before
+        before = self.previous
         if before is None or present.test == before.test:
             return None
-        if abs(present.at - before.at) < ACROSS_CURVE.min_cycle_distance:
+        if abs(present.distance - before.distance) < CURVE_SECANT.min_cycle_distance:
             return None
         name = self.family.scale.name
         # The test function is nearly linear here, so that difference quotients are as good as derivatives.
-        span = present.at - before.at
+        span = present.distance - before.distance
         one = before.orbit
         other = present.orbit
         change = other.form.rod.coordinate(name) - one.form.rod.coordinate(name)
@@ -221,26 +225,26 @@ class _SecantAcross:
             self.direction, (present.test - before.test) / span, orbit, mesh_of(one), abs(span)
         )
 
-    def _moved(self, step: float, rates: NormalDerivatives) -> Orbit:
-        """The last cycle, moved by `step` across the curve along the derivatives `rates`."""
-        return moved_orbit(self.orbit, self.family.scale.name, step * rates.on(self.orbit))
+    def _predicted_orbit(self, step: float, derivatives: NormalDerivatives) -> Orbit:
+        """The last cycle, moved by `step` across the curve along `derivatives`."""
+        return moved_orbit(self.orbit, self.family.scale.name, step * derivatives.on_mesh_of(self.orbit))
 
-    def _point(self, step: float, rates: NormalDerivatives) -> SolvedPoint:
-        """The point of the curve: the last cycle, moved by the short step `step` across the curve along the
-        derivatives `rates`."""
+    def _point(self, step: float, derivatives: NormalDerivatives) -> SolvedPoint:
+        """The point of the curve: the last cycle, moved by the short step `step` across the curve along
+        `derivatives`."""
         family = self.family
-        matrix = self.near.matrix
+        matrix = self.nearby.matrix
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
-        place = self.place + (self.at + step) * float(self.direction[1])
-        orbit = family.placed(self._moved(step, rates), place)
+        place = self.row_coordinate + (self.distance + step) * float(self.direction[1])
+        orbit = family.orbit_at_row(self._predicted_orbit(step, derivatives), place)
         scale = Scale.of(orbit, family.scale.name, family.scale.min_deflection_unit)
-        ahead = scale.moved(orbit, tangent)
+        ahead = scale.directional_derivative(orbit, tangent)
         return SolvedPoint(
             orbit=orbit,
             scale=scale,
             ahead=ahead / np.linalg.norm(ahead),
-            place=place,
-            at=getattr(orbit.form.rod, scale.name),
-            row=getattr(orbit.form.rod, family.rows.name),
-            rates=rates,
+            row_coordinate=place,
+            parameter=getattr(orbit.form.rod, scale.name),
+            row_parameter=getattr(orbit.form.rod, family.rows.name),
+            normal_derivatives=derivatives,
         )

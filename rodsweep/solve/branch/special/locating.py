@@ -68,7 +68,7 @@ def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> f
     scale, ahead: scale and tangent, (3,), at the start of the segment."""
     if kind == SpecialKind.fold:
         # By the arc length along the direction `ahead`, which is the variable of the search.
-        rate = float(scale.moved(point.orbit, point.tangent) @ ahead)
+        rate = float(scale.directional_derivative(point.orbit, point.tangent) @ ahead)
         return float(point.tangent[-1]) / scale.coordinate_unit / rate
     if kind == SpecialKind.left_the_model:
         return least_stretch(point.cycle.path)
@@ -83,7 +83,7 @@ def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, acc
         segment = BranchSegment(start, end)
         segment.start_on(mesh_of(end.orbit))
         length, slope = _enclosed(kind, segment)
-        mesh = end.calibration.planned_for_parameter(SPECIAL_POINT.first_mesh_share * aim)
+        mesh = end.calibration.cheapest_mesh_for_parameter(SPECIAL_POINT.first_mesh_share * aim)
         # At least the number of stages with the smallest cost at this accuracy.
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
         point: SpecialPoint | None = None
@@ -187,7 +187,7 @@ def _enclosed(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
     values = {at: _at_end(kind, start.scale, start.ahead, point) for at, point in known}
 
     def kept(length: float) -> float:
-        values[length] = test_function(kind, segment, segment.at(length))
+        values[length] = test_function(kind, segment, segment.cycle_at(length))
         return values[length]
 
     ends = values[0.0], values[segment.length]
@@ -213,7 +213,7 @@ def _zero(
     step = np.inf
     before = None
     for _ in range(SPECIAL_POINT.max_secants):
-        f = test_function(kind, segment, segment.at(at))
+        f = test_function(kind, segment, segment.cycle_at(at))
         if before is not None and f != before[1]:
             slope = (f - before[1]) / (at - before[0])
         last = abs(step)
@@ -222,7 +222,7 @@ def _zero(
             raise Unsolvable("the secant method leaves the interval between the two cycles")
         # A short step that is longer than half of the last step is rounding error.
         if abs(step) <= enough or last / 2 < abs(step) <= SPECIAL_POINT.max_stalled_step * segment.length:
-            _, orbit, tangent = segment.known
+            _, orbit, tangent = segment.last_solved_cycle
             change = step * tangent
             if kind == SpecialKind.fold:
                 change[-1] /= 2  # the derivative of the parameter decreases linearly to 0 along the step

@@ -16,7 +16,7 @@ from ..bordered.scale import Scale
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AcrossCurveSettings:
+class CurveSecantSettings:
     """Settings for the secant method across a curve of special points, and for the errors of its points."""
 
     accuracy: float = 1e-7
@@ -61,7 +61,7 @@ class AcrossCurveSettings:
     """Maximum number of finer meshes for one point."""
 
 
-ACROSS_CURVE = AcrossCurveSettings()
+CURVE_SECANT = CurveSecantSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +81,7 @@ class NormalDerivatives:
     contraction: float = inf
     """Contraction rate of corrections, as in `NearbyCycleSolver`; inf if unknown."""
 
-    def on(self, orbit: Orbit) -> Array:
+    def on_mesh_of(self, orbit: Orbit) -> Array:
         """The derivative in the field `orbit`, (N + 1,), interpolated to the mesh of the argument `orbit`."""
         mesh = mesh_of(orbit)
         if mesh == self.mesh:
@@ -105,20 +105,20 @@ class CurveErrors:
     mesh: OrbitMesh
     age: int = 0
 
-    def at(self, point: "SolvedPoint") -> float:
+    def error_at(self, point: "SolvedPoint") -> float:
         """Absolute error of the parameter along a row at a neighbouring point with the same mesh."""
         # Errors are of second order in the tails.
         growth = float((smooth_tails(point.orbit) / self.tails).max()) ** 2
-        return max(growth, 1.0) * self.measured * abs(point.at)
+        return max(growth, 1.0) * self.measured * abs(point.parameter)
 
-    def hold_at(self, point: "SolvedPoint") -> bool:
+    def apply_at(self, point: "SolvedPoint") -> bool:
         """Whether the measured error may be used at a later point of the curve: the measurement is recent,
         the mesh is the same, and the scaled error is within the accuracy."""
-        recent = self.age < ACROSS_CURVE.max_unmeasured - 1 and mesh_of(point.orbit) == self.mesh
-        return recent and self.at(point) <= ACROSS_CURVE.accuracy * abs(point.at)
+        recent = self.age < CURVE_SECANT.max_unmeasured - 1 and mesh_of(point.orbit) == self.mesh
+        return recent and self.error_at(point) <= CURVE_SECANT.accuracy * abs(point.parameter)
 
     @property
-    def carried(self) -> "CurveErrors":
+    def for_next_point(self) -> "CurveErrors":
         """The same measured error for the next point of the curve, with `age` increased by 1."""
         return replace(self, age=self.age + 1)
 
@@ -132,17 +132,17 @@ class SolvedPoint:
     ahead: Array
     """Direction of the branch along the row, (3,), a unit vector in components (deflection, log period,
     parameter)."""
-    place: float
+    row_coordinate: float
     """Axis coordinate of the rows' parameter, from 0 to 1."""
-    at: float
+    parameter: float
     """Value of the parameter along a row."""
-    row: float
+    row_parameter: float
     """Value of the rows' parameter."""
     error: float = nan
     """Absolute error of `at`."""
     errors: CurveErrors | None = None
     """Error measured at this point or at an earlier point of the curve; None if unknown."""
-    rates: NormalDerivatives | None = None
+    normal_derivatives: NormalDerivatives | None = None
     """Derivatives across the curve; None if unknown."""
 
     @property
@@ -154,9 +154,9 @@ class SolvedPoint:
         """Step from the point `other` to this point, (4,), in components (deflection, log period, parameter
         along a row, rows' axis coordinate)."""
         moved = self.scale.components(self.orbit) - self.scale.components(other.orbit)
-        return np.append(moved, self.place - other.place)
+        return np.append(moved, self.row_coordinate - other.row_coordinate)
 
-    def across(self, step: Array) -> Array:
+    def normal(self, step: Array) -> Array:
         """Unit normal of the curve, (2,), in components (along the branch, along the rows' axis);
         perpendicular to `step`, (4,), a step along the curve."""
         way = np.array([float(self.ahead @ step[:3]), step[3]])
@@ -178,7 +178,7 @@ def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
             behind = point.errors
         elif behind and behind.mesh == mesh_of(point.orbit):
             candidates.append(behind)
-        found.append(replace(point, error=max(errors.at(point) for errors in candidates)))
+        found.append(replace(point, error=max(errors.error_at(point) for errors in candidates)))
     return found[::-1]
 
 
@@ -209,5 +209,5 @@ def arc_lengths(points: Sequence[SolvedPoint]) -> Array:
 def chord_slope(one: SolvedPoint, other: SolvedPoint) -> float:
     """Slope of the chord between two points of a curve: difference of the parameter along a row, divided by
     the difference of the rows' axis coordinate; 0 if the axis coordinates are equal."""
-    apart = other.place - one.place
-    return (other.at - one.at) / apart if apart else 0.0
+    apart = other.row_coordinate - one.row_coordinate
+    return (other.parameter - one.parameter) / apart if apart else 0.0

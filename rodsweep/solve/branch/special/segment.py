@@ -35,7 +35,7 @@ class BranchSegment:
         self.mesh = mesh
         self._known = None
 
-    def at(self, length: float) -> ConvergedOrbit:
+    def cycle_at(self, length: float) -> ConvergedOrbit:
         """The cycle at the arc length `length` from `start`, with the matrix of a nearby orbit; raises
         Unsolvable."""
         if self._known is None:
@@ -46,7 +46,7 @@ class BranchSegment:
             start = moved_orbit(orbit, self.start.scale.name, (length - last) * tangent)
         condition = self.start.condition(length)
         workspace = self.start.workspace
-        found = condition.solved(
+        found = condition.solve_cycle(
             start, SPECIAL_POINT.cycle_tolerance, workspace, SPECIAL_POINT.matrix_distance
         )
         function = FoldFunction(bordered_matrix_of(found), self.start.ahead, False)
@@ -55,7 +55,7 @@ class BranchSegment:
         return found
 
     @property
-    def known(self) -> tuple[float, Orbit, Array]:
+    def last_solved_cycle(self) -> tuple[float, Orbit, Array]:
         """(arc length from `start`, orbit, derivative of orbit values and parameter coordinate by arc length,
         (N + 1,)), for the last cycle that `at` solved. Raises ValueError before the first cycle."""
         if self._known is None:
@@ -64,4 +64,4 @@ class BranchSegment:
 
     def parameter_rate(self) -> float:
         """Derivative of the scaled parameter coordinate by arc length, at the last cycle that `at` solved."""
-        return float(self.known[2][-1]) / self.start.scale.coordinate_unit
+        return float(self.last_solved_cycle[2][-1]) / self.start.scale.coordinate_unit

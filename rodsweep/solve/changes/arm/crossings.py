@@ -13,7 +13,7 @@ import numpy as np
 from ...point import Unsolvable
 from ..search_range import SearchedIntervals, SearchEnd
 from ..unstable_modes import ChangeKind, Crossing
-from .axis_place import AxisPlace, AxisPlaces, next_count_place
+from .axis_modes import AxisModes, AxisModesOfPath, next_count_position
 from .path import ArmPath
 
 
@@ -61,7 +61,7 @@ class CrossingSearch:
 
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
-        self.places = AxisPlaces(problem, certify)
+        self.places = AxisModesOfPath(problem, certify)
         self.found: dict[float, Crossing] = {}
         self.gaps: list[tuple[float, float]] = []
 
@@ -74,7 +74,7 @@ class CrossingSearch:
         edge.
         """
         intervals = SearchedIntervals(edges)
-        self.places.at(edges[0])
+        self.places.modes_at(edges[0])
         for a, b in intervals:
             if sum(p < a for p in self.found) > most:
                 intervals.stop_at(a, f"more than {most:g} crossings; raise the option crossings")
@@ -95,15 +95,15 @@ class CrossingSearch:
         if b in self.places.known or b - a < ARM_CROSSINGS.smallest_first * length:
             return False
         expected = self.problem.expected_growing(b)
-        return self.places.are_many(b) and expected > ARM_CROSSINGS.beyond_the_list * 2 * most
+        return self.places.has_many_modes(b) and expected > ARM_CROSSINGS.beyond_the_list * 2 * most
 
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> None:
         """Searches the interval (a, b): stores the crossings found, or divides the interval."""
-        left = self.places.at(a)
-        right = self.places.at(b)
+        left = self.places.modes_at(a)
+        right = self.places.modes_at(b)
         # Equal counts leave room for a pair that crosses and returns.
         if left.unstable == right.unstable:
-            share = next_count_place(left, right)
+            share = next_count_position(left, right)
             if share == 0.0:
                 return
             if b - a <= ARM_CROSSINGS.smallest_interval * intervals.length:
@@ -125,7 +125,7 @@ class CrossingSearch:
         intervals.divide((a, middle), (middle, b))
 
     def _parted(
-        self, crossings: list[Crossing], left: AxisPlace, right: AxisPlace, length: float
+        self, crossings: list[Crossing], left: AxisModes, right: AxisModes, length: float
     ) -> list[tuple[float, float]] | None:
         """The intervals between crossings, in increasing order of p; None if the counts just before and just
         after a crossing do not confirm the crossing. length: of the path.
@@ -135,31 +135,33 @@ class CrossingSearch:
         """
         parts: list[tuple[float, float]] = []
         start = left.p
-        highest = ARM_CROSSINGS.higher * max(left.highest, right.highest)
+        highest = ARM_CROSSINGS.higher * max(left.largest_modulus, right.largest_modulus)
         for crossing in crossings:
             p = self.problem.path.variable(crossing.at)
             before = max(start, p - ARM_CROSSINGS.count_distance * length)
             behind = min(right.p, p + ARM_CROSSINGS.count_distance * length)
             beside = None
-            if self.places.are_many(before):
-                beside = self.places.modes_beside(p, highest, np.array([1j * crossing.frequency]))
-            change = self.places.at(behind, beside).unstable - self.places.at(before, beside).unstable
+            if self.places.has_many_modes(before):
+                beside = self.places.eigenvalues_near_axis(p, highest, np.array([1j * crossing.frequency]))
+            change = (
+                self.places.modes_at(behind, beside).unstable - self.places.modes_at(before, beside).unstable
+            )
             if change != (2 if right.unstable > left.unstable else -2):
                 return None
             parts.append((start, before))
             start = behind
         return [*parts, (start, right.p)]
 
-    def _between(self, left: AxisPlace, right: AxisPlace) -> list[Crossing]:
+    def _between(self, left: AxisModes, right: AxisModes) -> list[Crossing]:
         """Crossings between two places, in increasing order of p, that explain the change of the number of
         unstable modes; empty if not all are found."""
         change = (right.unstable - left.unstable) // 2
-        many = self.places.are_many(right.p)
+        many = self.places.has_many_modes(right.p)
         # Where modes are followed, bisection first separates several crossings.
         if abs(change) > (ARM_CROSSINGS.most_at_once if many else 1):
             return []
         if many:
-            self.problem.make_family(left.p, right.p, max(left.highest, right.highest))
+            self.problem.make_family(left.p, right.p, max(left.largest_modulus, right.largest_modulus))
         grows = change > 0
         found: dict[float, Crossing] = {}
         # The pairs that cross are stable on one side and unstable on the other; pairs near the axis are
@@ -174,7 +176,7 @@ class CrossingSearch:
                     return [found[p] for p in sorted(found)]
         return []
 
-    def _newton(self, start: AxisPlace, i: int, ends: tuple[float, float], grows: bool) -> Crossing | None:
+    def _newton(self, start: AxisModes, i: int, ends: tuple[float, float], grows: bool) -> Crossing | None:
         """Newton's method for the p at which eigenvalue number i of the place `start` lies on the imaginary
         axis; None without convergence.
 
@@ -195,7 +197,7 @@ class CrossingSearch:
             blur = error / abs(slope.real) + ARM_CROSSINGS.rounding * abs(p)
             if abs(w.real / slope.real) <= ARM_CROSSINGS.converged * blur:
                 # With such an error no root of D is resolved.
-                unresolved = self.places.are_many(p) and not blur <= ARM_CROSSINGS.count_distance * (
+                unresolved = self.places.has_many_modes(p) and not blur <= ARM_CROSSINGS.count_distance * (
                     ends[1] - ends[0]
                 )
                 return None if unresolved else self._crossing(p, w, slope, blur, grows)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....determinant.arm.along_path import ArmAlongPath
-from ....determinant.arm.count.beside_axis import modes_near_axis
+from ....determinant.arm.count.modes_near_axis import modes_near_axis
 from ....determinant.arm.determinant import arm_determinant
 from ....determinant.arm.family import ArmFamily, interpolated_family
 from ....determinant.arm.hull.hull import hull_of
@@ -183,7 +183,7 @@ class ArmPath(PathProblem):
             self._counts[p] = number
         return self._counts[p]
 
-    def beside_axis(self, p: float, highest: float, known: Complex) -> Complex:
+    def eigenvalues_near_axis(self, p: float, highest: float, known: Complex) -> Complex:
         """Eigenvalues at p near the imaginary axis with |Im w| up to `highest`, (n,), one of each pair.
 
         known: some of these eigenvalues, (k,), which come first. Raises FloatingPointError if no elements

@@ -88,7 +88,7 @@ class _ChangeBoundaries:
         """Distance of change number `seed` from `curve`, along the first axis at the height of the change."""
         return _distance(self.plane, curve, self.seeds[seed])
 
-    def same(self, one: BoundaryCurve, other: BoundaryCurve) -> bool:
+    def are_identical(self, one: BoundaryCurve, other: BoundaryCurve) -> bool:
         """Whether two curves are the same because they share an end; near a crushed rod a change may not be
         found on its own curve."""
         ends = one.scaled[[0, -1], None] - other.scaled[None, [0, -1]]

@@ -16,7 +16,7 @@ from ....determinant.parameter_path import Path
 from ....model.rod import Rod
 from ...point import solved
 from ..along_path import Transitions, transitions
-from ..thresholds import Thresholds, ThresholdStatus, empty_thresholds, judged
+from ..thresholds import Thresholds, ThresholdStatus, empty_thresholds, thresholds_with_status
 from ..unstable_modes import CHANGE_COUNTS
 
 
@@ -106,7 +106,7 @@ def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
     unstable[crushed] = -1
     motion[~alive & ~crushed] = Motion.undecided
     unstable[~alive & ~crushed] = -1
-    changes = judged(found, request.accuracy, request.certify, request.crossings)
+    changes = thresholds_with_status(found, request.accuracy, request.certify, request.crossings)
     return DiagramRow(motion=motion, unstable_count=unstable, changes=changes)
 
 

@@ -66,7 +66,7 @@ class Calibration:
         errors = {name: arrays[name] for name in ("space", "time", "fall", "power", "tails")}
         return cls(mesh=mesh, reach=float(arrays["reach"]), **errors)
 
-    def at(self, orbit: Orbit, change: float) -> "Calibration":
+    def scaled_on_chain(self, orbit: Orbit, change: float) -> "Calibration":
         """The calibration with its errors scaled to a later orbit of a chain, after a further relative change
         of the parameter."""
         tails = _tails(orbit)
@@ -76,30 +76,30 @@ class Calibration:
             self, error_growth=_growth(self.tails, tails), reach=inf if dies else self.reach + change
         )
 
-    def on_branch(self, orbit: Orbit) -> "Calibration":
+    def scaled_on_branch(self, orbit: Orbit) -> "Calibration":
         """The calibration with its errors scaled to a later orbit of a branch. On a branch, which is followed
         by arc length, errors do not grow as orbits shrink."""
         growth = _growth(self.tails, _tails(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails * (0.0, 0.0, 1.0))
         return replace(self, error_growth=growth)
 
     @property
-    def outdated(self) -> "Calibration":
+    def rates_only(self) -> "Calibration":
         """The same calibration with `reach` = inf: its errors no longer apply, its convergence rates do."""
         return replace(self, reach=inf)
 
     @property
-    def holds(self) -> bool:
+    def is_valid(self) -> bool:
         """Whether the scaled errors still apply to the later orbit."""
         return (
             self.reach <= CALIBRATION.max_parameter_change
             and float(self.error_growth.max()) <= CALIBRATION.max_error_growth
         )
 
-    def lasts(self, change: float) -> bool:
+    def is_valid_after(self, change: float) -> bool:
         """Whether the errors may still apply after a further relative change of the parameter."""
         return self.reach + change <= CALIBRATION.max_parameter_change
 
-    def least(self, orbit: Orbit) -> tuple[Array, Array]:
+    def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
         """(smallest errors in space, smallest errors in time), (5,) each, that a new measurement on the same
         mesh may give at an orbit."""
         in_space, in_time = CALIBRATION.min_repeated_share * np.minimum(
@@ -116,13 +116,13 @@ class Calibration:
         y, whose errors determine the mesh, the larger growth would cost a tenth of the time of a sweep.
         """
         in_space, in_time = self.error_growth
-        stated = _stated(self.space * in_space, self.time * in_time, accuracy)
+        stated = _errors_with_safety_factors(self.space * in_space, self.time * in_time, accuracy)
         larger = float(self.error_growth.max())
         # Extrema and multipliers mix the errors in space and in time, so the larger growth applies.
-        stated[2:] = _stated(self.space * larger, self.time * larger, accuracy)[2:]
+        stated[2:] = _errors_with_safety_factors(self.space * larger, self.time * larger, accuracy)[2:]
         return CycleErrors(*stated.tolist())
 
-    def planned(self, accuracy: float) -> OrbitMesh:
+    def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
         """The cheapest mesh on which the convergence rates predict a relative accuracy."""
         present = self.mesh
         lowest = max(ORBIT_MESH.min_order, present.order - CALIBRATION.max_fewer_orders)
@@ -138,7 +138,7 @@ class Calibration:
         # For finer meshes the smallest order is taken, because the order was measured on coarser meshes.
         power = np.where(intervals < present.intervals, self.power[:, None], present.stages + 1)
         time = self.time[:, None] * (present.full_intervals / (intervals - 1)) ** power
-        errors = _stated(space[:, :, None], time[:, None, :], accuracy)
+        errors = _errors_with_safety_factors(space[:, :, None], time[:, None, :], accuracy)
         enough = largest_error(*errors[:3]) <= CALIBRATION.planned_error * accuracy
         meshes = [
             replace(present, order=int(orders[i]), intervals=int(intervals[np.argmax(enough[i])]))
@@ -147,7 +147,7 @@ class Calibration:
         return min(meshes, key=lambda mesh: mesh.cost, default=present.finer)
 
 
-def _stated(space: Array, time: Array, accuracy: float) -> Array:
+def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> Array:
     """The four errors of `CycleErrors`, (4, ...), from errors in space and in time, (5, ...) each, with
     safety factors and lower limits."""
     whole = CALIBRATION.safety_factor * (space + time)
@@ -213,13 +213,13 @@ def calibration_of(
     fall = before.fall
     power = before.power
     if previous.order != mesh.order and previous.edges == mesh.edges:
-        fall = _fall(before.space, space, mesh.order - previous.order)
+        fall = _space_rate(before.space, space, mesh.order - previous.order)
     if previous.intervals != mesh.intervals:
-        power = _power(before.time, time, previous, mesh)
+        power = _time_order(before.time, time, previous, mesh)
     return Calibration(mesh, space, time, fall, power, tails, 0.0)
 
 
-def _fall(before: Array, after: Array, orders: int) -> Array:
+def _space_rate(before: Array, after: Array, orders: int) -> Array:
     """Decrease of the natural logarithm of the errors in space per order of the elements, (5,). before,
     after: errors on two meshes, (5,) each. orders: increase of the order from the first mesh to the
     second."""
@@ -229,7 +229,7 @@ def _fall(before: Array, after: Array, orders: int) -> Array:
     return fall
 
 
-def _power(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
+def _time_order(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
     """Order of convergence in time, (5,). before, after: errors, (5,) each, on two meshes, `previous` and
     `mesh`, with different numbers of time intervals."""
     # Radau IIA has the order 2 stages - 1, of which stiff problems may keep only stages + 1.

@@ -62,7 +62,7 @@ def measured_calibration(found: ConvergedOrbit, accuracy: float, before: Calibra
     time = time / share
     if before is not None and before.mesh == mesh:
         # A second measurement on the same mesh may be small only because an error changes its sign nearby.
-        space, time = map(np.maximum, (space, time), before.least(found.orbit))
+        space, time = map(np.maximum, (space, time), before.min_remeasured_errors(found.orbit))
     return calibration_of(mesh, space, time, found.orbit, before)
 
 

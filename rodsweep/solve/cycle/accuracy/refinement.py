@@ -109,7 +109,7 @@ def _predicted_cycle(
         # A prediction that gets worse on a finer mesh has reached rounding errors, or another cycle.
         if error > last:
             raise Unsolvable("the errors do not decrease on finer meshes")
-        mesh = finer_mesh(mesh, known.planned(accuracy))
+        mesh = finer_mesh(mesh, known.cheapest_mesh(accuracy))
         last = REFINEMENT.max_error_increase * error
         if not mesh.allowed:
             break
@@ -146,7 +146,7 @@ def calibrated_cycle(
         if cycle.errors.largest <= accuracy or cycle.errors.largest > last:
             break
         last = REFINEMENT.max_error_increase * cycle.errors.largest
-        finer = finer_mesh(before.mesh, before.planned(accuracy))
+        finer = finer_mesh(before.mesh, before.cheapest_mesh(accuracy))
         if not finer.allowed:
             break
         found = _on(finer, found, accuracy, parameter)

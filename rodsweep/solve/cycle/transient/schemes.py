@@ -9,47 +9,47 @@ from .amplitude_equation import AMPLITUDE_EQUATION
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SchemeSettings:
-    """Settings for the time schemes `usual`, `quick` and `careful`, and for the choice of a scheme by the
-    linear growth."""
+    """Settings for the time schemes `default_scheme`, `fast_growth_scheme` and `accurate_scheme`, and for the
+    choice of a scheme by the linear growth."""
 
-    max_careful_growth: float = 0.01
-    """Linear growth per period, in modulus, below which the scheme is `careful`."""
-    usual_noise: float = 1e-3
-    """Largest growth per period that integration errors of the schemes `usual` and `quick` may add; 3e-4 was
+    max_growth_of_accurate: float = 0.01
+    """Linear growth per period, in modulus, below which the scheme is `accurate_scheme`."""
+    default_noise: float = 1e-3
+    """Largest growth per period that integration errors of the schemes `default_scheme` and
+    `fast_growth_scheme` may add; 3e-4 was measured."""
+    accurate_noise: float = 1e-5
+    """Largest growth per period that integration errors of the scheme `accurate_scheme` may add; 8e-6 was
     measured."""
-    careful_noise: float = 1e-5
-    """Largest growth per period that integration errors of the scheme `careful` may add; 8e-6 was
-    measured."""
-    usual_steps: int = 200
-    """Maximum number of time steps of the scheme `usual`, divided by the allowed number of returns. 22 to 101
-    steps per return were measured on motions of 400 returns. A motion with rare returns takes far more, and
-    ends at this maximum."""
-    careful_steps: int = 2000
-    """Maximum number of time steps of the scheme `careful`, divided by the allowed number of returns; its
-    steps are a tenth as long as those of `usual`."""
-    usual_tolerance: float = 1e-5
-    """Local tolerance of the scheme `usual`."""
-    quick_tolerance: float = 1e-4
-    """Local tolerance of the scheme `quick`."""
-    careful_tolerance: float = 1e-9
-    """Local tolerance of the scheme `careful`."""
+    default_max_steps: int = 200
+    """Maximum number of time steps of the scheme `default_scheme`, divided by the allowed number of returns.
+    22 to 101 steps per return were measured on motions of 400 returns. A motion with rare returns takes far
+    more, and ends at this maximum."""
+    accurate_max_steps: int = 2000
+    """Maximum number of time steps of the scheme `accurate_scheme`, divided by the allowed number of returns;
+    its steps are a tenth as long as those of `default_scheme`."""
+    default_tolerance: float = 1e-5
+    """Local tolerance of the scheme `default_scheme`."""
+    fast_growth_tolerance: float = 1e-4
+    """Local tolerance of the scheme `fast_growth_scheme`."""
+    accurate_tolerance: float = 1e-9
+    """Local tolerance of the scheme `accurate_scheme`."""
 
     @property
-    def usual(self) -> TimeScheme:
+    def default_scheme(self) -> TimeScheme:
         """Time scheme of most motions; Newton's method gives the accuracy of the cycle."""
-        return TimeScheme("arkimex", "4", tolerance=self.usual_tolerance)
+        return TimeScheme("arkimex", "4", tolerance=self.default_tolerance)
 
     @property
-    def quick(self) -> TimeScheme:
+    def fast_growth_scheme(self) -> TimeScheme:
         """Time scheme of the first run of a fast-growing motion: no decision depends on the measured
         growth."""
-        return TimeScheme("arkimex", "4", tolerance=self.quick_tolerance)
+        return TimeScheme("arkimex", "4", tolerance=self.fast_growth_tolerance)
 
     @property
-    def careful(self) -> TimeScheme:
+    def accurate_scheme(self) -> TimeScheme:
         """Time scheme of motions with a small growth per period, whose sign must be correct, and of stored
         paths."""
-        return TimeScheme("arkimex", "5", tolerance=self.careful_tolerance)
+        return TimeScheme("arkimex", "5", tolerance=self.accurate_tolerance)
 
 
 SCHEMES = SchemeSettings()
@@ -69,8 +69,10 @@ class TransientSchemes(NamedTuple):
 def schemes_for_growth(growth: float, is_stored: bool) -> TransientSchemes:
     """Time schemes of a motion. growth: linear growth per period of the leading mode. is_stored: whether the
     path of the motion is stored."""
-    if abs(growth) < SCHEMES.max_careful_growth or is_stored:
-        careful = SCHEMES.careful
-        return TransientSchemes(careful, careful, SCHEMES.careful_noise, SCHEMES.careful_steps)
-    first = SCHEMES.quick if growth > AMPLITUDE_EQUATION.max_slow_growth else SCHEMES.usual
-    return TransientSchemes(first, SCHEMES.usual, SCHEMES.usual_noise, SCHEMES.usual_steps)
+    if abs(growth) < SCHEMES.max_growth_of_accurate or is_stored:
+        careful = SCHEMES.accurate_scheme
+        return TransientSchemes(careful, careful, SCHEMES.accurate_noise, SCHEMES.accurate_max_steps)
+    first = (
+        SCHEMES.fast_growth_scheme if growth > AMPLITUDE_EQUATION.max_slow_growth else SCHEMES.default_scheme
+    )
+    return TransientSchemes(first, SCHEMES.default_scheme, SCHEMES.default_noise, SCHEMES.default_max_steps)

@@ -26,7 +26,7 @@ from ....determinant.arm.hull.hull import hulls_along
 from ....determinant.arm.hull.region import PathHulls, hull_at
 from ....determinant.parameter_path import Path
 from ....determinant.roots.roots import Roots
-from ...backend.kept import forget_all
+from ...backend.solver_pools import destroy_pooled_solvers
 from ...point import FAILURES
 from ..candidates import line_for_proof, lines_for_count
 from ..search import Search
@@ -214,7 +214,7 @@ def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Root
         with np.errstate(all="ignore"):
             search.outcome()
     except FAILURES:
-        forget_all()
+        destroy_pooled_solvers()
         return None
     return None if search.best is None else search.best.candidates.roots
 

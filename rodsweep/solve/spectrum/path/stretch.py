@@ -16,7 +16,7 @@ from ....arrays import Array, Complex
 from ....determinant.certificate.winding_number import count_right_of
 from ....determinant.parameter_path import Path
 from ....model.rod import Rod, coefficients_of
-from ...backend.kept import forget_all
+from ...backend.solver_pools import destroy_pooled_solvers
 from ...point import FAILURES
 from ..search import Search, SpectrumRequest, solve_spectrum
 from ..search import warm_up as warm_up_search
@@ -178,7 +178,7 @@ def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | No
         with np.errstate(all="ignore"):
             outcome = search.outcome()
     except FAILURES:
-        forget_all()
+        destroy_pooled_solvers()
         return None
     if search.best is None or search.best.comparison is None or not outcome.certified:
         return None

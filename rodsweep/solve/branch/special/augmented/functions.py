@@ -65,7 +65,7 @@ class FoldFunction:
         self.border = border
         self.small = small
         tangent = matrix.direction(border)
-        self.vectors = tangent / (matrix.scale.moved(matrix.orbit, tangent) @ border)
+        self.vectors = tangent / (matrix.scale.directional_derivative(matrix.orbit, tangent) @ border)
 
     def value(self, orbit: Orbit) -> float:
         """The test function at an orbit, from the last corrected tangent."""
@@ -88,10 +88,12 @@ class FoldFunction:
         phase_row(orbit.start, p.rod, p.matrices, row)
         along = orbit.form.parameter_derivative(matrix.scale.name)
         shift = phase_change(orbit.start, along, p.rod, p.matrices)
-        closing = matrix.closing(jump_of(change.points, p), columns, ends)
+        closing = matrix.border_sides(jump_of(change.points, p), columns, ends)
         of_phase = shift * tangent[-1] - row @ change.start
-        right = np.array([*closing, of_phase, 1 - self.border @ matrix.scale.moved(orbit, tangent)])
-        self.vectors = tangent + matrix.solved(self.border, right, columns[:, :, 0], 1.0)
+        right = np.array(
+            [*closing, of_phase, 1 - self.border @ matrix.scale.directional_derivative(orbit, tangent)]
+        )
+        self.vectors = tangent + matrix.solve(self.border, right, columns[:, :, 0], 1.0)
 
 
 class TorusFunction:

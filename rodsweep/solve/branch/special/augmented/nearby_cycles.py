@@ -65,7 +65,7 @@ class NearbyCycleSolver:
         test function improves."""
         self.function.start_from(vectors)
 
-    def solved(
+    def solve(
         self, orbit: Orbit, condition: BorderCondition, slope: float, enough: float
     ) -> tuple[Orbit, float]:
         """(cycle near `orbit` that fulfils `condition`, value of its test function); raises Unsolvable.

@@ -19,7 +19,7 @@ Tip = tuple[float, float]
 """Coordinates (x, y) of the tip, in units of the arm's length L."""
 
 
-def bent(state: PageState, tip: Tip | None) -> dict[str, Any]:
+def dragged_equilibrium(state: PageState, tip: Tip | None) -> dict[str, Any]:
     """Equilibrium shape of the arm with its tip held at `tip`: coordinates `x` and `y`, (nodes,), in L. tip:
     None for the straight arm.
     """
@@ -46,10 +46,10 @@ def motion_film_answer(state: PageState, tip: Tip) -> dict[str, Any]:
     """Film of the motion after the release of the tip at `tip`: the content of a GIF file, under the name
     `gif`.
     """
-    return {"gif": motion_film(filmed(state, motion(state, tip)))}
+    return {"gif": motion_film(motion_in_page_units(state, motion(state, tip)))}
 
 
-def filmed(state: PageState, found: Mapping[str, Any]) -> FilmedMotion:
+def motion_in_page_units(state: PageState, found: Mapping[str, Any]) -> FilmedMotion:
     """The motion after a release, in the units of the page. found: result of `motion`."""
     subject = state.subject()
     length = length_axis(state)

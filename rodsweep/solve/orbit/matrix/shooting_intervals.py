@@ -20,7 +20,7 @@ from .workspace import Factors
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LegSettings:
+class ShootingIntervalSettings:
     """Settings for the legs of an orbit."""
 
     max_growth: float = 1e7
@@ -33,11 +33,11 @@ class LegSettings:
     """Multipliers with at most this modulus are treated as 0."""
 
 
-LEGS = LegSettings()
+SHOOTING_INTERVALS = ShootingIntervalSettings()
 
 
 @dataclass(frozen=True, eq=False)
-class Legs:
+class ShootingIntervals:
     """The m legs of an orbit. edges: index of the first time interval of each leg, and the number of time
     intervals, m + 1 numbers. maps: derivative of the end of each leg by its start, (m, n, n)."""
 
@@ -77,9 +77,9 @@ class Legs:
         """
         *others, last = self.maps
         ahead = triangle = np.eye(len(last))
-        for _ in range(LEGS.sweeps):
+        for _ in range(SHOOTING_INTERVALS.sweeps):
             # Directions that decay to nothing over a period are dropped, to save time.
-            lasting = np.flatnonzero(np.abs(np.diag(triangle)) > LEGS.negligible_multiplier)
+            lasting = np.flatnonzero(np.abs(np.diag(triangle)) > SHOOTING_INTERVALS.negligible_multiplier)
             start = ahead = ahead[:, : lasting[-1] + 1] if len(lasting) else ahead
             triangle = np.eye(start.shape[1])
             for A in (*others, orbit.symmetry.returned(last, orbit.form.layout)):
@@ -92,22 +92,22 @@ class Legs:
         # `eigvals` balances the matrix, which destroys the grading: multipliers near 1 would lose nine
         # digits.
         values = np.diag(schur(graded, output="complex")[0])
-        return values[np.abs(values) > LEGS.negligible_multiplier]
+        return values[np.abs(values) > SHOOTING_INTERVALS.negligible_multiplier]
 
 
-def legs_of(factors: Factors, mass: Array) -> Legs:
+def shooting_intervals_of(factors: Factors, mass: Array) -> ShootingIntervals:
     """The legs of an orbit, from its eliminated matrix. Time intervals are joined to a leg as long as the
-    norm of the leg's map is at most `LEGS.max_growth`. mass: diagonal of M, (n,)."""
+    norm of the leg's map is at most `SHOOTING_INTERVALS.max_growth`. mass: diagonal of M, (n,)."""
     blocks = factors.blocks
-    if not np.linalg.norm(factors.propagator) > LEGS.max_growth:  # also true for nan
-        return Legs((0, len(blocks)), factors.propagator[None])
+    if not np.linalg.norm(factors.propagator) > SHOOTING_INTERVALS.max_growth:  # also true for nan
+        return ShootingIntervals((0, len(blocks)), factors.propagator[None])
     firsts = [0]
     maps = [blocks[0, 0, 1] * mass]
     for k in range(1, len(blocks)):
         longer = blocks[k, 0, 1] @ (mass[:, None] * maps[-1])
-        if np.linalg.norm(longer) <= LEGS.max_growth:
+        if np.linalg.norm(longer) <= SHOOTING_INTERVALS.max_growth:
             maps[-1] = longer
         else:
             firsts.append(k)
             maps.append(blocks[k, 0, 1] * mass)
-    return Legs((*firsts, len(blocks)), np.array(maps))
+    return ShootingIntervals((*firsts, len(blocks)), np.array(maps))

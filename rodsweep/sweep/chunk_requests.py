@@ -14,7 +14,7 @@ from collections import deque
 from collections.abc import Callable
 
 from ..watch import SolvePosition
-from .handout import NO_WORK_LEFT, ChunkQueue, RankReport
+from .chunk_queue import NO_WORK_LEFT, ChunkQueue, RankReport
 from .points.ranges import IndexRange
 from .stop import StopRequest
 from .team import Team
@@ -42,69 +42,67 @@ CHUNK_POLL_GROWTH = 1.1
 """Ratio of two successive pauses of a waiting rank. The ratio is near 1, so that a wait of a millisecond is
 hardly prolonged."""
 WAIT_SECONDS = 0.05
-"""Seconds for which an idle first rank waits for the handout to change before it polls for MPI messages."""
+"""Seconds for which an idle first rank waits for the queue to change before it polls for MPI messages."""
 
 
 class FirstRankRequests:
-    """Claims chunks for the first rank, and answers the requests of all other ranks, also from a thread."""
+    """Takes chunks for the first rank, and answers the requests of all other ranks, also from a thread."""
 
-    def __init__(
-        self, team: Team, handout: ChunkQueue, stop: StopRequest, show: Callable[[str, float], None]
-    ):
+    def __init__(self, team: Team, queue: ChunkQueue, stop: StopRequest, show: Callable[[str, float], None]):
         """show: function (text on the progress of a long point, fractions of all unfinished points done,
         summed) that displays the progress.
         """
         self.team = team
-        self.handout = handout
+        self.queue = queue
         self.stop = stop
         self.show = show
         self.waiting: deque[int] = deque()
-        self.ahead: set[int] = set()
+        self.answered_in_advance: set[int] = set()
         """Ranks whose next request has been answered in advance."""
         self.working = set(range(1, team.size))
         self.status = team.MPI.Status()
-        self.places: dict[int, SolvePosition] = {}
+        self.positions: dict[int, SolvePosition] = {}
         """Latest reported progress within a long point, by rank."""
         self.serving = threading.Lock()
         self.served = 0.0
         self.thread: threading.Thread | None = None
         if team.size > 1:
             # A daemon, so that an exception on this rank does not wait for the thread.
-            self.thread = threading.Thread(target=self._serve_until_over, name="handout", daemon=True)
+            self.thread = threading.Thread(target=self._serve_until_over, name="chunk queue", daemon=True)
             self.thread.start()
 
-    def claim(self, report: RankReport) -> IndexRange:
+    def next_chunk(self, report: RankReport) -> IndexRange:
         """The next chunk for the first rank, given the `report` on its last chunk; NO_WORK_LEFT at the end.
 
         Waits until a chunk is available or no work is left.
         """
         with self.serving:
-            self._heed_stop()
-        self.places.pop(0, None)
-        self.handout.settle(0, report)
+            self._pass_on_stop()
+        self.positions.pop(0, None)
+        self.queue.add_report(0, report)
         self.between_points()
-        while (chunk := self.handout.take(0)) is None:
-            with self.handout.change:
-                self.handout.change.wait(WAIT_SECONDS)
+        while (chunk := self.queue.next_chunk(0)) is None:
+            with self.queue.change:
+                self.queue.change.wait(WAIT_SECONDS)
             self.between_points()
-            for place in list(self.places.values())[:1]:
-                self.show(place.words, self._begun())
+            for place in list(self.positions.values())[:1]:
+                self.show(place.words, self._begun_points())
         return chunk
 
     def close(self) -> None:
         """Waits until all other ranks have finished and the thread has ended."""
         if self.thread is not None:
             self.thread.join()
-            self._hear_places()
+            self._receive_positions()
 
-    def report_place(self, place: SolvePosition) -> None:
+    def report_position(self, place: SolvePosition) -> None:
         """Displays the progress of the first rank within a long point."""
-        self.places[0] = place
-        self.show(place.words, self._begun())
+        self.positions[0] = place
+        self.show(place.words, self._begun_points())
 
-    def _begun(self) -> float:
+    def _begun_points(self) -> float:
         """Sum of the fractions done of all unfinished points on all ranks."""
-        return sum(place.share or 0.0 for place in list(self.places.values()))
+        return sum(place.share or 0.0 for place in list(self.positions.values()))
 
     def between_points(self) -> None:
         """Answers requests of other ranks; called on the first rank between two points.
@@ -116,12 +114,12 @@ class FirstRankRequests:
             self._serve()
             self.served = time.monotonic()
         else:
-            self._heed_stop()
+            self._pass_on_stop()
 
-    def _heed_stop(self) -> None:
-        """After a stop request to the first rank, ends the handout and notifies all working ranks, once."""
-        if self.stop and not self.handout.stopped:
-            self.handout.stop()
+    def _pass_on_stop(self) -> None:
+        """After a stop request to the first rank, ends the queue and notifies all working ranks, once."""
+        if self.stop and not self.queue.stopped:
+            self.queue.stop()
             for rank in self.working:
                 self.team.comm.send(self.stop.name, dest=rank, tag=STOP_TAG)
 
@@ -131,44 +129,45 @@ class FirstRankRequests:
         MPI = self.team.MPI
         with self.serving:
             while comm.Iprobe(source=MPI.ANY_SOURCE, tag=STOP_TAG, status=self.status):
-                self.stop.take(comm.recv(source=self.status.Get_source(), tag=STOP_TAG))
-            self._heed_stop()
-            self._hear_places()
+                self.stop.adopt(comm.recv(source=self.status.Get_source(), tag=STOP_TAG))
+            self._pass_on_stop()
+            self._receive_positions()
             while comm.Iprobe(source=MPI.ANY_SOURCE, tag=REQUEST_TAG, status=self.status):
                 rank = self.status.Get_source()
-                self._hear(rank, comm.recv(source=rank, tag=REQUEST_TAG))
-            while self.waiting and (chunk := self.handout.take(self.waiting[0])) is not None:
+                self._handle_report(rank, comm.recv(source=rank, tag=REQUEST_TAG))
+            while self.waiting and (chunk := self.queue.next_chunk(self.waiting[0])) is not None:
                 rank = self.waiting.popleft()
                 comm.send(chunk, dest=rank, tag=ANSWER_TAG)
                 if chunk == NO_WORK_LEFT:
                     self.working.discard(rank)
 
-    def _hear_places(self) -> None:
+    def _receive_positions(self) -> None:
         """Receives all waiting reports of progress within long points."""
         comm = self.team.comm
         MPI = self.team.MPI
         while comm.Iprobe(source=MPI.ANY_SOURCE, tag=PROGRESS_TAG, status=self.status):
             rank = self.status.Get_source()
-            self.places[rank] = comm.recv(source=rank, tag=PROGRESS_TAG)
+            self.positions[rank] = comm.recv(source=rank, tag=PROGRESS_TAG)
 
-    def _hear(self, rank: int, report: RankReport) -> None:
+    def _handle_report(self, rank: int, report: RankReport) -> None:
         """Handles the report of a rank.
 
-        A request made in advance (`report.ahead`) is answered immediately if enough units are left. Any other
-        request is queued, unless the rank already has its next chunk from a request made in advance.
+        A request made in advance (`report.is_in_advance`) is answered immediately if enough units are left.
+        Any other request is queued, unless the rank already has its next chunk from a request made in
+        advance.
         """
-        if report.ahead:
-            if (chunk := self.handout.take_ahead(rank)) is not None:
+        if report.is_in_advance:
+            if (chunk := self.queue.next_chunk_in_advance(rank)) is not None:
                 self.team.comm.send(chunk, dest=rank, tag=ANSWER_TAG)
-                self.ahead.add(rank)
+                self.answered_in_advance.add(rank)
             return
         if report.stop:  # the report may arrive before the rank's message with STOP_TAG
-            self.stop.take(report.stop)
-            self._heed_stop()
-        self.places.pop(rank, None)
-        self.handout.settle(rank, report)
-        if rank in self.ahead:
-            self.ahead.remove(rank)
+            self.stop.adopt(report.stop)
+            self._pass_on_stop()
+        self.positions.pop(rank, None)
+        self.queue.add_report(rank, report)
+        if rank in self.answered_in_advance:
+            self.answered_in_advance.remove(rank)
         else:
             self.waiting.append(rank)
 
@@ -181,15 +180,15 @@ class FirstRankRequests:
                 time.sleep(RELIEVED_POLL_SECONDS if answering else POLL_SECONDS)
 
 
-class OtherRankClaims:
-    """Claims chunks for a rank other than the first, by messages to the first rank."""
+class OtherRankRequests:
+    """Takes chunks for a rank other than the first, by messages to the first rank."""
 
     def __init__(self, team: Team, stop: StopRequest):
         self.comm = team.comm
         self.stop = stop
         self.stop_exchanged = False
 
-    def claim(self, report: RankReport) -> IndexRange:
+    def next_chunk(self, report: RankReport) -> IndexRange:
         """The next chunk for this rank, given the `report` on its last chunk; NO_WORK_LEFT at the end.
 
         Waits for the answer of the first rank, and requests the following chunk in advance.
@@ -203,10 +202,10 @@ class OtherRankClaims:
             pause = min(CHUNK_POLL_GROWTH * pause, LONGEST_CHUNK_POLL_SECONDS)
         chunk: IndexRange = self.comm.recv(source=0, tag=ANSWER_TAG)
         if chunk != NO_WORK_LEFT:
-            self.comm.send(RankReport(ahead=True), dest=0, tag=REQUEST_TAG)
+            self.comm.send(RankReport(is_in_advance=True), dest=0, tag=REQUEST_TAG)
         return chunk
 
-    def report_place(self, place: SolvePosition) -> None:
+    def report_position(self, place: SolvePosition) -> None:
         """Reports the progress of this rank within a long point to the first rank."""
         self.comm.send(place, dest=0, tag=PROGRESS_TAG)
 
@@ -215,7 +214,7 @@ class OtherRankClaims:
         the request of the first rank.
         """
         if not self.stop_exchanged and self.comm.Iprobe(source=0, tag=STOP_TAG):
-            self.stop.take(self.comm.recv(source=0, tag=STOP_TAG))
+            self.stop.adopt(self.comm.recv(source=0, tag=STOP_TAG))
             self.stop_exchanged = True
         if not self.stop_exchanged and self.stop:
             self.comm.send(self.stop.name, dest=0, tag=STOP_TAG)

@@ -18,7 +18,7 @@ from ..run.journal import journal_directory, read_journals, read_reasons
 from .exchange import FileReplacement, disk_refusals, identity
 from .points import missing_ranges, write_points
 from .provenance import now, reasons_added
-from .validation import ResultHeader, is_rodsweep_file, read_header, reading
+from .validation import ResultHeader, damage_refusals, is_rodsweep_file, read_header
 
 MAX_REREADS = 20
 """Maximum number of attempts to read a file that is replaced meanwhile. A run replaces its file every few
@@ -118,5 +118,5 @@ def _is_snapshot(path: Path) -> bool:
     """
     if not is_rodsweep_file(path):
         return False
-    with reading(path), h5py.File(path, "r") as file:
+    with damage_refusals(path), h5py.File(path, "r") as file:
         return bool(file.attrs.get(SNAPSHOT))

@@ -22,7 +22,7 @@ from ...discretization.elements.mesh import shape_from_strains
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HeldTipSettings:
+class FixedTipSettings:
     """Settings of the rod that is bent until its tip is at a given point."""
 
     reach: float = 0.98
@@ -45,27 +45,27 @@ class HeldTipSettings:
     to a different shape."""
 
 
-HELD_TIP = HeldTipSettings()
+FIXED_TIP = FixedTipSettings()
 
 
 def equilibrium_at_tip(beam: Beam, x: float, y: float) -> Array:
     """The state z, (unknowns,), of the rod bent until the tip is at (x, y), in L.
 
-    A target beyond `HeldTipSettings.reach` is moved towards the clamp. If Newton's method fails on the path
+    A target beyond `FixedTipSettings.reach` is moved towards the clamp. If Newton's method fails on the path
     of targets, the state for the last target reached is returned.
     """
     bending = _Bending(beam)
     side = -1.0 if y < 0 else 1.0
     # The curvature falls to 0 at the free tip, as under a force at the tip; its integral is the angle.
-    Pi = 2 * side * HELD_TIP.first_angle * (1 - beam.mesh.positions)
+    Pi = 2 * side * FIXED_TIP.first_angle * (1 - beam.mesh.positions)
     first = bending.tip(Pi)
     start = np.array([hypot(*first), atan2(first[1], first[0])])
     # At a distance equal to its length the rod would be straight, and the force not determined.
-    end = np.array([min(hypot(x, y), HELD_TIP.reach * bending.length), atan2(y, x)])
+    end = np.array([min(hypot(x, y), FIXED_TIP.reach * bending.length), atan2(y, x)])
     force = np.zeros(2)
     reached = 0.0
-    step = HELD_TIP.first_step
-    while reached < 1 and step > HELD_TIP.least_step:
+    step = FIXED_TIP.first_step
+    while reached < 1 and step > FIXED_TIP.least_step:
         share = min(1.0, reached + step)
         radius, angle = start + share * (end - start)
         found = bending.placed(Pi, force, radius * np.array([np.cos(angle), np.sin(angle)]))
@@ -108,7 +108,7 @@ class _Bending:
         size = len(Pi)
         weights = self.mesh.quadrature
         matrix = np.zeros((size + 2, size + 2))
-        for _ in range(HELD_TIP.max_iterations):
+        for _ in range(FIXED_TIP.max_iterations):
             first, second = self._derivatives(Pi, force)
             # Bending energy minus the work of the force, with the tip's position as two constraints.
             matrix[:size, :size] = np.diag(weights) - second
@@ -117,11 +117,11 @@ class _Bending:
             misplaced = place - self.tip(Pi)
             change = np.linalg.solve(matrix, np.append(first.T @ force - weights * Pi, misplaced))
             # A step that turns the rod by a radian is outside the range of the linearisation.
-            if not np.abs(self.angles @ change[:size]).max() < HELD_TIP.largest_turn:
+            if not np.abs(self.angles @ change[:size]).max() < FIXED_TIP.largest_turn:
                 return None
             Pi = Pi + change[:size]
             force = force + change[size:]
-            if np.abs(misplaced).max() < HELD_TIP.placed:
+            if np.abs(misplaced).max() < FIXED_TIP.placed:
                 return Pi, force
         return None
 

@@ -15,7 +15,7 @@ from .coefficient_errors import hopf_coefficients
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HopfBesideSettings:
+class SubcriticalHopfSettings:
     """Settings for the search for a subcritical Hopf point near the force of a rod."""
 
     farthest_force: float = 1.5
@@ -28,7 +28,7 @@ class HopfBesideSettings:
     inaccurate."""
 
 
-HOPF_BESIDE = HopfBesideSettings()
+SUBCRITICAL_HOPF = SubcriticalHopfSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,23 +43,23 @@ class SubcriticalHopf:
     unstable_y: float
 
 
-def subcritical_hopf_beside(rod: Rod) -> SubcriticalHopf | None:
+def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     """The nearest Hopf point to the force of `rod` that is subcritical; None if neither candidate is
     subcritical.
 
     The candidates are the first Hopf point above and the first Hopf point below the force, if the tip y of
-    the unstable cycle is at most `HOPF_BESIDE.largest_y`. The straight rod must be stable. Raises Unsolvable
-    if the search for Hopf points or a coefficient fails.
+    the unstable cycle is at most `SUBCRITICAL_HOPF.largest_y`. The straight rod must be stable. Raises
+    Unsolvable if the search for Hopf points or a coefficient fails.
     """
-    low = rod.F / HOPF_BESIDE.farthest_force
-    high = end_below_crushing(rod, rod.F * HOPF_BESIDE.farthest_force)
+    low = rod.F / SUBCRITICAL_HOPF.farthest_force
+    high = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF.farthest_force)
     if not 0 < low < high:
         return None
     crossings = pair_crossings(Path(rod, "F"), low, high, certify=False).crossings
     nearest = [c for c in crossings if c.at > rod.F][:1] + [c for c in crossings if c.at <= rod.F][-1:]
     for hopf in sorted(nearest, key=lambda c: abs(c.at - rod.F)):
-        found = hopf_coefficients(replace(rod, F=hopf.at), hopf, HOPF_BESIDE.accuracy)
+        found = hopf_coefficients(replace(rod, F=hopf.at), hopf, SUBCRITICAL_HOPF.accuracy)
         y = abs(found.amplitude_coefficient) * abs(rod.F / hopf.at - 1) ** 0.5
-        if found.criticality > 0 and y <= HOPF_BESIDE.largest_y:
+        if found.criticality > 0 and y <= SUBCRITICAL_HOPF.largest_y:
             return SubcriticalHopf(hopf.at, y)
     return None

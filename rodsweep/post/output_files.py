@@ -9,7 +9,7 @@ from typing import TextIO
 from ..errors import InputError
 
 
-def require_name(output: Path, endings: Sequence[str], noun: str, inputs: Sequence[Path] = ()) -> None:
+def require_output_path(output: Path, endings: Sequence[str], noun: str, inputs: Sequence[Path] = ()) -> None:
     """Raises InputError if `output` has a suffix not in `endings`, if its directory does not exist, or if
     `output` is a directory or one of the files `inputs`. noun: noun for the file, for the message.
     """

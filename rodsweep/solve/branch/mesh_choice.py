@@ -64,7 +64,9 @@ def first_measured_cycle(
     lost = abs(multipliers[0] - 1) if len(multipliers) else 0.0
     # At the Hopf point the derivative of the parameter is 0 and a second multiplier is 1. Near the Hopf point
     # this derivative is linear, and the multiplier is quadratic, in the deflection.
-    derivatives = replace(derivatives, curvature=derivatives.rate / born, multiplier_rate=2 * lost / born)
+    derivatives = replace(
+        derivatives, curvature=derivatives.parameter_slope / born, multiplier_rate=2 * lost / born
+    )
     calibration = measured_errors(found, derivatives, accuracy, None)
     cycle = with_calibrated_errors(calibration.at_parameter, found, accuracy)
     return solve_on_sufficient_mesh(
@@ -78,7 +80,7 @@ def first_measured_cycle(
 def measurement_due(point: ArcPoint) -> bool:
     """Whether the errors of a cycle must be measured: the last measured cycle is too many steps away, or the
     errors have grown too much since."""
-    growth = float(point.calibration.at_parameter.on_branch(point.orbit).error_growth.max())
+    growth = float(point.calibration.at_parameter.scaled_on_branch(point.orbit).error_growth.max())
     return point.unmeasured >= BRANCH_MESH.max_unmeasured or growth > BRANCH_MESH.remeasure_growth
 
 
@@ -109,7 +111,7 @@ def solve_on_sufficient_mesh(
             point = with_measured_errors(point, accuracy)
         known = point.calibration
         enough = known.largest(accuracy) <= accuracy
-        planned = known.planned(BRANCH_MESH.planned_error * accuracy)
+        planned = known.cheapest_mesh(BRANCH_MESH.planned_error * accuracy)
         # A sufficient mesh is replaced only by a much cheaper mesh, and never after an insufficient mesh.
         if enough and (finest or planned.cost > BRANCH_MESH.max_cheaper_cost * known.mesh.cost):
             return point
@@ -125,7 +127,9 @@ def solve_on_sufficient_mesh(
 def solved_on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accuracy: float) -> ArcPoint:
     """The same cycle solved on the mesh `mesh`, without measured errors; raises Unsolvable. condition:
     equation that defines the same cycle on every mesh."""
-    found = condition.on(mesh, point.cycle.converged, newton_tolerance(accuracy), matrix_distance(accuracy))
+    found = condition.on_mesh(
+        mesh, point.cycle.converged, newton_tolerance(accuracy), matrix_distance(accuracy)
+    )
     tangent = tangent_at(found.orbit, point.scale, point.ahead, bordered_matrix_of(found))
     known = point.derivatives
     derivatives = replace(
@@ -190,10 +194,10 @@ def _with_errors_between(
     slow = abs(point.parameter_rate) < BRANCH_MESH.min_rate_share * min(
         abs(one.parameter_rate) for one in ends
     )
-    grown = min(one.calibration.at_parameter.on_branch(point.orbit).error_growth.max() for one in ends)
+    grown = min(one.calibration.at_parameter.scaled_on_branch(point.orbit).error_growth.max() for one in ends)
     if slow or float(grown) > BRANCH_MESH.max_tail_growth:
         return with_measured_errors(point, accuracy)
-    known = last.calibration.towards(
+    known = last.calibration.interpolate(
         end.calibration, share, sensitivity_of(point.cycle.path, point.derivatives)
     )
     return with_calibration(point, known, accuracy)

@@ -10,7 +10,7 @@ import numpy as np
 from ..config.arm.section import ArmSection
 from ..config.document.call_arguments import in_sentences, unknown
 from ..config.document.reading import validated, with_files_read
-from ..config.document.refusals import nearest
+from ..config.document.refusals import similar_keys
 from ..config.material import MaterialSection
 from ..config.schema import Config
 from ..config.tasks import CONFIGS
@@ -48,7 +48,7 @@ def config_tree(task: str, keywords: Mapping[str, Any]) -> ConfigTree:
             continue
         section = _section_of(name, sections)
         if section is None:
-            section = _section_of(_meant(name, sections), sections)
+            section = _section_of(_similar_key(name, sections), sections)
         place = tree.setdefault(section, {}) if section else tree
         place[name] = plain_keyword(f"{section}.{name}" if section else name, value)
     _write_out_arm(task, tree)
@@ -125,14 +125,14 @@ def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str | Non
     return next((section for section, known in sections.items() if name in known), None)
 
 
-def _meant(name: str, sections: Mapping[str, Collection[str]]) -> str:
+def _similar_key(name: str, sections: Mapping[str, Collection[str]]) -> str:
     """The allowed key that is most similar to the unknown key `name`.
 
     For a quantity of an arm, whose section is not in `sections`, the first allowed key may be returned:
     validation then names the right section. Raises InputError with a list of all keys if no key is similar.
     """
     known = [key for keys in sections.values() for key in keys]
-    close = nearest(name, known)
+    close = similar_keys(name, known)
     if not close and name not in ArmSection.model_fields:
         raise unknown(name, known)
     return close[0] if close else known[0]

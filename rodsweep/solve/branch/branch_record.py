@@ -10,7 +10,7 @@ from ..point import Unsolvable
 from .arc import ArcPoint
 from .bordered.condition import BorderCondition
 from .branch_curve import BranchCurve, BranchEnd, BranchPoint
-from .settling import with_errors_in_accuracy
+from .mesh_choice import with_errors_in_accuracy
 from .special.point import EndReason, SpecialKind, SpecialPoint
 
 
@@ -39,39 +39,39 @@ class BranchRecord:
         cycle, with measured errors."""
         self.curve = curve
         self.accuracy = accuracy
-        self._measured = first
-        self._waiting: list[ArcPoint] = []
+        self._last_measured = first
+        self._unmeasured: list[ArcPoint] = []
         curve.points.append(BranchPoint.of(first, accuracy))
 
     def append(self, point: ArcPoint) -> None:
         """Appends a cycle without measured errors."""
-        self._waiting.append(point)
+        self._unmeasured.append(point)
         self.curve.points.append(BranchPoint.of(point, self.accuracy))
 
-    def settle(self, condition: BorderCondition | None = None) -> ArcPoint:
+    def assign_errors(self, condition: BorderCondition | None = None) -> ArcPoint:
         """Measures or interpolates the errors of all cycles appended since the last measurement, and returns
         the last cycle; raises Unsolvable.
 
         condition: equation that defines the last cycle on every mesh; by default the condition that its arc
         length is unchanged.
         """
-        if self._waiting:
-            points = with_errors_in_accuracy(self._measured, self._waiting, self.accuracy, condition)
-            self.curve.judge([BranchPoint.of(point, self.accuracy) for point in points])
-            self._measured = points[-1]
-            self._waiting = []
-        return self._measured
+        if self._unmeasured:
+            points = with_errors_in_accuracy(self._last_measured, self._unmeasured, self.accuracy, condition)
+            self.curve.replace_last_cycles([BranchPoint.of(point, self.accuracy) for point in points])
+            self._last_measured = points[-1]
+            self._unmeasured = []
+        return self._last_measured
 
     def end(self, end: BranchEnd) -> None:
         """Appends the end of the branch, with errors. If the errors of the last cycles cannot be measured,
         these cycles are removed and the branch ends at the last measured cycle."""
         curve = self.curve
         try:
-            self.settle()
+            self.assign_errors()
         except Unsolvable as why:
-            curve.cut(len(self._waiting))
+            curve.remove_last_cycles(len(self._unmeasured))
             message = f"the errors of the next cycles cannot be measured: {why}"
-            special = end_point(self._measured, EndReason.no_cycle_found, message)
+            special = end_point(self._last_measured, EndReason.no_cycle_found, message)
             end = replace(end, special=special, complete=False)
         special = end.special
         last = curve.points[-1]

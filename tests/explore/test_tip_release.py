@@ -11,8 +11,8 @@ import rodsweep as rs
 from rodsweep.explore.page import INSTANT_KINDS, Page
 from rodsweep.explore.pictures.beating import PERIOD_SECONDS
 from rodsweep.explore.pictures.card import NO_TITLE
-from rodsweep.explore.solving.letting_go import filmed
 from rodsweep.explore.solving.questions import SHAPE_COUNT, Question, Reply, answer_to
+from rodsweep.explore.solving.tip_release import motion_in_page_units
 from rodsweep.explore.state import PageState
 from rodsweep.post.figures.cycle.motion_film import motion_film
 
@@ -129,7 +129,7 @@ def test_the_film_of_an_arm_that_was_let_go_is_that_of_its_motion():
 def test_the_film_of_a_motion_is_in_the_units_of_the_page():
     found = {"x": np.array([[0.0, 1.0], [0.0, 0.9]]), "y": np.array([[0.0, 0.1], [0.0, 0.2]]), "step": 0.5}
     state = PageState(tab="arm")
-    motion = filmed(state, found)
+    motion = motion_in_page_units(state, found)
     assert (motion.length, motion.units) == (pytest.approx(10), ("cm", "s"))
     assert motion.step == pytest.approx(0.5 * state.subject().tau2)
     assert motion.y[:, -1] == pytest.approx([1, 2])

@@ -9,15 +9,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rodsweep.sweep.claims import (
+from rodsweep.sweep.chunk_queue import CHUNK_SECONDS, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
+from rodsweep.sweep.chunk_requests import (
     ANSWER_TAG,
     PROGRESS_TAG,
     REQUEST_TAG,
     STOP_TAG,
     FirstRankRequests,
-    OtherRankClaims,
+    OtherRankRequests,
 )
-from rodsweep.sweep.handout import CHUNK_SECONDS, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
 from rodsweep.sweep.stop import StopRequest
 from rodsweep.watch import SolvePosition
 
@@ -35,14 +35,14 @@ def test_every_unit_is_done_once_whatever_ranks_give_back_and_none_ends_before(s
         rank = rng.choice(list(held))
         chunks = held[rank]
         if len(chunks) == 1 and rng.random() < 0.5:
-            ahead = handout.take_ahead(rank)
+            ahead = handout.next_chunk_in_advance(rank)
             chunks += [ahead] if ahead else []
         if chunks:
             start, stop = chunks.pop(0)
             at = int(rng.integers(start, stop)) + 1
             done += range(start, at)
-            handout.settle(rank, RankReport(at - start, 10 ** rng.uniform(-4, 1), (at, stop)))
-        chunk = None if chunks else handout.take(rank)
+            handout.add_report(rank, RankReport(at - start, 10 ** rng.uniform(-4, 1), (at, stop)))
+        chunk = None if chunks else handout.next_chunk(rank)
         if chunk == NO_WORK_LEFT:
             assert sorted(done) == units
             del held[rank]
@@ -52,33 +52,33 @@ def test_every_unit_is_done_once_whatever_ranks_give_back_and_none_ends_before(s
 
 def test_chunks_follow_the_pace_and_shrink_towards_the_end():
     handout = ChunkQueue([(0, 100_000)], ranks=4)
-    start, stop = handout.take(1)
+    start, stop = handout.next_chunk(1)
     assert stop - start == 1
-    handout.settle(1, RankReport(1, 1e-3))
-    start, stop = handout.take(1)
+    handout.add_report(1, RankReport(1, 1e-3))
+    start, stop = handout.next_chunk(1)
     assert stop - start == pytest.approx(CHUNK_SECONDS / 1e-3, abs=1)
     handout = ChunkQueue([(0, 16)], ranks=4)
-    handout.settle(1, RankReport(1, 1e-6))
-    assert handout.take(1) == (0, 2)
+    handout.add_report(1, RankReport(1, 1e-6))
+    assert handout.next_chunk(1) == (0, 2)
 
 
 def test_rest_that_is_given_back_goes_to_the_next():
     handout = ChunkQueue([(0, 3)], ranks=1)
-    handout.settle(0, RankReport(1, 1e-6))
-    assert handout.take(0) == (0, 1)
-    handout.settle(0, RankReport(0, 1.0, (0, 1)))
-    assert handout.take(1) == (0, 1)
+    handout.add_report(0, RankReport(1, 1e-6))
+    assert handout.next_chunk(0) == (0, 1)
+    handout.add_report(0, RankReport(0, 1.0, (0, 1)))
+    assert handout.next_chunk(1) == (0, 1)
 
 
 def test_idle_rank_waits_while_another_may_give_back():
     handout = ChunkQueue([(0, 1)], ranks=2)
-    assert handout.take(0) == (0, 1)
-    assert handout.take(1) is None
-    handout.settle(0, RankReport(0, 9.0, (0, 1)))
-    assert handout.take(1) == (0, 1)
-    assert handout.take(0) is None
-    handout.settle(1, RankReport(1, 0.1))
-    assert handout.take(0) == handout.take(1) == NO_WORK_LEFT
+    assert handout.next_chunk(0) == (0, 1)
+    assert handout.next_chunk(1) is None
+    handout.add_report(0, RankReport(0, 9.0, (0, 1)))
+    assert handout.next_chunk(1) == (0, 1)
+    assert handout.next_chunk(0) is None
+    handout.add_report(1, RankReport(1, 0.1))
+    assert handout.next_chunk(0) == handout.next_chunk(1) == NO_WORK_LEFT
 
 
 def test_two_threads_share_the_work_without_losing_any():
@@ -88,8 +88,8 @@ def test_two_threads_share_the_work_without_losing_any():
     def work(rank):
         report = RankReport()
         while True:
-            handout.settle(rank, report)
-            while (chunk := handout.take(rank)) is None:
+            handout.add_report(rank, report)
+            while (chunk := handout.next_chunk(rank)) is None:
                 time.sleep(1e-4)
             if chunk == NO_WORK_LEFT:
                 return
@@ -107,42 +107,42 @@ def test_two_threads_share_the_work_without_losing_any():
 def test_points_that_all_ranks_have_kept_are_counted():
     handout = ChunkQueue([(0, 9)], ranks=2)
     for rank, points in ((0, 2), (1, 3), (0, 1)):
-        handout.settle(rank, RankReport(points=points))
+        handout.add_report(rank, RankReport(points=points))
     assert handout.points == 6
 
 
 def test_after_a_stop_nobody_gets_more_and_nobody_waits():
     handout = ChunkQueue([(0, 100)], ranks=2)
-    assert handout.take(0) == (0, 1)
+    assert handout.next_chunk(0) == (0, 1)
     handout.stop()
-    assert handout.take(1) == NO_WORK_LEFT
-    handout.settle(0, RankReport(0, 1.0, (0, 1)))
-    assert handout.take(0) == NO_WORK_LEFT
+    assert handout.next_chunk(1) == NO_WORK_LEFT
+    handout.add_report(0, RankReport(0, 1.0, (0, 1)))
+    assert handout.next_chunk(0) == NO_WORK_LEFT
 
 
 def test_many_ranks_ask_the_first_no_more_than_a_thousand_times_a_second():
     assert chunk_seconds(2) == CHUNK_SECONDS
     for ranks in (200, 10_000):
         handout = ChunkQueue([(0, 10**9)], ranks)
-        handout.settle(1, RankReport(1000, 1.0))
-        start, stop = handout.take(1)
+        handout.add_report(1, RankReport(1000, 1.0))
+        start, stop = handout.next_chunk(1)
         assert ranks / ((stop - start) * 1e-3) <= 1001
 
 
 def test_next_chunk_is_given_ahead_while_plenty_is_left():
     handout = ChunkQueue([(0, 9)], ranks=2)
-    assert handout.take(1) == (0, 1)
-    assert handout.take_ahead(1) == (1, 2)
-    assert handout.take_ahead(0) is None  # seven units left, fewer than four a rank
-    handout.settle(1, RankReport(1, 9.0))
+    assert handout.next_chunk(1) == (0, 1)
+    assert handout.next_chunk_in_advance(1) == (1, 2)
+    assert handout.next_chunk_in_advance(0) is None  # seven units left, fewer than four a rank
+    handout.add_report(1, RankReport(1, 9.0))
     for _ in range(7):
-        handout.take(0)
-        handout.settle(0, RankReport(1, 9.0))
-    assert handout.take(0) is None  # rank 1 still has the one that it got ahead, and may give it back
-    handout.settle(1, RankReport(0, 9.0, (1, 2)))
-    assert handout.take(0) == (1, 2)
-    handout.settle(0, RankReport(1, 9.0))
-    assert handout.take(0) == NO_WORK_LEFT
+        handout.next_chunk(0)
+        handout.add_report(0, RankReport(1, 9.0))
+    assert handout.next_chunk(0) is None  # rank 1 still has the one that it got ahead, and may give it back
+    handout.add_report(1, RankReport(0, 9.0, (1, 2)))
+    assert handout.next_chunk(0) == (1, 2)
+    handout.add_report(0, RankReport(1, 9.0))
+    assert handout.next_chunk(0) == NO_WORK_LEFT
 
 
 class Mail:
@@ -183,7 +183,7 @@ def claims(mail, todo, monkeypatch, show=lambda words, begun: None):
 
 
 def test_each_chunk_is_answered_once_whether_asked_for_ahead_or_not(monkeypatch):
-    ahead, done = RankReport(ahead=True), RankReport(1, 9.0)
+    ahead, done = RankReport(is_in_advance=True), RankReport(1, 9.0)
     mail = Mail()
     first = claims(mail, [(0, 10)], monkeypatch)
     answers = []
@@ -204,14 +204,14 @@ def test_what_a_stopped_rank_gives_back_is_for_another_run(monkeypatch):
         first.between_points()
     assert first.stop.name == "SIGTERM"
     assert mail.sent == [(0, 1), "SIGTERM", NO_WORK_LEFT]
-    assert first.handout.take(0) == NO_WORK_LEFT
+    assert first.queue.next_chunk(0) == NO_WORK_LEFT
 
 
 def test_what_the_first_rank_gives_back_when_stopped_is_for_another_run(monkeypatch):
     first = claims(Mail(), [(0, 1)], monkeypatch)
-    assert first.claim(RankReport()) == (0, 1)
+    assert first.next_chunk(RankReport()) == (0, 1)
     first.stop.name = "SIGUSR1"
-    assert first.claim(RankReport(0, 9.0, (0, 1), 1)) == NO_WORK_LEFT
+    assert first.next_chunk(RankReport(0, 9.0, (0, 1), 1)) == NO_WORK_LEFT
 
 
 @pytest.mark.parametrize("asked", ["the first", "another"])
@@ -228,7 +228,7 @@ def test_a_rank_that_is_asked_to_stop_stops_all(monkeypatch, asked):
     mail.post(REQUEST_TAG, RankReport())
     first.between_points()
     assert mail.sent == ["SIGTERM", NO_WORK_LEFT]
-    assert first.claim(RankReport()) == NO_WORK_LEFT
+    assert first.next_chunk(RankReport()) == NO_WORK_LEFT
 
 
 def test_progress_counts_what_is_done_of_every_long_point_until_it_is_reported(monkeypatch):
@@ -236,27 +236,27 @@ def test_progress_counts_what_is_done_of_every_long_point_until_it_is_reported(m
     first = claims(mail, [(0, 9)], monkeypatch, lambda words, begun: shown.append((words, begun)))
     mail.post(PROGRESS_TAG, SolvePosition("branch", 0.5))
     first.between_points()
-    first.report_place(SolvePosition("mesh"))  # its share is not known
-    first.report_place(SolvePosition("cycle", 0.25))
+    first.report_position(SolvePosition("mesh"))  # its share is not known
+    first.report_position(SolvePosition("cycle", 0.25))
     mail.post(REQUEST_TAG, RankReport(1, 9.0))
     first.between_points()
-    first.report_place(SolvePosition("cycle", 0.75))
+    first.report_position(SolvePosition("cycle", 0.75))
     assert shown == [("mesh", 0.5), ("cycle", 0.75), ("cycle", 0.75)]
 
 
 def other_claims(mail):
     """The claims of a rank that is not the first."""
-    return OtherRankClaims(SimpleNamespace(comm=mail), StopRequest())
+    return OtherRankRequests(SimpleNamespace(comm=mail), StopRequest())
 
 
 def test_another_rank_asks_for_its_next_chunk_when_it_begins_one():
     mail = Mail(sender=0)
     rank, done = other_claims(mail), RankReport(3, 9.0)
     mail.post(ANSWER_TAG, (4, 7))
-    assert rank.claim(done) == (4, 7)
-    assert mail.sent == [done, RankReport(ahead=True)]
+    assert rank.next_chunk(done) == (4, 7)
+    assert mail.sent == [done, RankReport(is_in_advance=True)]
     mail.post(ANSWER_TAG, NO_WORK_LEFT)
-    assert rank.claim(done) == NO_WORK_LEFT
+    assert rank.next_chunk(done) == NO_WORK_LEFT
     assert mail.sent[2:] == [done]
 
 

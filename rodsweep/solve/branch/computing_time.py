@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BranchWorkSettings:
+class ComputingTimeSettings:
     """Exponents of the model of the computing time, fitted to measured times."""
 
     distance_exponent: float = 0.75
@@ -21,24 +21,25 @@ class BranchWorkSettings:
     """Exponent of the length D of a branch in the computing time of this branch."""
 
 
-BRANCH_WORK = BranchWorkSettings()
+COMPUTING_TIME = ComputingTimeSettings()
 
 
 ParameterRange = tuple[float, float]
 """Smallest and largest coordinate of the continuation parameter."""
 
 
-def fraction_done(born: float, at: float, aim: float) -> float:
-    """Estimated fraction of the computing time of a branch that has passed at the parameter coordinate `at`.
-    born, aim: parameter coordinates at the start of the branch and at its expected end."""
-    way = (at - born) / (aim - born) if aim != born else 1.0
-    return min(max(way, 0.0), 1.0) ** BRANCH_WORK.distance_exponent
+def fraction_done(start: float, present: float, expected_end: float) -> float:
+    """Estimated fraction of the computing time of a branch that has passed at the parameter coordinate
+    `present`. start, expected_end: parameter coordinates at the start of the branch and at its expected
+    end."""
+    way = (present - start) / (expected_end - start) if expected_end != start else 1.0
+    return min(max(way, 0.0), 1.0) ** COMPUTING_TIME.distance_exponent
 
 
-def fractions_before_branches(born: Sequence[float], ends: ParameterRange) -> list[float]:
+def fractions_before_branches(starts: Sequence[float], ends: ParameterRange) -> list[float]:
     """Estimated fractions of the total computing time of all branches that have passed before each branch,
-    and after the last branch, (branches + 1,). born: parameter coordinates of the Hopf points where the
+    and after the last branch, (branches + 1,). starts: parameter coordinates of the Hopf points where the
     branches start. ends: range of the parameter coordinate."""
-    works = [max(abs(end - at) for end in ends) ** BRANCH_WORK.length_exponent for at in born]
+    works = [max(abs(end - at) for end in ends) ** COMPUTING_TIME.length_exponent for at in starts]
     done = [sum(works[:number]) for number in range(len(works) + 1)]
     return [work / done[-1] if done[-1] else 1.0 for work in done]

@@ -27,16 +27,16 @@ class _SharedWork:
     skipped: bool = False
     """Whether this rank has omitted an item after a stop signal."""
 
-    def in_order(self, items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
+    def gather_in_order(self, items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
         """Results of `work` for all items, in order, on every rank; None for an omitted item."""
-        return self.team.in_order(items, lambda item: self._unless_stopped(work, item))
+        return self.team.in_order(items, lambda item: self._run_unless_stopped(work, item))
 
-    def _unless_stopped(self, work: Callable[[Any], Any], item: Any) -> Any:
+    def _run_unless_stopped(self, work: Callable[[Any], Any], item: Any) -> Any:
         self.skipped = self.skipped or bool(self.stop)
         return None if self.skipped else work(item)
 
     @property
-    def stopped(self) -> bool:
+    def any_rank_stopped(self) -> bool:
         """Whether any rank has omitted an item. Collective: all ranks call together."""
         return any(self.team.exchange(self.skipped))
 
@@ -48,8 +48,8 @@ def with_shared_constants(plan: Plan, task: Task, team: Team, stop: StopRequest)
     None if a stop signal came before the computation ended.
     """
     shared = _SharedWork(team, stop)
-    found = task.constants(shared.in_order)
-    return None if shared.stopped else replace(plan, constants=lambda: found)
+    found = task.constants(shared.gather_in_order)
+    return None if shared.any_rank_stopped else replace(plan, constants=lambda: found)
 
 
 def shared_flutter_forces(config: Config, team: Team, stop: StopRequest) -> FlutterForces | None:
@@ -61,8 +61,8 @@ def shared_flutter_forces(config: Config, team: Team, stop: StopRequest) -> Flut
     if not all(rod.standard for rod in rods):  # PETSc must start on all ranks together
         team.require_on_all_ranks(require_solvers)
     shared = _SharedWork(team, stop)
-    found = shared.in_order(rods, flutter_of_rod)
-    return None if shared.stopped else dict(zip(rods, found, strict=True))
+    found = shared.gather_in_order(rods, flutter_of_rod)
+    return None if shared.any_rank_stopped else dict(zip(rods, found, strict=True))
 
 
 def report_stop(team: Team, stop: StopRequest) -> None:

@@ -14,22 +14,22 @@ from .path import ArmPath
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AxisPlaceSettings:
+class AxisModeSettings:
     """Settings of the places of a search for crossings."""
 
-    many: float = 16.0
+    many_modes: float = 16.0
     """If more modes than this are expected to grow at a place, only the modes near the imaginary axis are
     computed."""
     max_known_modes: int = 200
     """Maximum number of leading eigenvalues computed at a place."""
 
 
-AXIS_PLACES = AxisPlaceSettings()
-NONE_BESIDE: Complex = np.empty(0, complex)
+AXIS_MODES = AxisModeSettings()
+NO_EIGENVALUES: Complex = np.empty(0, complex)
 
 
 @dataclass(frozen=True)
-class AxisPlace:
+class AxisModes:
     """The place at path variable p: eigenvalues w and their slopes dw/dp, (modes,) each, and the number of
     unstable modes.
 
@@ -41,7 +41,7 @@ class AxisPlace:
     slopes: Complex
     unstable: int
 
-    def nearest(self, growing: bool) -> tuple[float, float] | None:
+    def nearest_pair(self, growing: bool) -> tuple[float, float] | None:
         """(distance from the imaginary axis, derivative by p of this distance) of the nearest pair to the
         right (if `growing`) or to the left of the axis; None if no pair is known there."""
         pairs = [i for i, w in enumerate(self.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
@@ -52,25 +52,25 @@ class AxisPlace:
         return float(sign * self.w[i].real), float(sign * self.slopes[i].real)
 
     @property
-    def highest(self) -> float:
+    def largest_modulus(self) -> float:
         """Largest |w| at this place; 0 if no eigenvalues are known."""
         return float(np.abs(self.w).max(initial=0.0))
 
 
-class AxisPlaces:
+class AxisModesOfPath:
     """The places of a path at which eigenvalues have been computed; known: the places by p."""
 
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
         self.certify = certify
-        self.known: dict[float, AxisPlace] = {}
+        self.known: dict[float, AxisModes] = {}
 
-    def are_many(self, p: float) -> bool:
+    def has_many_modes(self, p: float) -> bool:
         """Whether at p only the modes near the imaginary axis are computed, because many modes are expected
         to grow."""
-        return self.certify and self.problem.expected_growing(p) > AXIS_PLACES.many
+        return self.certify and self.problem.expected_growing(p) > AXIS_MODES.many_modes
 
-    def at(self, p: float, beside: Complex | None = None) -> AxisPlace:
+    def modes_at(self, p: float, beside: Complex | None = None) -> AxisModes:
         """The place at p; raises Unsolvable if the eigenvalues or the count cannot be computed.
 
         beside: approximate eigenvalues near the imaginary axis, (n,), one of each pair, if available.
@@ -79,67 +79,67 @@ class AxisPlaces:
             # The neighbour's count gives the number of modes: the unstable modes and one more pair.
             near = min(self.known.values(), key=lambda place: abs(place.p - p), default=None)
             growing = 0 if near is None else near.unstable
-            found = self._place_beside(p, beside) if self.are_many(p) else None
-            self.known[p] = found or self._place_of_leaders(p, growing)
+            found = self._modes_near_axis(p, beside) if self.has_many_modes(p) else None
+            self.known[p] = found or self._leading_modes(p, growing)
         return self.known[p]
 
-    def modes_beside(self, p: float, highest: float, known: Complex) -> Complex:
-        """Eigenvalues near the imaginary axis at p with Im w up to `highest`, (n,), as `ArmPath.beside_axis`.
-        known: some of these eigenvalues, (k,).
+    def eigenvalues_near_axis(self, p: float, highest: float, known: Complex) -> Complex:
+        """Eigenvalues near the imaginary axis at p with Im w up to `highest`, (n,), as
+        `ArmPath.eigenvalues_near_axis`. known: some of these eigenvalues, (k,).
 
         Raises Unsolvable if no elements resolve the arm.
         """
         try:
-            return self.problem.beside_axis(p, highest, known)
+            return self.problem.eigenvalues_near_axis(p, highest, known)
         except FloatingPointError as unresolved:
             raise Unsolvable(f"{self.problem.path.at(p)}: {unresolved}") from None
 
-    def _place_beside(self, p: float, beside: Complex | None) -> AxisPlace | None:
+    def _modes_near_axis(self, p: float, beside: Complex | None) -> AxisModes | None:
         """The place at p from a count and the modes near the imaginary axis; None if the count is undecided.
         beside: approximations of these modes, if available."""
-        guesses = self.modes_beside(p, math.inf, NONE_BESIDE) if beside is None else beside
+        guesses = self.eigenvalues_near_axis(p, math.inf, NO_EIGENVALUES) if beside is None else beside
         refined = [self.problem.eigenvalue(guess, p) for guess in guesses.tolist()]
         w = np.array([one[0] for one in refined], complex)
         number = self.problem.counted(p, w, np.array([one[2] for one in refined]))
         slopes = np.array([one[1] for one in refined], complex)
-        return None if number is None else AxisPlace(p, w, slopes, number)
+        return None if number is None else AxisModes(p, w, slopes, number)
 
-    def _place_of_leaders(self, p: float, growing: int) -> AxisPlace:
+    def _leading_modes(self, p: float, growing: int) -> AxisModes:
         """The place at p from the leading modes, at least two more than the unstable modes. growing: expected
         number of unstable modes."""
         modes = max(ANCHORS.min_known_modes, 2 + growing)
         found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
-        while modes < _needed(found) <= AXIS_PLACES.max_known_modes:
+        while modes < _needed_modes(found) <= AXIS_MODES.max_known_modes:
             if self.certify and found.unstable_count < 0:
                 break  # more modes do not help a failed count
-            modes = _needed(found)
+            modes = _needed_modes(found)
             found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
         if found.unstable_count < 0:
             raise Unsolvable(f"{self.problem.path.at(p)}: {found.status.name} {found.message}".rstrip())
-        if _needed(found) > max(modes, AXIS_PLACES.max_known_modes):
+        if _needed_modes(found) > max(modes, AXIS_MODES.max_known_modes):
             raise Unsolvable(
                 f"{self.problem.path.at(p)}: {found.unstable_count} modes grow, more than the search follows"
             )
         slopes = found.eigenvalues.copy()
         for i, w in enumerate(found.eigenvalues.tolist()):
             slopes[i] = self.problem.eigenvalue(w, p)[1] if w.imag >= 0 else slopes[i - 1].conjugate()
-        return AxisPlace(p, found.eigenvalues, slopes, found.unstable_count)
+        return AxisModes(p, found.eigenvalues, slopes, found.unstable_count)
 
 
-def _needed(found: Spectrum) -> int:
+def _needed_modes(found: Spectrum) -> int:
     """Number of modes to be computed: two more than the unstable modes, or, without a count, than the growing
     modes found."""
     growing = int((found.eigenvalues.real > 0).sum())
     return 2 + max(found.unstable_count, growing)
 
 
-def next_count_place(left: AxisPlace, right: AxisPlace) -> float:
+def next_count_position(left: AxisModes, right: AxisModes) -> float:
     """Position of the next count as a fraction of the interval from `left` to `right`, because a pair may
     touch the axis between; 0 if no pair can touch the axis."""
     h = right.p - left.p
     for growing in (False, True):
-        a = left.nearest(growing)
-        b = right.nearest(growing)
+        a = left.nearest_pair(growing)
+        b = right.nearest_pair(growing)
         if a is None and b is None:
             continue
         if a is None or b is None:

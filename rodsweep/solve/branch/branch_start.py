@@ -26,12 +26,12 @@ from ..point import Unsolvable
 from .arc import ArcPoint
 from .bordered.condition import BorderCondition
 from .bordered.scale import Scale, deflection_of
-from .settling import first_measured_cycle
+from .mesh_choice import first_measured_cycle
 from .special.point import SpecialKind, SpecialPoint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BeginningSettings:
+class BranchStartSettings:
     """Settings for the first cycle of a branch near its Hopf point."""
 
     first_amplitudes: tuple[float, ...] = (0.02, 0.008, 0.003)
@@ -49,7 +49,7 @@ class BeginningSettings:
     """Relative rounding error of the frequency of a Hopf point, a root of D."""
 
 
-BEGINNING = BeginningSettings()
+BRANCH_START = BranchStartSettings()
 
 
 ALONG_DEFLECTION = np.array([1.0, 0.0, 0.0])
@@ -109,9 +109,9 @@ class HopfBranchStart:
         """Relative error of `period`: the relative change of the frequency when the parameter changes by its
         error at the Hopf point, plus the rounding error."""
         place = self.crossing.error / abs(self.crossing.at) * abs(self.coordinate)
-        return abs(self.slope) * place / self.crossing.frequency + BEGINNING.frequency_rounding
+        return abs(self.slope) * place / self.crossing.frequency + BRANCH_START.frequency_rounding
 
-    def moved_by(self, amplitude: float) -> tuple[float, float]:
+    def parameter_change_and_frequency(self, amplitude: float) -> tuple[float, float]:
         """(change of the parameter coordinate from the Hopf point, frequency in 1/tau2) of the cycle with the
         largest tip y `amplitude`, in L, by the normal form."""
         c = self.normal_form.c
@@ -162,8 +162,8 @@ def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspa
     usual = max(accuracy, REFINEMENT.first_accuracy)
     # On a coarse mesh the Hopf point is displaced, so that this mesh may have no cycle here.
     for aim, finer in ((usual, False), (REFINEMENT.first_accuracy, True)):
-        for share in BEGINNING.first_amplitudes:
-            amplitude = min(share, BEGINNING.max_amplitude_share * a)
+        for share in BRANCH_START.first_amplitudes:
+            amplitude = min(share, BRANCH_START.max_amplitude_share * a)
             try:
                 return _cycle_of(hopf, amplitude, aim, finer, accuracy, workspace)
             except Unsolvable as error:
@@ -188,20 +188,20 @@ def _cycle_of(
     start = predicted_cycle(hopf, amplitude)
     if finer:
         start = wanted_mesh(start, aim, stages_for(aim)).carry(start)
-    least = abs(deflection_of(start)) * BEGINNING.min_deflection_amplitude / amplitude
+    least = abs(deflection_of(start)) * BRANCH_START.min_deflection_amplitude / amplitude
     scale = Scale.of(start, hopf.name, least)
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
     border = np.sign(deflection_of(start)) * ALONG_DEFLECTION
-    condition = BorderCondition.at(scale, border, start)
-    rough = condition.solved(start, REFINEMENT.nearby_tolerance, workspace)
+    condition = BorderCondition.at_arc_length(scale, border, start)
+    rough = condition.solve_cycle(start, REFINEMENT.nearby_tolerance, workspace)
     near = rough.orbit
     y = float(near.form.tip(near.start)[1])
     # A different cycle with the same deflection would have an amplitude far from the normal form's.
-    least_ratio, largest_ratio = BEGINNING.amplitude_ratios
+    least_ratio, largest_ratio = BRANCH_START.amplitude_ratios
     if not least_ratio < y / amplitude < largest_ratio:
         raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
-    first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
+    first = condition.on_mesh(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
     born = abs(deflection_of(first.orbit)) / scale.deflection_unit
     return first_measured_cycle(first, scale, border, born, accuracy)
 
@@ -209,7 +209,7 @@ def _cycle_of(
 def predicted_cycle(hopf: HopfBranchStart, amplitude: float) -> Orbit:
     """The normal form's cycle with the largest tip y `amplitude`, in L, on the normal form's mesh in space
     and a coarse mesh in time; raises Unsolvable."""
-    change, frequency = hopf.moved_by(amplitude)
+    change, frequency = hopf.parameter_change_and_frequency(amplitude)
     form = StressForm(hopf.rod, hopf.normal_form.form.mesh)
     try:
         form = form.with_coordinate(hopf.name, hopf.coordinate + change)

@@ -1,7 +1,7 @@
 """The command `rodsweep` as started by `rodsweep bench sweep`: records each rank's peak memory, and can
 replace all solves by stored random outcomes.
 
-    python -m rodsweep.cli.measured DIRECTORY KIND WORDS...
+    python -m rodsweep.cli.measured_command DIRECTORY KIND WORDS...
 
 runs `rodsweep WORDS...`. `rodsweep.bench.sweep.launch` explains DIRECTORY and KIND.
 """

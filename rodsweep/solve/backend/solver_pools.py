@@ -11,7 +11,7 @@ from weakref import WeakSet
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class KeptSettings:
+class SolverPoolSettings:
     """Memory limit of a pool."""
 
     max_bytes: int = 100_000_000
@@ -19,14 +19,15 @@ class KeptSettings:
     creates the next: enough for dozens of solvers for a few modes, or three solvers for 300 modes."""
 
 
-KEPT = KeptSettings()
+SOLVER_POOLS = SolverPoolSettings()
 
 
 class Destroyable(Protocol):
-    """An object for an `LruPool`: `destroy` frees the object's memory, `kept_bytes` estimates this memory."""
+    """An object for an `LruPool`: `destroy` frees the object's memory, `memory_bytes` estimates this
+    memory."""
 
     @property
-    def kept_bytes(self) -> int:
+    def memory_bytes(self) -> int:
         """Estimate of the object's present memory, in bytes."""
 
     def destroy(self) -> None: ...
@@ -39,8 +40,8 @@ Object = TypeVar("Object", bound=Destroyable)
 class LruPool(Generic[Key, Object]):
     """Cache of objects made by `create(key)`; a full pool destroys the least recently used objects.
 
-    A pool is full with `limit` objects, or above `KEPT.max_bytes`. Objects may grow while they solve, so a
-    pool may exceed the memory limit until the next object is created.
+    A pool is full with `limit` objects, or above `SOLVER_POOLS.max_bytes`. Objects may grow while they solve,
+    so a pool may exceed the memory limit until the next object is created.
     """
 
     def __init__(self, create: Callable[[Key], Object], limit: int) -> None:
@@ -53,15 +54,15 @@ class LruPool(Generic[Key, Object]):
         return len(self._objects)
 
     @property
-    def kept_bytes(self) -> int:
+    def memory_bytes(self) -> int:
         """Estimate of the memory of all objects in the pool, in bytes."""
-        return sum(kept.kept_bytes for kept in self._objects.values())
+        return sum(kept.memory_bytes for kept in self._objects.values())
 
     def get(self, key: Key) -> Object:
         """The object for `key`, created if the pool has none; a later call with a different key may destroy
         this object."""
         if key not in self._objects:
-            while len(self._objects) >= self._limit or self.kept_bytes > KEPT.max_bytes:
+            while len(self._objects) >= self._limit or self.memory_bytes > SOLVER_POOLS.max_bytes:
                 self._objects.popitem(last=False)[1].destroy()
             self._objects[key] = self._create(key)
         self._objects.move_to_end(key)
@@ -81,7 +82,7 @@ class LruPool(Generic[Key, Object]):
 _pools: WeakSet[LruPool[Any, Any]] = WeakSet()
 
 
-def forget_all() -> None:
+def destroy_pooled_solvers() -> None:
     """Destroys the objects of all pools; called after an exception in a solve, which may leave objects
     unusable."""
     for pool in list(_pools):

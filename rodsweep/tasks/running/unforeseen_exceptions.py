@@ -20,7 +20,7 @@ from ... import __version__
 from ...errors import Refusal
 from ...results.file.provenance import now
 from ...results.layouts.variables import SECONDS, STATUS, Layout
-from ...solve.backend.kept import forget_all
+from ...solve.backend.solver_pools import destroy_pooled_solvers
 from ...solve.status import PointStatus
 from ...sweep.points.chains import State
 from ...sweep.points.stretches import StretchResult
@@ -64,11 +64,13 @@ class _Guard:
 
     inner: Solver
     layout: Layout
-    note: PointNote
+    note_exception: PointNote
 
     def solver(self) -> Solver:
         """The guarded solver."""
-        return self.inner.within(self._outcome, self._together, record=lambda index, outcome: outcome.values)
+        return self.inner.with_wrapper(
+            self._outcome, self._together, record=lambda index, outcome: outcome.values
+        )
 
     def _outcome(
         self, index: int, start: State, solve: Callable[[], tuple[Any, State]]
@@ -83,8 +85,8 @@ class _Guard:
         except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:
-            forget_all()
-            self.note([index], error)
+            destroy_pooled_solvers()
+            self.note_exception([index], error)
             return self._failed(error, time.perf_counter() - began), None
 
     def _failed(self, error: Exception, seconds: float) -> RecordedOutcome:
@@ -93,7 +95,7 @@ class _Guard:
         """
         status = next(status for status in self.inner.statuses if status.name == FAILED_STATUS)
         values = {SECONDS.name: seconds, STATUS.name: int(status)}
-        return RecordedOutcome(status, describe_unforeseen(error), self.layout.empty_point | values)
+        return RecordedOutcome(status, describe_exception(error), self.layout.empty_point | values)
 
     def _together(self, indices: NDArray[np.int64]) -> StretchResult:
         assert self.inner.stretched is not None
@@ -102,8 +104,8 @@ class _Guard:
         except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:
-            forget_all()
-            self.note(indices.tolist(), error)
+            destroy_pooled_solvers()
+            self.note_exception(indices.tolist(), error)
             return self._one_by_one(indices)
 
     def _one_by_one(self, indices: NDArray[np.int64]) -> StretchResult:
@@ -120,7 +122,7 @@ class _Guard:
         )
 
 
-def describe_unforeseen(error: Exception) -> str:
+def describe_exception(error: Exception) -> str:
     """An unforeseen exception in one line: class, message, and the line of code that raised the exception."""
     said = " ".join(str(error).split())
     place = traceback.extract_tb(error.__traceback__)[-1]
@@ -157,9 +159,9 @@ class TracebackLog:
         points = self.where(indices[0])
         if len(indices) > 1:
             points = f"{len(indices)} points together, from {points} to {self.where(indices[-1])}"
-        self.note(points, error)
+        self.append_exception(points, error)
 
-    def note(self, place: str, error: Exception) -> None:
+    def append_exception(self, place: str, error: Exception) -> None:
         """Appends the exception of points or of a work item to the log.
 
         place: text naming the points or the work item. If this rank has logged the same traceback before,

@@ -2,16 +2,16 @@
 
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.model.rod import Rod
-from rodsweep.solve.backend.kept import KEPT, LruPool
+from rodsweep.solve.backend.solver_pools import SOLVER_POOLS, LruPool
 from rodsweep.solve.spectrum.krylov_schur import UniformSolver
 
 
 class Grown:
-    """An object that takes little memory when it is created and `kept_bytes` later."""
+    """An object that takes little memory when it is created and `memory_bytes` later."""
 
     def __init__(self, name):
         self.name = name
-        self.kept_bytes = 0
+        self.memory_bytes = 0
         self.destroyed = False
 
     def destroy(self):
@@ -23,11 +23,11 @@ def test_a_pool_drops_what_has_grown_beyond_its_memory():
     pool = LruPool(Grown, 24)
     first, second, third = (pool.get(name) for name in "abc")
     for kept in (first, second, third):
-        kept.kept_bytes = KEPT.max_bytes // 2
+        kept.memory_bytes = SOLVER_POOLS.max_bytes // 2
     assert pool.get("c") is third  # who uses three objects in turn keeps them
     pool.get("d")
     assert [first.destroyed, second.destroyed, third.destroyed] == [True, False, False]
-    assert pool.kept_bytes <= KEPT.max_bytes
+    assert pool.memory_bytes <= SOLVER_POOLS.max_bytes
 
 
 def test_a_pool_drops_the_least_recently_used_beyond_its_number():
@@ -44,6 +44,6 @@ def test_a_solver_of_many_modes_knows_its_memory():
     taken = []
     for modes in (4, 100):
         solver.solve(rod, 1e7, modes)
-        taken.append(solver.kept_bytes)
+        taken.append(solver.memory_bytes)
     solver.destroy()
     assert taken[1] - taken[0] > 8 * 480 * 190  # the Krylov space alone

@@ -2,8 +2,8 @@
 
 A work item, in the code a unit, is a point, a chain of points or a segment of the sweep. A rank with a slow
 chunk returns the unsolved units of the chunk with the next request. No rank ends while another rank may still
-return units, and all ranks finish within about the time of one unit. `rodsweep.sweep.claims` sends the
-messages.
+return units, and all ranks finish within about the time of one unit. `rodsweep.sweep.chunk_requests` sends
+the messages.
 """
 
 import threading
@@ -44,11 +44,11 @@ class RankReport:
     """Number of units finished since the last report."""
     seconds: float = 0.0
     """Time spent since the last report, in s."""
-    given_back: IndexRange = NO_WORK_LEFT
+    returned: IndexRange = NO_WORK_LEFT
     """Range of the units of the last chunk that the rank did not solve."""
     points: int = 0
     """Number of points that the rank has stored in its journal since the last report."""
-    ahead: bool = False
+    is_in_advance: bool = False
     """Whether the rank requests the next chunk in advance, at the start of the present chunk."""
     stop: str = ""
     """Name of the stop signal that the rank received, or empty. Units returned after a stop signal are left
@@ -64,74 +64,80 @@ class ChunkQueue:
     """
 
     def __init__(self, todo: list[IndexRange], ranks: int):
-        self.todo = deque(todo)
-        self.left = index_count(todo)
+        self.unsolved = deque(todo)
+        self.units_left = index_count(todo)
         self.ranks = ranks
-        self.held: Counter[int] = Counter()
+        self.outstanding: Counter[int] = Counter()
         """Number of chunks that a rank has received but not reported on, by rank."""
         self.points = 0
         """Total number of points that the ranks have reported as stored."""
-        self.pace: dict[int, float] = {}
+        self.seconds_per_unit: dict[int, float] = {}
         """Latest time per unit, in s, by rank."""
         self.stopped = False
         self.change = threading.Condition()
 
-    def settle(self, rank: int, report: RankReport) -> None:
+    def add_report(self, rank: int, report: RankReport) -> None:
         """Updates the queue from a rank's report on finished and returned units."""
         with self.change:
-            if self.held[rank]:
-                self.held[rank] -= 1
+            if self.outstanding[rank]:
+                self.outstanding[rank] -= 1
             self.points += report.points
             if report.done:
-                self.pace[rank] = report.seconds / report.done
-            first, end = report.given_back
+                self.seconds_per_unit[rank] = report.seconds / report.done
+            first, end = report.returned
             if end > first and not self.stopped:
-                self.pace[rank] = report.seconds  # pessimistic, so that its next chunk is one unit
-                self.todo.appendleft(report.given_back)
-                self.left += end - first
+                self.seconds_per_unit[rank] = (
+                    report.seconds
+                )  # pessimistic, so that its next chunk is one unit
+                self.unsolved.appendleft(report.returned)
+                self.units_left += end - first
             self.change.notify_all()
 
-    def take(self, rank: int) -> IndexRange | None:
+    def next_chunk(self, rank: int) -> IndexRange | None:
         """The next chunk for a rank; NO_WORK_LEFT if no unit is left, None if the rank has to wait."""
         with self.change:
-            if self.todo:
-                return self._take(rank)
-            return None if self.held.total() and not self.stopped else NO_WORK_LEFT
+            if self.unsolved:
+                return self._pop_chunk(rank)
+            return None if self.outstanding.total() and not self.stopped else NO_WORK_LEFT
 
-    def take_ahead(self, rank: int) -> IndexRange | None:
+    def next_chunk_in_advance(self, rank: int) -> IndexRange | None:
         """The next chunk for a rank that still works on a chunk; None if few units are left in the queue."""
         with self.change:
-            return self._take(rank) if self.todo and self.left >= MIN_UNITS_AHEAD * self.ranks else None
+            return (
+                self._pop_chunk(rank)
+                if self.unsolved and self.units_left >= MIN_UNITS_AHEAD * self.ranks
+                else None
+            )
 
-    def _take(self, rank: int) -> IndexRange:
+    def _pop_chunk(self, rank: int) -> IndexRange:
         """Removes the next chunk from the queue, sized by the rank's time per unit; the lock must be held."""
         # At most half of an equal division: chunks shrink toward the end, where waiting costs most.
-        share = max(1, self.left // (2 * self.ranks))
-        pace = self.pace.get(rank)
+        share = max(1, self.units_left // (2 * self.ranks))
+        pace = self.seconds_per_unit.get(rank)
         size = 1 if pace is None else int(chunk_seconds(self.ranks) / max(pace, 1e-7))
-        first, last = self.todo.popleft()
+        first, last = self.unsolved.popleft()
         end = min(last, first + max(1, min(size, share, LARGEST_CHUNK)))
         if end < last:
-            self.todo.appendleft((end, last))
-        self.left -= end - first
-        self.held[rank] += 1
+            self.unsolved.appendleft((end, last))
+        self.units_left -= end - first
+        self.outstanding[rank] += 1
         return first, end
 
     def stop(self) -> None:
         """Empties the queue after a stop request; a later run solves the units."""
         with self.change:
             self.stopped = True
-            self.todo.clear()
+            self.unsolved.clear()
             self.change.notify_all()
 
 
 class UnitChooser(Protocol):
     """Chooses the units to solve next, the most urgent unit first, from the results of solved units."""
 
-    def wanted(self, results: Mapping[int, Any]) -> list[int]: ...
+    def units_to_solve(self, results: Mapping[int, Any]) -> list[int]: ...
 
 
-class Pool(ChunkQueue):
+class DependentUnitQueue(ChunkQueue):
     """`ChunkQueue` whose units depend on the results of solved units, one unit in a chunk.
 
     work: chooses the next units from the results. results: by number of the unit, at first from an earlier
@@ -142,40 +148,40 @@ class Pool(ChunkQueue):
         super().__init__([], ranks)
         self.work = work
         self.results = results
-        self.taken: dict[int, IndexRange] = {}
+        self.in_progress: dict[int, IndexRange] = {}
         """Range of the unit that a rank is solving, by rank."""
-        self._wanted: list[int] | None = None
+        self._units_to_solve: list[int] | None = None
 
     @property
-    def open(self) -> list[int]:
+    def ready_units(self) -> list[int]:
         """Units that `work` has chosen and that no rank is solving, the most urgent unit first."""
-        if self._wanted is None:
-            self._wanted = self.work.wanted(self.results)
-        in_hand = {first for first, _ in self.taken.values()}
-        return [unit for unit in self._wanted if unit not in in_hand]
+        if self._units_to_solve is None:
+            self._units_to_solve = self.work.units_to_solve(self.results)
+        in_hand = {first for first, _ in self.in_progress.values()}
+        return [unit for unit in self._units_to_solve if unit not in in_hand]
 
-    def settle(self, rank: int, report: RankReport) -> None:
+    def add_report(self, rank: int, report: RankReport) -> None:
         """Adds the results in a rank's report; a unit without a result can be chosen again."""
         with self.change:
             self.points += report.points
             self.results |= report.results
-            self._wanted = None
-            self.taken.pop(rank, None)
+            self._units_to_solve = None
+            self.in_progress.pop(rank, None)
             self.change.notify_all()
 
-    def take(self, rank: int) -> IndexRange | None:
+    def next_chunk(self, rank: int) -> IndexRange | None:
         """The next unit for a rank, as a range; NO_WORK_LEFT if no unit is left, None if the rank has to
         wait.
         """
         with self.change:
             if self.stopped:
                 return NO_WORK_LEFT
-            wanted = self.open
+            wanted = self.ready_units
             if wanted:
-                self.taken[rank] = (wanted[0], wanted[0] + 1)
-                return self.taken[rank]
-            return None if self.taken else NO_WORK_LEFT
+                self.in_progress[rank] = (wanted[0], wanted[0] + 1)
+                return self.in_progress[rank]
+            return None if self.in_progress else NO_WORK_LEFT
 
-    def take_ahead(self, rank: int) -> IndexRange | None:
+    def next_chunk_in_advance(self, rank: int) -> IndexRange | None:
         """Always None, because the choice of a rank's next unit depends on the result of the present unit."""
         return None

@@ -28,7 +28,7 @@ ZERO_CHANGES = CoefficientDerivatives(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ReachSettings(CompiledSettings):
+class NodeDiscSettings(CompiledSettings):
     """Settings for the disc about a node on which D is bounded."""
 
     branch_distance: float = 3.0
@@ -40,7 +40,7 @@ class ReachSettings(CompiledSettings):
     ranges: ClassVar = {"branch_distance": (1.0, math.inf)}
 
 
-REACH = ReachSettings()
+NODE_DISC = NodeDiscSettings()
 
 
 class ZeroFreeDiscNode(NamedTuple):
@@ -62,17 +62,17 @@ def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -
     F, nu, c2, gamma3 = coefficients
     _, P1, P2, plus, minus = exponent_derivatives(w, coefficients)
     stiffness = abs((nu + F * c2) * nu + c2 * gamma3 * w)
-    rho = abs(w) / REACH.branch_distance
+    rho = abs(w) / NODE_DISC.branch_distance
     if c2 * gamma3 > 0:
-        rho = min(rho, stiffness / (REACH.branch_distance * c2 * gamma3))
+        rho = min(rho, stiffness / (NODE_DISC.branch_distance * c2 * gamma3))
     rho = min(rho, (S + 1) / max(abs(L), EXPONENTS.least_divisor))
     # Both exponentials count by what they contribute: a recessive one, with much slack, may change faster.
     for sign, z in ((1.0, plus), (-1.0, minus)):
         slope = c2 + gamma3 + sign * 2 * P1
         root = cmath.sqrt(z)
         slack = S - root.real + 1
-        rho = min(rho, REACH.factor_change * max(abs(z), 2.0) / max(abs(slope), EXPONENTS.least_divisor))
-        if abs(z) > REACH.min_root_modulus:
+        rho = min(rho, NODE_DISC.factor_change * max(abs(z), 2.0) / max(abs(slope), EXPONENTS.least_divisor))
+        if abs(z) > NODE_DISC.min_root_modulus:
             rate = slope / (2 * root)
             rho = min(rho, slack / max(abs(rate - L), EXPONENTS.least_divisor))
             rho = min(rho, math.sqrt(2 * slack * abs(root) / (abs(P2) + abs(rate) ** 2)))
@@ -80,7 +80,7 @@ def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -
 
 
 @compiled
-def node_at(w: complex, coefficients: Coefficients) -> ZeroFreeDiscNode:
+def zero_free_disc_at(w: complex, coefficients: Coefficients) -> ZeroFreeDiscNode:
     """The point w with its reach, for a uniform rod. Within the reach the phase of D exp(-L dw) changes by
     less than pi/2.
     """
