@@ -35,5 +35,5 @@ def warm_up() -> None:
         outcome = f"{cycle.status.name} {cycle.message}".strip()
         raise EnvironmentIncomplete(
             f"with the PETSc options '{given}' the known cycle of the reference rod is not found: "
-            f"'{outcome}'; the task limit_cycle cannot run with these options; remove the options"
+            f"'{outcome}'; the task limit_cycle cannot run; remove these options"
         )

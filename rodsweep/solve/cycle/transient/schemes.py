@@ -9,30 +9,29 @@ from .amplitude_equation import AMPLITUDE_EQUATION
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SchemeSettings:
-    """Settings for the time schemes `usual`, `quick` and `careful`, and for the choice of a scheme by the
-    linear growth."""
+    """Settings for the three time schemes of integrated motions (default, for fast growth, accurate), and for
+    the choice of a scheme by the linear growth."""
 
     max_careful_growth: float = 0.01
-    """Linear growth per period, in modulus, below which the scheme is `careful`."""
+    """The accurate scheme is used if the linear growth per period is less than this in modulus."""
     usual_noise: float = 1e-3
-    """Largest growth per period that integration errors of the schemes `usual` and `quick` may add; 3e-4 was
+    """Largest growth per period that integration errors of the other two schemes may add; 3e-4 was
     measured."""
     careful_noise: float = 1e-5
-    """Largest growth per period that integration errors of the scheme `careful` may add; 8e-6 was
-    measured."""
+    """Largest growth per period that integration errors of the accurate scheme may add; 8e-6 was measured."""
     usual_steps: int = 200
-    """Maximum number of time steps of the scheme `usual`, divided by the allowed number of returns. 22 to 101
-    steps per return were measured on motions of 400 returns. A motion with rare returns takes far more, and
-    ends at this maximum."""
+    """Maximum number of time steps of a motion with the default scheme, divided by the allowed number of
+    returns. 22 to 101 time steps per return were measured on motions of 400 returns. A motion with rare
+    returns takes far more, and ends at this maximum."""
     careful_steps: int = 2000
-    """Maximum number of time steps of the scheme `careful`, divided by the allowed number of returns; its
-    steps are a tenth as long as those of `usual`."""
+    """Maximum number of time steps of a motion with the accurate scheme, divided by the allowed number of
+    returns; these time steps are a tenth as long as with the default scheme."""
     usual_tolerance: float = 1e-5
-    """Local tolerance of the scheme `usual`."""
+    """Local tolerance of the default scheme."""
     quick_tolerance: float = 1e-4
-    """Local tolerance of the scheme `quick`."""
+    """Local tolerance of the scheme for fast growth."""
     careful_tolerance: float = 1e-9
-    """Local tolerance of the scheme `careful`."""
+    """Local tolerance of the accurate scheme."""
 
     @property
     def usual(self) -> TimeScheme:
@@ -41,14 +40,13 @@ class SchemeSettings:
 
     @property
     def quick(self) -> TimeScheme:
-        """Time scheme of the first run of a fast-growing motion: no decision depends on the measured
-        growth."""
+        """Time scheme of the first run of a fast-growing motion, whose measured growth is not used."""
         return TimeScheme("arkimex", "4", tolerance=self.quick_tolerance)
 
     @property
     def careful(self) -> TimeScheme:
-        """Time scheme of motions with a small growth per period, whose sign must be correct, and of stored
-        paths."""
+        """Time scheme of motions with a small growth per period, of which the sign must be correct, and of
+        motions with a stored path."""
         return TimeScheme("arkimex", "5", tolerance=self.careful_tolerance)
 
 
