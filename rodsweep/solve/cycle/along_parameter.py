@@ -43,7 +43,7 @@ class PredictionSettings:
     """Maximum number of earlier orbits whose values enter the predicting polynomial."""
     orbits_without_second_tangent: int = 3
     """The tangent of the previous orbit enters the polynomial only if there are fewer earlier orbits than
-    this; with more earlier orbits the tangent makes the prediction less accurate."""
+    this; otherwise the tangent would make the prediction less accurate."""
 
 
 PREDICTION = PredictionSettings()

@@ -49,7 +49,7 @@ class HopfStartSettings:
     """Newton's method for the Hopf point has converged if |Re w| <= converged_growth times the error estimate
     of w."""
     converged_step: float = 1e-15
-    """Newton's method for the Hopf point has also converged if |step| <= converged_step |F|."""
+    """Newton's method for the Hopf point has also converged if |step of F| <= converged_step |F|."""
     normal_form_accuracy: float = 1e-3
     """Relative accuracy of the normal form's coefficients; the truncation error of the normal form is
     larger."""
@@ -61,12 +61,12 @@ class HopfStartSettings:
     """Smallest and largest allowed ratio of the squared largest y of the solved orbit to the squared largest
     y of the normal form."""
     max_direct_distance: float = 1e-2
-    """If the force is at most this relative distance above the Hopf point, Newton's method starts from the
-    normal form's orbit at the given force itself, whose amplitude has an error of 1 percent for most rods."""
+    """Up to this relative distance of the force above the Hopf point, Newton's method starts from the normal
+    form's orbit at the given force itself, with an error of its amplitude of 1 percent for most rods."""
     intervals: int = 8
     """Number of time intervals of the coarse mesh, over half a period."""
     stages: int = 3
-    """Collocation stages of the coarse mesh."""
+    """Number of collocation stages per interval of the coarse mesh."""
     branch_tolerance: float = 3e-3
     """Relative tolerance of Newton's method for the intermediate orbits on the branch."""
 

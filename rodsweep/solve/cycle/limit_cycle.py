@@ -53,7 +53,7 @@ class MultiplierListSettings:
 
 MULTIPLIER_LIST = MultiplierListSettings()
 NO_MULTIPLIER = complex(nan, nan)
-"""Entry of the list for a multiplier that is missing or below `MULTIPLIER_LIST.min_modulus`."""
+"""Entry of the list for a missing multiplier, or a modulus below `MULTIPLIER_LIST.min_modulus`."""
 
 
 def solve_cycle(

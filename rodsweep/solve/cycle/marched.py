@@ -116,7 +116,7 @@ class _MarchedMotion:
         return Beam(self.rod, self.mesh)
 
     def _refined(self, settled: _SettledMotion) -> _SettledMotion:
-        """The motion `settled` on a finer mesh with a smaller tolerance, continued until settled again."""
+        """Continues the motion `settled` on a finer mesh, with a smaller tolerance, until settled again."""
         before = self.beam
         self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MARCHING.order_increase)
         self.scheme = replace(self.scheme, tolerance=MARCHING.tolerance_ratio * self.scheme.tolerance)
@@ -125,8 +125,7 @@ class _MarchedMotion:
         return self._settled(relaxed(self.beam, z, self.mode.period))
 
     def _settled(self, z: Array) -> _SettledMotion:
-        """The settled motion that starts from the state z, (unknowns,); raises _NoCycle if no cycle is
-        reached."""
+        """Integrates from the state z, (unknowns,), until the motion has settled, or raises _NoCycle."""
         past: deque[Array] = deque(maxlen=RETURNS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
         step = self.mode.period / MARCHING.first_steps_per_period
@@ -167,8 +166,8 @@ class _MarchedMotion:
     def _run(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
     ) -> Trajectory:
-        """The motion from the state z, (unknowns,), over `duration` or to `limit`; raises _NoCycle if the run
-        fails. duration, step: in tau2, step: first time step. scheme: None for `self.scheme`."""
+        """The motion from the state z, (unknowns,), over `duration`, in tau2, or to `limit`; raises _NoCycle
+        if the run fails. step: first time step, in tau2. scheme: None for `self.scheme`."""
         run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
         if end := early_end(self.beam, run, self.waited):
             status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed

@@ -18,7 +18,8 @@ class MarchingSettings:
     max_comparisons: int = 3
     """Maximum number of comparisons of two successive integrations of increasing accuracy."""
     settled_distance: float = 0.1
-    """A motion has settled when its relative distance from the cycle is at most this times the accuracy."""
+    """A motion has settled if its relative distance from the cycle is at most this fraction of the
+    accuracy."""
     return_noise: float = 10.0
     """Relative distance between two returns that integration errors alone may cause, divided by the local
     tolerance."""
@@ -32,7 +33,8 @@ class MarchingSettings:
     """Safety factor: error estimate divided by the difference between the results of two integrations."""
     pair_error_share_in_limit: float = 0.5
     """For a limiting rod, such as a rod with k1 = inf, integrations are refined until their error is at most
-    this fraction of the accuracy; the rest is left for the error of integrating a nearby rod instead."""
+    this fraction of the accuracy; the rest of the accuracy is left for the error of integrating a nearby
+    rod."""
     limit_distance_ratio: float = 2.0
     """A limiting rod is approximated by two rods, whose distances from the limit have this ratio. Cycles
     change in proportion to the distance, so the difference of the two cycles is the error of the nearer

@@ -89,7 +89,7 @@ class Neighbour:
 
     def arrays(self) -> Arrays:
         """All data as named arrays, for a checkpoint: orbit (N,), data (m, N + 1), places and orders (m,),
-        eigenvalues (n,), meshes, rod and calibration."""
+        eigenvalues (n,), meshes, rod and calibration; N, m: as in `CyclePredictor`."""
         branch = self.predictor
         orbit = branch.orbit
         return {

@@ -51,8 +51,8 @@ def stable_cycle_near_hopf(
 
 
 def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
-    """Message why a motion that starts in the leading mode decays to the straight rod; "" if the normal form
-    does not prove the decay.
+    """Message that explains why a motion from the leading mode decays to the straight rod; "" if the normal
+    form does not prove the decay.
 
     w: leading eigenvalue of the straight rod. amplitude: tip's y at the start, in L.
     """

@@ -22,8 +22,8 @@ from .calibration_settings import CALIBRATION
 from .cycle_errors import CYCLE_ERRORS, CycleErrors, largest_error
 
 MULTIPLIER = 4
-"""Index of the error of the largest multiplier in the error arrays; the smaller indices are the indices of
-`path_differences`."""
+"""Index of the error of the largest multiplier in the error arrays of a calibration; the smaller indices are
+the indices of `path_differences`."""
 ERROR_COUNT = 5
 """Length of the error arrays of a calibration: four errors of `path_differences`, and the error of the
 largest multiplier."""
@@ -68,7 +68,7 @@ class Calibration:
 
     def at(self, orbit: Orbit, change: float) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a chain; outdated if the orbit has
-        shrunk too much. change: further relative change of the parameter."""
+        shrunk too much. change: relative change of the parameter since the previous orbit."""
         tails = _tails(orbit)
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
         dies = tails[-1] < CALIBRATION.min_size_ratio * self.tails[-1]
@@ -100,8 +100,8 @@ class Calibration:
         return self.reach + change <= CALIBRATION.max_parameter_change
 
     def least(self, orbit: Orbit) -> tuple[Array, Array]:
-        """Returns (errors in space, errors in time), (5,) each: lower limits of a new measurement on the same
-        mesh at `orbit`, a fraction of the present errors."""
+        """Returns (errors in space, errors in time), (5,) each: lower limits of errors that are measured
+        again at `orbit` on the same mesh, a fraction of the present errors."""
         in_space, in_time = CALIBRATION.min_repeated_share * np.minimum(
             _change(self.tails, _tails(orbit)), 1.0
         )
@@ -231,8 +231,8 @@ def _fall(before: Array, after: Array, orders: int) -> Array:
 
 
 def _power(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
-    """Order of convergence in time, (5,). before, after: errors, (5,) each, on two meshes, `previous` and
-    `mesh`, with different numbers of time intervals."""
+    """Order of convergence of the errors in time, (5,). before, after: errors in time, (5,) each, on the
+    meshes `previous` and `mesh` with different numbers of time intervals."""
     # Radau IIA has the order 2 stages - 1, which stiff problems may reduce to stages + 1.
     least = mesh.stages + 1
     steps = np.log(mesh.full_intervals / previous.full_intervals)
@@ -241,7 +241,7 @@ def _power(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) ->
 
 
 def _logarithm(before: Array, after: Array) -> Array:
-    """Natural logarithm of before/after, arrays of errors of any common shape; an error may be 0."""
+    """Natural logarithm of before/after, for errors of a common shape; 0 is replaced by a tiny number."""
     least = EXPONENTS.least_divisor
     quotient: Array = np.log(np.maximum(before, least) / np.maximum(after, least))
     return quotient

@@ -11,31 +11,32 @@ class CalibrationSettings:
     safety_factor: float = 3.0
     """Safety factor on measured errors of period, extrema and multiplier."""
     min_height_error_share: float = 0.16
-    """Lower limit of the error of the largest y, divided by the distance between the tip's paths on two
-    meshes with different elements: one number may agree on two meshes by coincidence, a path does not."""
+    """Lower limit of the error estimate of the largest y, divided by the distance between the tip's paths on
+    two meshes with different elements: one number may agree on two meshes by coincidence, a path does not."""
     min_period_error_share: float = 0.16
-    """Lower limit of the error of the period, divided by the distance between the tip's paths on two meshes
-    with different elements."""
+    """Lower limit of the error estimate of the period, divided by the distance between the tip's paths on two
+    meshes with different elements."""
     min_extrema_error_share: float = 1.6
-    """Lower limit of the error of the other extrema, divided by the sum of the distances between the tip's
-    paths for different elements and for different time intervals."""
+    """Lower limit of the error estimate of the other extrema, divided by the sum of the distances between the
+    tip's paths for different elements and for different time intervals."""
     min_error_share_in_time: float = 0.004
-    """Factor on the distance between the tip's paths for different time intervals, which is added to the
-    lower limits of the errors of period and largest y. This distance is largest in theta, whose errors matter
-    least."""
+    """This factor times the distance between the tip's paths for different time intervals is added to the
+    lower limits of the error estimates of period and largest y. The distance is largest in theta, whose
+    errors matter least."""
     mutual_bound: float = 2.0
-    """Lower limit of the errors of period and of largest y, divided by the larger of the two measured errors.
-    The two errors decrease as the squares of the tails, and rarely change sign near the same mesh. Without
-    this limit, the error of one cycle in a thousand exceeded its estimate, by a factor of up to 4.5."""
+    """Lower limit of the error estimates of period and of largest y, divided by the larger of the two
+    measured errors. The two errors decrease as the squares of the tails, and rarely change sign near the same
+    mesh. Without this limit, the error of one cycle in a thousand exceeded its estimate, by a factor of up to
+    4.5."""
     planned_error: float = 0.5
-    """Predicted error for which a mesh is planned, divided by the accuracy."""
+    """A mesh is planned for a predicted error of at most this fraction of the accuracy."""
     error_decay_ratio: float = 1.6
     """Assumed decrease of ln(error) in space per order, divided by the decrease of ln(coefficient) per order.
     The errors are proportional to squared coefficients; ratios from 1.4 to 2 were measured."""
     min_space_decay: float = 0.5
-    """Smallest decrease of ln(error) in space per order that is assumed or measured."""
+    """Lower limit of an assumed or measured decrease of ln(error) in space per order."""
     max_space_decay: float = 2.2
-    """Largest decrease of ln(error) in space per order that is assumed or measured."""
+    """Upper limit of an assumed or measured decrease of ln(error) in space per order."""
     time_order_by_stages: float = 1.5
     """Order of convergence in time divided by the number of stages, assumed if no order was measured."""
     max_time_order_ratio: float = 2.0
@@ -51,7 +52,7 @@ class CalibrationSettings:
     """Upper limit of the ratio of the numbers of time intervals, planned mesh to present mesh; the
     convergence rates are not known for finer meshes."""
     max_parameter_change: float = 0.2
-    """The errors are measured again after a relative change of the parameter larger than this."""
+    """The errors are measured again if the summed relative changes of the parameter exceed this."""
     max_error_growth: float = 4.0
     """The errors are measured again if an error has grown by more than this factor since the measurement."""
     min_size_ratio: float = 0.75

@@ -34,16 +34,16 @@ class CoarserMeshSettings:
     """Largest difference between the orders of a fine mesh and of its coarse mesh."""
     min_space_decay: float = 1.5
     """The difference of the orders is chosen so that ln(error) in space is expected to decrease by at least
-    this from the coarse mesh to the fine mesh. Where coefficients decay slowly, errors oscillate with the
-    order, and meshes of nearly the same order may agree by coincidence. With a difference of 2 orders, 16 of
-    112 errors of slender cones exceeded their estimates, by factors up to 2.2. With this decrease no error
+    this number from the coarse mesh to the fine mesh. Where coefficients decay slowly, errors oscillate with
+    the order, and meshes of nearly the same order may agree by coincidence. With a difference of 2 orders, 16
+    of 112 errors of slender cones exceeded their estimates, by factors up to 2.2. With this decrease no error
     exceeded 0.4 times its estimate."""
     more_intervals: float = 0.4
     """Additional time intervals of the fine mesh, as a fraction of the number of intervals of the coarse
     mesh."""
     max_more_orders: int = 2
-    """A coarse mesh also predicts cycles on meshes with an order higher, by at most this number, than the
-    fine mesh for which the coarse mesh was made."""
+    """A coarse mesh made for a fine mesh of order p predicts cycles on meshes of orders up to p +
+    max_more_orders."""
     max_interval_ratio: float = 2.0
     """A coarse mesh predicts the cycle on a fine mesh only if the ratio of the numbers of time intervals,
     fine mesh to coarse mesh, is at most this."""
@@ -60,8 +60,8 @@ class CoarserMeshes:
     the cycle on a fine mesh is predicted."""
 
     def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
-        """mesh: the fine mesh. near: an orbit near the cycle, on any mesh. accuracy: requested relative
-        accuracy. workspace: memory of Newton's matrices. Raises Unsolvable."""
+        """Solves the cycle on the coarse mesh; raises Unsolvable. mesh: the fine mesh. near: an orbit near
+        the cycle, on any mesh. accuracy: requested relative accuracy."""
         fewer = _fewer_orders(near)
         order = max(mesh.order - fewer, ORBIT_MESH.min_order - COARSER_MESHES.min_fewer_orders)
         self._highest_order = order + fewer + COARSER_MESHES.max_more_orders
@@ -73,8 +73,8 @@ class CoarserMeshes:
         self._finer: dict[OrbitMesh, ComparedCycle] = {}
 
     def can_predict(self, mesh: OrbitMesh) -> bool:
-        """Whether the cycle on `mesh` can be predicted: elements and stages as on the coarse mesh, orders and
-        numbers of time intervals not too different."""
+        """Whether the cycle on `mesh` can be predicted: with the elements and stages of the coarse mesh, an
+        order and a number of time intervals that are not too large."""
         near = (
             mesh.order <= self._highest_order
             and self._refined_in_time(mesh) <= COARSER_MESHES.max_interval_ratio
@@ -117,7 +117,8 @@ class CoarserMeshes:
         return errors
 
     def _refined_in_time(self, mesh: OrbitMesh) -> float:
-        """Number of full time intervals of the fine mesh `mesh` divided by the number of the coarse mesh."""
+        """Number of full time intervals of `mesh` divided by the number of full time intervals of the coarse
+        mesh."""
         return mesh.full_intervals / self.mesh.full_intervals
 
 

@@ -17,7 +17,7 @@ class CycleErrorSettings:
     rounding_error: float = 2e-14
     """Smallest relative error estimate of period and extrema: the rounding error on any mesh."""
     min_error_share: float = 0.1
-    """Lower limit of an error estimate divided by the accuracy: a smaller estimate may be a coincidence."""
+    """Lower limit of error estimates, divided by the accuracy: a smaller estimate may be a coincidence."""
     extrema_tolerance_ratio: float = 100.0
     """Tolerance of the tip's other extrema divided by the tolerance of period and largest y. Period and
     largest y converge fastest, because a time node lies at the largest y."""

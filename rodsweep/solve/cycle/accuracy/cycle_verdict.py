@@ -42,7 +42,7 @@ class RefinedCycle:
 
     @property
     def divisor(self) -> int:
-        """Number g: the minimal period may be 1/g of the period; g = 1 proves that the period is minimal."""
+        """Number g such that the minimal period may be 1/g of the period; g = 1 proves the period minimal."""
         return undecided_divisor(self.path, self.errors.extrema_error)
 
     @property

@@ -23,10 +23,10 @@ class ComparisonSettings:
     """Settings for the two finer meshes by which the errors of a mesh are measured."""
 
     more_orders: int = 2
-    """Increase of the order on the mesh finer in space, where the errors are a tenth or less."""
+    """Increase of the order on the mesh finer in space, which reduces the errors to a tenth or less."""
     more_intervals: float = 0.4
-    """Additional time intervals of the mesh finer in time, as a fraction of the intervals of the mesh. The
-    error in time that remains on the finer mesh is a known fraction."""
+    """Additional time intervals of the mesh finer in time, as a fraction of the number of intervals of the
+    mesh. A known fraction of the error in time remains on the finer mesh."""
     newton_tolerance_share: float = 0.1
     """Tolerance of Newton's method on the finer meshes, divided by the accuracy."""
     matrix_distance: float = 1e-3

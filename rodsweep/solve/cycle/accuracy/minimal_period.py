@@ -22,8 +22,8 @@ class MinimalPeriodSettings:
     """Settings for the test whether a harmonic is nonzero."""
 
     min_harmonic: float = 1e-3
-    """While the error of the orbit is not known, a harmonic is nonzero if its size divided by the size of the
-    largest harmonic exceeds this."""
+    """While the error of the orbit is not known, a harmonic is treated as nonzero if its size divided by the
+    size of the largest harmonic exceeds this."""
     certain_harmonic_ratio: float = 10.0
     """A harmonic is certainly nonzero if its size divided by the size of the largest harmonic exceeds this
     number times the relative error of the extrema."""
@@ -54,7 +54,7 @@ def _divisor_of(sizes: Array, present: float) -> int:
 
 
 def undecided_divisor(path: CyclePath, error: float) -> int:
-    """Number g: the minimal period may be 1/g of the period of `path`; g = 1 proves that the period is
+    """Number g such that the minimal period may be 1/g of the period of `path`; g = 1 proves the period
     minimal.
 
     error: relative error of the extrema.

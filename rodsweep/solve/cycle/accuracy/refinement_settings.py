@@ -22,8 +22,8 @@ class RefinementSettings:
     max_matrix_distance: float = 1e-5
     """Upper limit of the relative distance in `matrix_distance`."""
     multiplier_error_factor: float = 10.0
-    """Relative error of the multipliers divided by the sum of two numbers: the relative distance between
-    cycle and orbit of the matrix, and the error of the trivial multiplier."""
+    """Relative error of the multipliers divided by the sum of two numbers: the relative distance between the
+    cycle and the orbit of the matrix, and the error of the trivial multiplier."""
     finest_accuracy: float = 1e-12
     """Smallest relative accuracy for which a mesh is chosen; smaller errors are rounding errors."""
     first_accuracy: float = 1e-7
@@ -50,7 +50,8 @@ class RefinementSettings:
     """Predicted errors are accepted if the relative distance of a cycle from its prediction by coarser
     meshes, divided by the accuracy, is at most this; the largest observed ratio was 4.4."""
     min_prediction_distance: float = 1e-9
-    """Predicted errors are always accepted at relative distances up to this, because of rounding errors."""
+    """Predicted errors are always accepted if the relative distance of a cycle from its prediction is at most
+    this, because of rounding errors."""
     min_size_ratio: float = 0.2
     """Smallest size of a solved orbit divided by the size of Newton's start; a smaller orbit is a different
     motion."""
@@ -58,7 +59,8 @@ class RefinementSettings:
     """Largest size of a solved orbit divided by the size of Newton's start; a larger orbit is a different
     motion."""
     max_error_increase: float = 10.0
-    """Refinement ends if the error estimate grows by more than this factor; less may be coincidence."""
+    """Refinement ends if the error estimate increases by more than this factor on a finer mesh; a smaller
+    increase may be a coincidence."""
     max_meshes: int = 8
     """Maximum number of meshes tried for one cycle."""
 

@@ -2,10 +2,10 @@
 
 The logarithm of the amplitude a grows per period by g = g0 - c a^2, with the exact linear growth g0, so that
 a cycle has the amplitude a* = sqrt(g0/c). The coefficient c is measured from a motion at amplitudes where c
-a^2 exceeds the error of the integrator. If a rod near a limiting rod, such as k1 = inf, is integrated
-instead, the measured growth is corrected by the difference of the two linear growth rates. A slowly growing
-motion is scaled to the amplitude a*, or scaled up step by step if its growth increases with the amplitude (c
-< 0). A slowly decaying motion is scaled down until the motion decays at the linear rate.
+a^2 exceeds the error of the integrator. For a limiting rod, such as a rod with k1 = inf, a nearby rod is
+integrated; the measured growth is corrected by the difference of the two linear growth rates. A slowly
+growing motion is scaled to the amplitude a*, or scaled up step by step if its growth increases with the
+amplitude (c < 0). A slowly decaying motion is scaled down until the motion decays at the linear rate.
 """
 
 from dataclasses import dataclass
@@ -91,8 +91,8 @@ class AmplitudeEquation:
         return linear < 0 and (alike or small) and self._has_period_of_mode(times)
 
     def decays_faster(self, times: Array, states: Array) -> bool:
-        """Whether a motion decays at the linear rate of the leading mode times 1 - max_slow_growth, or
-        faster, so that no cycle is near. times: (k,); states: (k, unknowns)."""
+        """Whether a motion decays at least 1 - max_slow_growth times as fast as the leading mode, so that no
+        cycle is near. times: (k,); states: (k, unknowns)."""
         growth, linear = self.growth(times, states)
         known = self.coefficient > 0 and self.slow(times, states)
         return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION.max_slow_growth) + (
@@ -100,8 +100,8 @@ class AmplitudeEquation:
         )
 
     def jump(self, times: Array, states: Array) -> float | None:
-        """Factor by which the state is to be scaled: to the predicted amplitude of the cycle, or one step
-        down or up if no amplitude is predicted.
+        """Factor by which the state is to be scaled: to the predicted amplitude of the cycle, or by a fixed
+        factor if no amplitude is predicted.
 
         None if the motion is not slow, if the factor is close to 1, or if the growth is within the noise.
         times: (k,); states: (k, unknowns).

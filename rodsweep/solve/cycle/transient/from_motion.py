@@ -35,7 +35,7 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
     of `beam`.
 
     period: in tau2. turns: number of returns of the tip to theta = 0 per period. If the rod in `form` is a
-    limiting rod, for example inextensible, `beam` is a nearby rod.
+    limiting rod, for example an inextensible rod, `beam` is a nearby rod.
     """
     from scipy.interpolate import CubicSpline  # slow import: 0.1 s, for few runs
 

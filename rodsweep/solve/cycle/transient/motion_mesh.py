@@ -1,4 +1,4 @@
-"""Rod and mesh for the integration of a motion; a nearby rod replaces a limiting rod, such as k1 = inf."""
+"""Rod and mesh for the integration of a motion; a nearby rod replaces a limiting rod (k1 = inf, ...)."""
 
 from dataclasses import dataclass, replace
 
@@ -61,8 +61,8 @@ def coarse_mesh(rod: Rod) -> Mesh:
 
 
 def integrable_rod(rod: Rod) -> Rod:
-    """The rod `rod` with limits on k1, k2 and gamma3: a limiting rod (k1 = inf, k2 = inf or gamma3 = 0)
-    cannot be integrated in time."""
+    """The rod with k1 and k2 of at most MOTION_MESH.max_stiffness and gamma3 of at least
+    MOTION_MESH.min_drag; a limiting rod (k1 = inf, k2 = inf or gamma3 = 0) cannot be integrated in time."""
     return replace(
         rod,
         k1=min(rod.k1, MOTION_MESH.max_stiffness),

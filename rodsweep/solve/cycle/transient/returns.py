@@ -33,8 +33,9 @@ class ReturnSettings:
     max_steps_per_run: int = 20_000
     """Maximum number of time steps in one run."""
     last_states: int = 200
-    """If a run fails, this number of its last states is searched for a section whose energy is not convex.
-    The equations are ill-posed for such a section, and the integrator may fail only some steps later."""
+    """If a run fails, this number of its last states is searched for a section whose strain energy is not
+    convex. The equations are ill-posed for such a section, and the integrator may fail only some steps
+    later."""
     bisections: int = 50
     """Number of bisections of a time step that locate a return in time; enough for all digits."""
 
@@ -88,7 +89,7 @@ def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:
 
 
 def _loses_convexity(beam: Beam, states: Array) -> bool:
-    """Whether the energy of a section is not convex in one of the `states`, (k, unknowns)."""
+    """Whether the strain energy of a section is not convex in one of the `states`, (k, unknowns)."""
     return any(np.isfinite(state).all() and not beam.is_convex(state) for state in states[::-1])
 
 
@@ -129,8 +130,8 @@ def _hermite_weights(x: float) -> tuple[float, float, float, float]:
 
 
 def repetition(moments: Sequence[Array]) -> tuple[int, float]:
-    """Returns (m, distance). m: smallest number of returns after which the motion repeats, up to a nearly
-    minimal distance. distance: relative distance between the last return and the return m earlier.
+    """Returns (m, distance). m: number of returns per period, the smallest number with a nearly minimal
+    distance. distance: relative distance between the last return and the return m earlier.
 
     moments: bending moments at successive returns of the tip, (nodes,) each. Only bending moments are
     compared, because the interpolation between time steps has errors in the stiff components, 1e-2 at k1 =
@@ -146,7 +147,7 @@ def repetition(moments: Sequence[Array]) -> tuple[int, float]:
 
 
 def why_not_settled(waited: int, returns: int, last: float) -> str:
-    """Message why a motion has not settled after the time of `waited` returns.
+    """Message that explains why a motion has not settled after the time of `waited` returns.
 
     returns: number of returns with a known state. last: relative distance of the last return from an earlier
     return; NaN for too few returns, inf for a decayed motion.

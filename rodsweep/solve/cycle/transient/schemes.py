@@ -15,14 +15,14 @@ class SchemeSettings:
     max_careful_growth: float = 0.01
     """The accurate scheme is used if the linear growth per period is less than this in modulus."""
     usual_noise: float = 1e-3
-    """Largest growth per period that integration errors of the other two schemes may add; 3e-4 was
-    measured."""
+    """Largest growth per period that integration errors of the default scheme and of the scheme for fast
+    growth may add; 3e-4 was measured."""
     careful_noise: float = 1e-5
     """Largest growth per period that integration errors of the accurate scheme may add; 8e-6 was measured."""
     usual_steps: int = 200
     """Maximum number of time steps of a motion with the default scheme, divided by the allowed number of
     returns. 22 to 101 time steps per return were measured on motions of 400 returns. A motion with rare
-    returns takes far more, and ends at this maximum."""
+    returns takes far more time steps, and ends at this maximum."""
     careful_steps: int = 2000
     """Maximum number of time steps of a motion with the accurate scheme, divided by the allowed number of
     returns; these time steps are a tenth as long as with the default scheme."""

@@ -23,7 +23,7 @@ class ShapeTraceSettings:
     max_rest_deflection: float = 2e-3
     """An arm is at rest if the tip's |y|, in L, is at most this."""
     min_returns: int = 3
-    """With fewer returns of the tip, the period of the leading mode is used as the period of the motion."""
+    """With fewer returns than this, the period of the leading mode is used as the period of the motion."""
 
 
 SHAPE_TRACE = ShapeTraceSettings()

@@ -43,8 +43,8 @@ class Transient:
 
     form: the rod whose cycle is solved for, and the mesh. straight: stability of the straight rod. along:
     parameter of the cycle's tangent, or None. unstable: a nearby unstable cycle, or None. workspace: memory
-    of Newton's matrices. beam: the integrated rod; a nearby rod if `form` has a limiting rod, such as k1 =
-    inf. trace: record of the tip's path or of shapes, or None if not requested.
+    of Newton's matrices. beam: the integrated rod; a nearby rod if `form` has a limiting rod (k1 = inf, ...).
+    trace: record of the tip's path or of shapes, or None if not requested.
     """
 
     def __init__(
@@ -151,7 +151,7 @@ class Transient:
         return relaxed(self.beam, z, self.mode.period)
 
     def _not_settled(self, z: Array) -> str:
-        """Message why the motion, which has reached the state z, (unknowns,), has not settled."""
+        """Message that explains why the motion, now at the state z, (unknowns,), has not settled."""
         if self.unsolved:
             return f"after {counted(self.waited, 'return')} of the tip {self.unsolved}"
         if self._bends_visibly(z):
