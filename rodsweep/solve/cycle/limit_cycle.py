@@ -197,7 +197,7 @@ def _from_hopf(
         hopf = hopf_point_below(form.rod)
         if hopf is None:
             status = CycleStatus.straight if stability.stable else CycleStatus.not_settled
-            return replace(straight, status=status, message="no Hopf point at any smaller force")
+            return replace(straight, status=status, message="there is no Hopf point at a smaller force")
         found = refined_cycle(orbit_from_hopf(form, hopf, workspace), request.accuracy, workspace)
     except Unsolvable as why:
         return replace(straight, status=CycleStatus.not_settled, message=str(why))

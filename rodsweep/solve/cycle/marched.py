@@ -147,7 +147,7 @@ class _MarchedMotion:
             past.extend(self.beam.layout.field(states, "m3"))
             self.waited += max(len(states), 1)
             if self.mode.w.real < 0 and np.linalg.norm(z) < RETURNS.straight_size:
-                raise _NoCycle(MarchedStatus.straight, "decayed to rounding")
+                raise _NoCycle(MarchedStatus.straight, "the motion has decayed to rounding error")
             if len(past) <= MARCHING.returns_per_test:
                 continue
             turns, distance = repetition(list(past))

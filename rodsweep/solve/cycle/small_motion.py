@@ -66,4 +66,4 @@ def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
     share = abs(normal.c.real) * amplitude**2 / -w.real
     if share >= SMALL_MOTION.max_cubic_growth_ratio:
         return ""
-    return f"decays: at the start the cubic term of the growth rate is {share:.0e} of the linear term"
+    return f"the motion decays: at the start the cubic term is {share:.0e} of the linear growth rate"

@@ -62,7 +62,7 @@ class RefinedCycle:
         """Returns (status, message) of the cycle for a requested relative accuracy; the message is "" for a
         stable or unstable cycle."""
         if self.measures.least_stretch <= 0:
-            return CycleStatus.left_the_model, f"h1 = {self.measures.least_stretch:.3g} on the cycle"
+            return CycleStatus.left_the_model, f"smallest h1 = {self.measures.least_stretch:.3g} on the cycle"
         if self.errors.largest > accuracy:
             return CycleStatus.not_settled, "the cycle's errors exceed the requested accuracy"
         if self.divisor != 1:

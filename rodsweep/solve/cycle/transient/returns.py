@@ -78,9 +78,9 @@ def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:
         return None
     if run.ending == RunEnding.left_the_model:
         h1 = beam.least_stretch(run.states[-1])
-        return EarlyEnd(True, f"h1 = {h1:.3g} at a point of the rod, after {returns} returns of the tip")
+        return EarlyEnd(True, f"h1 = {h1:.3g} at a point of the rod after {returns} returns of the tip")
     if not run.message and _loses_convexity(beam, run.states[-RETURNS.last_states :]):
-        why = f"the strain energy of a section is not convex, after {returns} returns of the tip"
+        why = f"after {returns} returns of the tip the strain energy of a section is not convex"
         return EarlyEnd(True, why)
     why = "the integrator finds no time step with an acceptable error"
     if run.ending == RunEnding.too_many_steps:
@@ -154,7 +154,8 @@ def why_not_settled(waited: int, returns: int, last: float) -> str:
     """
     if isfinite(last):
         return (
-            f"{waited} returns of the tip, the last at a relative distance {last:.1e} from an earlier return"
+            f"the motion does not repeat: after {waited} returns of the tip the last return has a relative "
+            f"distance of {last:.1e} from an earlier return"
         )
     if isnan(last):
         return f"the tip returned to theta = 0 only {counted(returns, 'time')}, so no period is known"

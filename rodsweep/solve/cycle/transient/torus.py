@@ -87,8 +87,8 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
         modulation = modulation_of(moments, angle) if near and angle else None
         if modulation and modulation.prediction_error <= TORUS_TEST.max_prediction_error:
             message = (
-                f"modulated at {modulation.angle / (2 * np.pi):.3f} times the return frequency; the cycle "
-                f"inside the torus has an unstable multiplier of modulus {cycle.largest_multiplier:.3g}"
+                f"the motion is modulated at {modulation.angle / (2 * np.pi):.3f} times the return rate; "
+                f"the cycle inside the torus has a multiplier of modulus {cycle.largest_multiplier:.3g}"
             )
             return TransientOutcome(CycleStatus.torus, message, end.periods, unstable_cycle=cycle)
     return end

@@ -106,7 +106,7 @@ class Transient:
             self._remember(run, times, states)
             # An unstable rod is excluded, because rounding errors hide the growth of so small a motion.
             if self.straight.stable is not False and np.linalg.norm(z) < RETURNS.straight_size:
-                return self._ended(CycleStatus.straight, "decayed to rounding")
+                return self._ended(CycleStatus.straight, "the motion has decayed to rounding error")
             if self.straight.stable is False and not self._bends_visibly(z):
                 if self.trace or self.jumps >= TRANSIENT.max_jumps:
                     break
@@ -119,7 +119,7 @@ class Transient:
                 continue
             shown = self.trace is not None and self.trace.needs_more_motion(z)
             if not early and not shown and self.small.decays_as_linear(times, states):
-                return self._ended(CycleStatus.straight, "decays at the rate of the leading mode")
+                return self._ended(CycleStatus.straight, "the motion decays at the rate of the leading mode")
             factor = None if early or self.jumps >= TRANSIENT.max_jumps else self.small.jump(times, states)
             if factor is not None and self.trace and not self.trace.is_full:
                 continue  # a motion with a stored path has no jumps
@@ -155,7 +155,7 @@ class Transient:
         if self.unsolved:
             return f"after {counted(self.waited, 'return')} of the tip {self.unsolved}"
         if self._bends_visibly(z):
-            work = f" and {self.steps} time steps, the maximum" if self.steps >= self.max_steps else ""
+            work = f" and the maximum of {self.steps} time steps" if self.steps >= self.max_steps else ""
             return f"no periodic motion within {counted(self.waited, 'return')} of the tip{work}"
         unstable = self.straight.stable is False
         why = "the straight rod is unstable" if unstable else "the stretch of the rod has not relaxed"
