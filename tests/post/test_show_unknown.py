@@ -178,7 +178,8 @@ def test_show_names_the_reason_of_each_kind_of_failure_with_a_point(tmp_path):
     said = told(view)
     at = "gamma3 = 0.01, gamma1 = 1.0: "
     assert said.count("not_settled, as at F = ") == 1
-    assert f"not_settled, as at F = 27.45, k1 = 10000.0, k2 = 100.0, {at}20 returns of the tip, " in said
+    why = "the motion does not repeat: after 20 returns of the tip "
+    assert f"not_settled, as at F = 27.45, k1 = 10000.0, k2 = 100.0, {at}{why}" in said
     status = view.variables["status"].copy()
     status[0] = 0
     anew = changed(view, status=status)

@@ -34,16 +34,16 @@ class PredictionSettings:
     """Settings for the polynomial prediction of cycles along one parameter."""
 
     max_prediction_distance: float = 0.3
-    """Largest relative distance of a cycle from its prediction; a cycle at a larger distance may lie on
-    another branch."""
+    """Largest relative distance of a cycle from its prediction; a cycle at a larger distance is rejected,
+    because the cycle may lie on another branch."""
     max_tangent_distance: float = 1e-2
-    """The tangent from the matrix at a nearby orbit is used if the relative distance between the two orbits
-    is at most this; the tangent is then accurate enough for the next step."""
+    """The tangent is computed from Newton's last matrix if the matrix was assembled at most at this relative
+    distance from the solution; otherwise a new matrix is assembled."""
     max_earlier_orbits: int = 4
     """Maximum number of earlier orbits whose values enter the predicting polynomial."""
     orbits_without_second_tangent: int = 3
-    """With at least this number of earlier orbits, the prediction is more accurate without the tangent of an
-    earlier orbit."""
+    """The tangent of the previous orbit enters the polynomial only if there are fewer earlier orbits than
+    this; otherwise the tangent would make the prediction less accurate."""
 
 
 PREDICTION = PredictionSettings()
@@ -66,12 +66,12 @@ Newton's method needs two matrices for a prediction error of `target_error`. `ma
 
 @dataclass(frozen=True, eq=False)
 class CyclePredictor:
-    """Polynomial in one parameter that predicts orbits on the branch of a solved orbit, by Hermite
+    """Polynomial in one parameter that predicts orbits on the branch of the solved orbit `orbit`, by Hermite
     interpolation.
 
-    The data are normalised values and parameter derivatives of orbits, (m, N + 1). offsets: parameter
-    coordinate of each datum minus the parameter coordinate of the solved orbit, (m,). orders: 0 for values, 1
-    for a derivative, (m,). The first datum is the derivative at the solved orbit.
+    data: normalised values of orbits or their parameter derivatives, (m, N + 1), N: number of orbit values;
+    the first datum is the derivative at the solved orbit. offsets: parameter coordinate of each datum minus
+    the parameter coordinate of the solved orbit, (m,). orders: 0 for values, 1 for a derivative, (m,).
     """
 
     orbit: Orbit
@@ -104,15 +104,14 @@ class CyclePredictor:
         """
         step = form.rod.coordinate(name) - self.orbit.form.rod.coordinate(name)
         values = with_weighted_data(self.values, self.data, self.orders, self.weights(step))
-        # The squared size, one of the values, goes linearly through 0 at a Hopf point, where cycles
-        # end.
+        # The last value, the squared size, goes linearly through 0 at a Hopf point, where cycles end.
         if not values[-1] > 0:
-            raise Unsolvable("the predictor has no cycle: the branch ends before this parameter value")
+            raise Unsolvable("no cycle is predicted: the branch ends before this parameter value")
         target = replace(form, mesh=self.orbit.form.mesh)
         return replace(self.orbit, form=target, values=values_of(values, reflected(self.orbit)))
 
     def on(self, target: OrbitMesh) -> "CyclePredictor":
-        """The same predictor, with the solved orbit and all data interpolated to the mesh `target`."""
+        """This predictor with the solved orbit and all data interpolated to the mesh `target`."""
         if target == mesh_of(self.orbit):
             return self
         data = [np.append(carried_change(self.orbit, row[:-1], target), row[-1]) for row in self.data]
@@ -120,19 +119,19 @@ class CyclePredictor:
 
 
 def carried_change(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
-    """A change of orbit values, (N,), interpolated to the mesh `target` by a linear map, (N of the
-    target,)."""
+    """The change `change` of the values of `orbit`, (N,), interpolated to the mesh `target` by a linear map,
+    (N of the target,)."""
     return target.carry(replace(orbit, values=change)).values
 
 
 def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: str) -> CyclePredictor:
     """The predictor at the orbit `found`, which was solved with its tangent. before: predictor at the
-    previous orbit. name: the varied parameter. Raises ValueError if the orbit has no tangent.
+    previous orbit, or None. name: the varied parameter. Raises ValueError if the orbit has no tangent.
 
-    A tangent has the relative error of the prediction of its orbit; the values of an orbit are far more
-    accurate. With PREDICTION.orbits_without_second_tangent or more values, a second tangent makes the
-    prediction worse. States on different meshes differ far more than period and largest y, tangents differ
-    less. After a change of mesh only tangents are used.
+    A tangent is as inaccurate as the prediction of its orbit; the values of an orbit are far more accurate.
+    With PREDICTION.orbits_without_second_tangent or more earlier orbits, a second tangent makes the
+    prediction worse. Between two meshes, the values of an orbit differ more than the tangent, so only
+    tangents are used after a change of mesh.
     """
     orbit = found.orbit
     if found.matrix.tangent is None:
@@ -147,7 +146,7 @@ def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: s
         return CyclePredictor(orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last.tangent]))
     older = np.flatnonzero(before.orders == 0)[: PREDICTION.max_earlier_orbits - 1]
     places = [0.0, -step, *(before.offsets[older] - step)]
-    # All abscissas shift by the step, because the newest orbit is at 0.
+    # All offsets shift by the step, because the newest orbit has the offset 0.
     data = [tangent, before.values, *before.data[older]]
     orders = [1.0] + [0.0] * (1 + len(older))
     if 1 + len(older) < PREDICTION.orbits_without_second_tangent:
@@ -167,11 +166,11 @@ def relative_parameter_difference(one: StressForm, other: StressForm, name: str)
 def orbit_near_prediction(
     predicted: Orbit, tolerance: float, workspace: NewtonWorkspace, name: str
 ) -> ConvergedOrbit:
-    """The orbit near `predicted`, by Newton's method along with its tangent by the parameter `name`; raises
-    Unsolvable if its relative distance from the prediction exceeds PREDICTION.max_prediction_distance."""
+    """The orbit near `predicted` with its tangent along the parameter `name`, by Newton's method; raises
+    Unsolvable if the orbit is farther from `predicted` than PREDICTION.max_prediction_distance."""
     found = newton(predicted, tolerance, workspace, name)
     if _distance(predicted, found) > PREDICTION.max_prediction_distance:
-        raise Unsolvable("the cycle is too far from its predictor")
+        raise Unsolvable("the cycle is too far from its prediction")
     return found
 
 

@@ -1,10 +1,10 @@
 """The limit cycle of one rod by time integration alone: task `limit_cycle` with `method: integration`.
 
-ARKIMEX integrates the motion until the motion repeats. Collocation is not used; D gives only the stored
-leading eigenvalue of the straight rod. No Floquet multiplier is computed; a motion that settles shows that
-the cycle is stable in the plane. Period and extrema are measured on two settled motions, the second on a
-finer mesh with a smaller tolerance; their difference is the error estimate. Near a Hopf point a motion may
-not settle within the allowed periods.
+ARKIMEX integrates the motion until the motion repeats. Collocation is not used. The characteristic
+determinant gives only the leading eigenvalue of the straight rod, which is stored. No Floquet multiplier is
+computed: a motion that settles on a cycle shows that the cycle is stable in the plane. Period and extrema are
+measured on two settled motions, the second on a finer mesh with a smaller tolerance; the difference of the
+two results gives the error estimate. Near a Hopf point a motion may not settle within the allowed periods.
 """
 
 from collections import deque
@@ -49,8 +49,8 @@ from .transient.returns import (
 
 @dataclass(frozen=True, eq=False)
 class _SettledMotion:
-    """A motion settled on a cycle. z: state, (unknowns,). turns: returns of the tip per period. step: in
-    tau2."""
+    """A motion that has settled on a cycle. z: present state, (unknowns,). turns: number of returns of the
+    tip to theta = 0 per period. step: last time step, in tau2."""
 
     z: Array
     turns: int
@@ -58,7 +58,7 @@ class _SettledMotion:
 
 
 class _NoCycle(Exception):
-    """The motion does not end on a cycle. status, message: outcome of the motion."""
+    """Raised if the motion does not settle on a cycle. status, message: outcome of the motion."""
 
     def __init__(self, status: MarchedStatus, message: str) -> None:
         super().__init__(message)
@@ -67,7 +67,7 @@ class _NoCycle(Exception):
 
 
 def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
-    """The cycle that a rod reaches from its leading mode by time integration; a failure becomes a status."""
+    """Outcome of a rod's motion from its leading mode, by time integration; a failure becomes a status."""
 
     def failed(cause: str) -> Cycle:
         forget_integrators()  # after an error inside PETSc its objects are unusable
@@ -77,7 +77,7 @@ def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
 
 
 class _MarchedMotion:
-    """Integration of the motion of one rod until it settles, on successively finer meshes."""
+    """Integration of the motion of one rod until the motion settles, on successively finer meshes."""
 
     def __init__(self, rod: Rod, request: CycleRequest) -> None:
         self.request = request
@@ -90,8 +90,8 @@ class _MarchedMotion:
         self.waited = 0
 
     def cycle(self) -> Cycle:
-        """The outcome for the rod: a cycle with errors, or another end of the motion."""
-        w = straight_rod(self.limit).w  # exact; the mesh's own eigenvalue has errors up to 1e-3
+        """The outcome for the rod: the cycle with its errors, or the status of a motion without a cycle."""
+        w = straight_rod(self.limit).w  # exact; an eigenvalue of the mesh has errors up to 1e-3
         straight = Cycle(status=MarchedStatus.straight, linear_growth_rate=w.real, linear_frequency=w.imag)
         try:
             z = relaxed(self.beam, self.request.amplitude * self.mode.z.real, self.mode.period)
@@ -116,7 +116,7 @@ class _MarchedMotion:
         return Beam(self.rod, self.mesh)
 
     def _refined(self, settled: _SettledMotion) -> _SettledMotion:
-        """A settled motion, continued until settled on a finer mesh with a smaller tolerance."""
+        """Continues the motion `settled` on a finer mesh, with a smaller tolerance, until settled again."""
         before = self.beam
         self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MARCHING.order_increase)
         self.scheme = replace(self.scheme, tolerance=MARCHING.tolerance_ratio * self.scheme.tolerance)
@@ -125,8 +125,7 @@ class _MarchedMotion:
         return self._settled(relaxed(self.beam, z, self.mode.period))
 
     def _settled(self, z: Array) -> _SettledMotion:
-        """The motion from the state z, (unknowns,), integrated until it settles on a cycle; raises
-        _NoCycle."""
+        """Integrates from the state z, (unknowns,), until the motion has settled, or raises _NoCycle."""
         past: deque[Array] = deque(maxlen=RETURNS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
         step = self.mode.period / MARCHING.first_steps_per_period
@@ -142,13 +141,13 @@ class _MarchedMotion:
                 until_returns(row, z, MARCHING.returns_per_test),
             )
             z = run.states[-1]
-            # The last step of a run suits the next, which continues the motion.
+            # The last time step of a run is the first time step of the next run, which continues the motion.
             step = float(run.times[-1] - run.times[-2])
             states = self._crossings(run)[1]
             past.extend(self.beam.layout.field(states, "m3"))
             self.waited += max(len(states), 1)
             if self.mode.w.real < 0 and np.linalg.norm(z) < RETURNS.straight_size:
-                raise _NoCycle(MarchedStatus.straight, "decayed to rounding")
+                raise _NoCycle(MarchedStatus.straight, "the motion has decayed to rounding error")
             if len(past) <= MARCHING.returns_per_test:
                 continue
             turns, distance = repetition(list(past))
@@ -167,8 +166,8 @@ class _MarchedMotion:
     def _run(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
     ) -> Trajectory:
-        """The motion from the state z, (unknowns,), integrated up to a duration or a limit; raises _NoCycle.
-        scheme: None for `self.scheme`."""
+        """The motion from the state z, (unknowns,), over `duration`, in tau2, or to `limit`; raises _NoCycle
+        if the run fails. step: first time step, in tau2. scheme: None for `self.scheme`."""
         run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
         if end := early_end(self.beam, run, self.waited):
             status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed
@@ -176,8 +175,8 @@ class _MarchedMotion:
         return run
 
     def _crossings(self, run: Trajectory) -> tuple[Array, Array]:
-        """(times, (k,), states, (k, unknowns)) at which the tip's theta rises through 0 on a run. The motion
-        is integrated to each crossing, because a cubic between two time steps is less accurate."""
+        """Returns (times, states), (k,) and (k, unknowns), at which the tip's theta rises through 0 on a run.
+        The motion is integrated to these times, because cubic interpolation is less accurate."""
         times = section_crossings(self.beam, run)[0]
         row = tip_angle_row(self.beam)
         states = np.empty((len(times), self.beam.unknowns))
@@ -195,7 +194,7 @@ class _MarchedMotion:
         return times, states
 
     def _path(self, settled: _SettledMotion) -> CyclePath:
-        """The cycle of a settled motion: one more integration over a period; raises _NoCycle."""
+        """The cycle of a settled motion, from a further run of more than a period; raises _NoCycle."""
         returns = settled.turns + 2
         limit = until_returns(tip_angle_row(self.beam), settled.z, returns)
         scheme = replace(self.scheme, tolerance=min(self.scheme.tolerance, MARCHING.max_measured_tolerance))
@@ -204,7 +203,7 @@ class _MarchedMotion:
         )
         times = self._crossings(run)[0]
         if len(times) <= settled.turns:
-            raise _NoCycle(MarchedStatus.not_settled, f"the tip does not return after {self.waited} returns")
+            raise _NoCycle(MarchedStatus.not_settled, f"the tip stops returning after {self.waited} returns")
         period = float(times[settled.turns] - times[0])
         spline = CubicSpline(run.times, run.states)
         states = spline(
@@ -219,11 +218,11 @@ class _MarchedMotion:
         )
 
     def _limit_errors(self, settled: _SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
-        """The errors plus the error of integrating a rod near a limit, not in the limit; raises _NoCycle."""
+        """`errors` plus the error of integrating a nearby rod instead of a limiting rod; raises _NoCycle."""
         known = path.orbit.form.rod
         limit = self.limit
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
-        # In coordinates the limit is 0, so twice the coordinate is twice the distance.
+        # The coordinate of a limit is 0, so twice the coordinate is twice the distance from the limit.
         coordinates = {name: MARCHING.limit_distance_ratio * known.coordinate(name) for name in in_limits}
         self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = self._beam()
@@ -237,7 +236,7 @@ class _MarchedMotion:
         )
 
     def _measured(self, straight: Cycle, path: CyclePath, errors: CycleErrors) -> Cycle:
-        """The outcome `straight` with status, measures and errors of a settled cycle."""
+        """The outcome `straight` with the status, measures and errors of the settled cycle of `path`."""
         enough = errors.largest <= self.request.accuracy
         cycle = replace(
             straight,

@@ -18,8 +18,8 @@ from .second_state import SecondState
 class MotionShapes:
     """Shapes of the rod at equidistant times from the start of a motion, for an animation.
 
-    shapes: x, y in L, (2, frames, nodes). step: time between two shapes, in tau2. is_whole: whether the
-    shapes cover the motion until its outcome is known.
+    shapes: x, y in L, (2, frames, nodes). step: time between two shapes, in tau2. is_whole: False if the
+    maximum number of time steps or of shapes cut off the end of the motion.
     """
 
     step: float
@@ -45,20 +45,22 @@ class CycleRequest:
     nodes: int
     """Number of Lobatto nodes of each stored shape."""
     most_periods: int
-    """Maximum number of returns of the tip, after which the integration of the motion ends."""
+    """The integration of a motion ends after this number of returns of the tip to theta = 0."""
     start: str = "mode"
     """Start of the search: "mode" for the leading mode; "neighbour" for the cycle of the neighbouring rod, or
-    the leading mode if there is no neighbour; "hopf" for the branch from the Hopf point."""
+    the leading mode if there is no neighbour; "hopf" for the branch from the Hopf point below the force."""
     transient: int = 0
     """Number of times at which the tip's path from the start is stored; 0 for no path. A motion with a stored
-    path is always integrated, and its state is never scaled."""
+    path is always integrated, without scaling of its state."""
     tip: tuple[float, float] | None = None
+    """x, y of the tip, in L, at the start of the motion; None for a start by `start`."""
     frames: int = 0
+    """Number of shapes per return of the tip that are stored for an animation; 0 for no animation."""
 
     @property
     def is_traced(self) -> bool:
-        """Whether the motion from the start is stored, as a path or as shapes, and therefore always
-        integrated."""
+        """Whether the tip's path or the rod's shapes are stored from the start of the motion on; the motion
+        is then always integrated."""
         return self.transient > 0 or self.frames > 0
 
 
@@ -67,8 +69,8 @@ class Cycle:
     """Outcome of the task limit_cycle for one rod, with the quantities of the cycle; unknown quantities are
     NaN or None.
 
-    On a torus only the multipliers of the unstable cycle inside the torus are known. Time series over a
-    period start where the tip's y rises through its mean.
+    For a motion on a torus only the multipliers of the unstable cycle inside the torus are known. Time series
+    over a period start where the tip's y rises through its mean.
     """
 
     status: PointStatus
@@ -81,7 +83,7 @@ class Cycle:
     periods: int = 0
     """Number of returns of the tip in the integrated motion; 0 if no motion was integrated."""
     second_state: int = SecondState.not_known
-    """A `SecondState`: knowledge about a second stable state of the rod."""
+    """Second stable state of the rod, as a value of `SecondState`."""
     subcritical_F: float = nan
     """Force, in k3/L^2, of the subcritical Hopf point that makes a second stable state possible; NaN if no
     such Hopf point is known."""
@@ -92,32 +94,33 @@ class Cycle:
     multiplier: float = nan
     """Modulus of the largest nontrivial Floquet multiplier."""
     multipliers: Complex | None = None
-    """The largest nontrivial Floquet multipliers by descending modulus, (MULTIPLIER_LIST.length,)."""
+    """Largest nontrivial Floquet multipliers by descending modulus, padded with NaN,
+    (MULTIPLIER_LIST.length,)."""
     trivial_multiplier_error: float = nan
     """Modulus of the difference between the computed trivial multiplier and 1."""
     tip: Array | None = None
     """x, y (in L) and theta of the tip at equidistant times over a period, (3, samples)."""
     energy: Array | None = None
-    """Elastic energy U in k3/L, injected and dissipated power, at equidistant times over a period,
-    (3, samples)."""
+    """Elastic energy, in k3/L, injected power and dissipated power, in k3/(L tau2), at equidistant times over
+    a period, (3, samples)."""
     shape: Array | None = None
     """x, y (in L) and theta of the rod at equidistant times over a period, (3, shapes, nodes)."""
     transient: Array | None = None
-    """Time in tau2 and x, y, theta of the tip, from the start to the end of the integration, (4, transient);
-    None if no motion was integrated."""
+    """Time in tau2, and x, y (in L) and theta of the tip, at equidistant times of the integrated motion,
+    (4, transient); None if no path was requested or no motion was integrated."""
     motion: MotionShapes | None = None
     """Shapes of the rod from the start of the motion, if requested."""
     neighbour: Neighbour | None = None
-    """Data of this cycle for the start at the next rod of a chain; None outside a chain."""
+    """Data of this cycle from which the next rod of a chain starts; None outside a chain."""
 
 
 def with_measures(
     cycle: Cycle, request: CycleRequest, path: CyclePath, measures: Measures, errors: CycleErrors
 ) -> Cycle:
-    """The outcome `cycle` with the measures, errors and requested time series of a solved cycle with the tip
-    path `path`."""
+    """The outcome `cycle` with the mesh, measures, errors and requested time series of a solved cycle. path:
+    motion of the solved cycle over its period."""
     mesh = path.orbit.form.mesh
-    # Unresolved harmonics are smaller than the cycle's error, so 0 is correct within that error.
+    # Unresolved harmonics are smaller than the cycle's error, so 0 is correct within this error.
     amplitudes = padded_or_cut(measures.harmonic_amplitude, request.harmonics, 0.0)
     return replace(
         cycle,
@@ -132,7 +135,7 @@ def with_measures(
 
 
 def padded_or_cut(values: Array | Complex, count: int, filler: complex) -> Any:
-    """The first `count` of the entries `values`, (m,), padded with `filler` if m < count: (count,)."""
+    """The first `count` entries of `values`, (m,), padded with `filler` if m < count; shape (count,)."""
     first = np.full(count, filler, values.dtype)
     first[: len(values)] = values[:count]
     return first

@@ -1,9 +1,9 @@
 """Start of Newton's method for the cycle at a given force, from the nearest Hopf point below this force.
 
 No motion is integrated. The normal form of the Hopf point gives amplitude, frequency and shape of small
-cycles. Close to the Hopf point the normal form's orbit starts Newton's method directly, on the mesh for the
-requested accuracy. Farther away the branch is followed along the force on a coarse mesh. A coarse mesh is not
-used close to the Hopf point, because the mesh may displace the Hopf point beyond the given force.
+cycles. Close to the Hopf point the normal form's orbit starts Newton's method directly, on the mesh of the
+normal form. Farther away the branch is followed along the force on a coarse mesh. A coarse mesh is not used
+close to the Hopf point, because the mesh may displace the Hopf point beyond the given force.
 """
 
 from dataclasses import dataclass, replace
@@ -38,35 +38,35 @@ class HopfStartSettings:
     scan_step: float = 0.07
     """Relative decrease between successive forces at which the search evaluates the leading growth rate."""
     min_force: float = 1e-2
-    """Force, in k3/L^2, at which the search for a Hopf point ends: no rod oscillates below, because F nu (nu
-    + F c2) must exceed the order of pi^2."""
+    """Force, in k3/L^2, at which the search for a Hopf point ends: at smaller forces no rod oscillates,
+    because F nu (nu + F c2) must exceed the order of pi^2; nu: stretch, c2 = 1/k2."""
     hopf_tolerance: float = 1e-6
-    """Tolerance of a Hopf point. Newton's method stops when |Re w| < hopf_tolerance |Im w|; an interval of
-    the force with the Hopf point is not divided below the relative width hopf_tolerance."""
+    """A Hopf point is accepted if |Re w| and |Im w - frequency| <= hopf_tolerance |w|; w: leading eigenvalue
+    at its force. Bisection ends at this relative width of the interval of the force."""
     max_newton_steps: int = 15
     """Maximum number of Newton steps to a Hopf point."""
     converged_growth: float = 4.0
-    """Growth rate, in units of its error estimate, below which Newton's method for the Hopf point has
-    converged."""
+    """Newton's method for the Hopf point has converged if |Re w| <= converged_growth times the error estimate
+    of w."""
     converged_step: float = 1e-15
-    """Relative step of the force below which Newton's method for the Hopf point has converged."""
+    """Newton's method for the Hopf point has also converged if |step of F| <= converged_step |F|."""
     normal_form_accuracy: float = 1e-3
     """Relative accuracy of the normal form's coefficients; the truncation error of the normal form is
     larger."""
     start_distances: tuple[float, ...] = (0.3, 0.12, 0.03, 0.006)
-    """Relative distances of the force from the Hopf point at which the normal form's orbit starts Newton's
-    method, tried in this order. For most rods the amplitude of the normal form has an error of 25 percent at
-    the first distance, of 10 percent at the second."""
+    """Relative distances of the force above the Hopf point at which Newton's method starts from the normal
+    form's orbit, tried in this order until Newton's method succeeds. For most rods the amplitude of the
+    normal form has an error of 25 percent at the first distance, of 10 percent at the second."""
     squared_amplitude_ratios: tuple[float, float] = 0.3, 3.0
-    """Allowed range of the squared largest y of the solved orbit, in units of the squared largest y of the
-    normal form."""
+    """Smallest and largest allowed ratio of the squared largest y of the solved orbit to the squared largest
+    y of the normal form."""
     max_direct_distance: float = 1e-2
-    """Relative distance of the force from the Hopf point up to which the normal form's orbit starts Newton's
-    method at the given force itself: its amplitude has an error of 1 percent there for most rods."""
+    """Up to this relative distance of the force above the Hopf point, Newton's method starts from the normal
+    form's orbit at the given force itself, with an error of its amplitude of 1 percent for most rods."""
     intervals: int = 8
     """Number of time intervals of the coarse mesh, over half a period."""
     stages: int = 3
-    """Collocation stages of the coarse mesh."""
+    """Number of collocation stages per interval of the coarse mesh."""
     branch_tolerance: float = 3e-3
     """Relative tolerance of Newton's method for the intermediate orbits on the branch."""
 
@@ -96,12 +96,12 @@ def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
 
 
 def hopf_point_below(rod: Rod) -> HopfPointBelow | None:
-    """The nearest Hopf point of the leading mode below the force of the rod; None without a Hopf point.
+    """The nearest Hopf point of the leading mode below the force of the rod; None if no Hopf point is found.
     Raises Unsolvable."""
     F = rod.F
     above = leading_eigenvalue(rod)
     while HOPF_START.min_force < F:
-        # Steps of equal ratio: thresholds of a rod are far apart at large forces.
+        # Successive forces have a constant ratio: thresholds of a rod are far apart at large forces.
         lower = F * (1 - HOPF_START.scan_step)
         below = leading_eigenvalue(replace(rod, F=lower), above)
         if below.real < 0 <= above.real:
@@ -112,10 +112,10 @@ def hopf_point_below(rod: Rod) -> HopfPointBelow | None:
 
 
 def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex]) -> HopfPointBelow:
-    """The Hopf point between two forces, each given with its leading eigenvalue; raises Unsolvable.
+    """The Hopf point between `low` and `high`, (force, leading eigenvalue) each; raises Unsolvable.
 
-    Newton's method on D, started by linear interpolation, finds a candidate. If the candidate belongs to an
-    eigenvalue that is not leading, the interval is bisected.
+    Newton's method on the characteristic determinant, started by linear interpolation, finds a candidate. If
+    Newton's method fails or another eigenvalue leads at the candidate, the interval is bisected.
     """
     problem = path_problem(Path(rod, "F"))
     (a, below), (b, above) = low, high
@@ -123,7 +123,7 @@ def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex])
         share = below.real / (below.real - above.real)
         found = _on_the_axis(problem, a + share * (b - a), below + share * (above - below), (a, b))
         if found is not None:
-            # The eigenvalue on the axis must be the leading one; otherwise another mode is unstable already.
+            # The eigenvalue on the axis must lead; otherwise another mode is already unstable.
             w = leading_eigenvalue(replace(rod, F=found.F))
             tolerance = HOPF_START.hopf_tolerance * abs(w)
             if abs(w.real) <= tolerance and abs(w.imag - found.frequency) <= tolerance:
@@ -161,8 +161,8 @@ def _on_the_axis(
 
 
 def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWorkspace) -> Orbit:
-    """Approximate orbit of the rod in `form`, on the branch from a Hopf point below its force, on a coarse
-    mesh.
+    """Approximate orbit of the rod in `form`, on the branch from the Hopf point `hopf` below the rod's force,
+    on a mesh that is chosen here.
 
     workspace: memory of Newton's matrices. Raises Unsolvable if the branch starts towards smaller forces or
     cannot be followed.
@@ -184,8 +184,8 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
 
 
 def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
-    """Approximate small orbit, by the normal form, to which a motion converges that starts in the leading
-    mode.
+    """Approximate orbit, by the normal form, to which a motion from the leading mode converges near a Hopf
+    point.
 
     w: leading eigenvalue of the straight rod. amplitude: tip's y at the start, in L. Raises Unsolvable if the
     normal form is not valid: no Hopf point is near, the start is too large, a second mode may grow, or the
@@ -203,12 +203,12 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
     if not amplitude**2 <= HOPF_START.max_direct_distance * rate / -normal.c.real:
         raise Unsolvable(f"the amplitude {amplitude:g} of the start is too large for the normal form")
     if transverse_problem(form.rod).count(-CANDIDATES.last_line_distance * abs(w)).number != 2:
-        raise Unsolvable("a second pair of modes may be unstable, for which the normal form does not hold")
+        raise Unsolvable("a second pair of modes may be unstable, so the normal form is not valid")
     return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
 
 
 def _normal_form(form: StressForm, w: complex) -> NormalForm:
-    """Normal form of the rod in `form`, with the exact eigenvalue `w` in place of the mesh's."""
+    """Normal form of the rod in `form`, with the exact eigenvalue `w` instead of the mesh's eigenvalue."""
     normal = accurate_normal_form(form.rod, w, HOPF_START.normal_form_accuracy)
     return replace(normal, w=w)
 
@@ -223,7 +223,7 @@ def _orbit_from(normal: NormalForm, F: float, form: StressForm, workspace: Newto
     squared = normal.cycle(F)[0]
     least, most = HOPF_START.squared_amplitude_ratios
     if not least < found.orbit.form.tip(found.orbit.start)[1] ** 2 / squared < most:
-        raise Unsolvable(f"no cycle near the prediction from the Hopf point at F = {normal.F:g}")
+        raise Unsolvable(f"the orbit is not near the prediction from the Hopf point at F = {normal.F:g}")
     if form.rod.F == F:
         return found.orbit
     return orbit_in_steps(
@@ -238,7 +238,7 @@ def orbit_by_normal_form(normal: NormalForm, form: StressForm) -> Orbit:
 
 
 def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, frequency: float) -> Orbit:
-    """The orbit of the rod in `form` with the motion of a normal form. amplitude: largest tip y, in L;
+    """The orbit of the rod in `form` with the motion of a normal form. amplitude: largest tip y, in L.
     frequency: in 1/tau2."""
     X = normal.motion(amplitude, np.pi * node_times(HOPF_START.intervals, HOPF_START.stages))
     S, V = normal.form.fields(X)

@@ -1,12 +1,12 @@
 """The limit cycle of one rod (paper, Sec. VII): task `limit_cycle` with `method: collocation`.
 
 The search starts from the leading eigenmode or from the cycle of a neighbour, the previous rod of a chain.
-The motion from the eigenmode is integrated until it approaches a cycle (`transient`). Near a Hopf point the
-normal form predicts the final cycle instead (`small_motion`), and the cycle of a neighbour predicts the cycle
-of this rod (`neighbour`). Newton's method then solves for the periodic orbit on meshes chosen for the
-requested accuracy (`accuracy`). Only the Floquet multipliers decide whether the orbit is a stable cycle: near
-a Hopf point, where motions decay slowly, two successive peaks of the motion may agree although no cycle
-exists.
+From the eigenmode the motion is integrated until the motion approaches a cycle (`transient`); near a Hopf
+point the normal form predicts the cycle instead (`small_motion`). The cycle of a neighbour predicts the cycle
+of this rod by continuation (`neighbour`). Newton's method then solves for the periodic orbit on meshes chosen
+for the requested accuracy (`accuracy`). An orbit is accepted as a stable cycle only by its Floquet
+multipliers: near a Hopf point, where motions decay slowly, two successive peaks of the motion may agree
+although no cycle exists.
 """
 
 from contextlib import suppress
@@ -45,7 +45,7 @@ class MultiplierListSettings:
     """Settings for the list of stored Floquet multipliers of a cycle."""
 
     length: int = 6
-    """Number of stored multipliers: the length of their list in a file."""
+    """Number of multipliers per cycle in a result file."""
     min_modulus: float = 1e-6
     """Smallest modulus of a stored multiplier; a perturbation with a smaller multiplier has decayed after one
     period."""
@@ -53,7 +53,7 @@ class MultiplierListSettings:
 
 MULTIPLIER_LIST = MultiplierListSettings()
 NO_MULTIPLIER = complex(nan, nan)
-"""Value in the stored list for multipliers with moduli below `MULTIPLIER_LIST.min_modulus`."""
+"""Entry of the list for a missing multiplier, or a modulus below `MULTIPLIER_LIST.min_modulus`."""
 
 
 def solve_cycle(
@@ -63,11 +63,11 @@ def solve_cycle(
     along: str | None = None,
     workspace: NewtonWorkspace | None = None,
 ) -> Cycle:
-    """The cycle that a rod reaches from its leading mode, or from a neighbour's cycle; a failure becomes a
-    status, never an exception.
+    """Outcome of the search for the cycle of a rod from its leading mode, a neighbour's cycle or a Hopf
+    point; a failure becomes a status, never an exception.
 
-    start: `Cycle.neighbour` of the previous rod of a chain. along: name of the parameter that varies along
-    the chain. workspace: memory of Newton's matrices, shared by many rods; None makes a new workspace.
+    start: `Cycle.neighbour` of the previous rod of a chain, or None. along: name of the parameter that varies
+    along the chain. workspace: memory of Newton's matrices, shared by many rods; None makes a new workspace.
     """
     memory = workspace or NewtonWorkspace()
 
@@ -123,15 +123,15 @@ def _solve(
 
 
 def _form_of_motion(rod: Rod) -> StressForm:
-    """Discretization of a rod on the first mesh of its integrated motion."""
+    """Discretization of a rod on the first mesh for the integration of its motion."""
     return StressForm(rod, motion_mesh(rod, MOTION_MESH.accuracy))
 
 
 def _after_motion(
     straight: Cycle, transient: Transient, end: TransientOutcome, request: CycleRequest
 ) -> Cycle:
-    """The outcome `straight` with the mesh, the number of returns and the requested path or shapes of an
-    integrated motion."""
+    """The outcome `straight` with the mesh, the number of returns and the requested path or shapes of the
+    integrated motion `transient`. end: outcome of this motion."""
     trace = transient.trace
     return replace(
         straight,
@@ -144,7 +144,7 @@ def _after_motion(
 
 
 def _motion(transient: Transient, trace: ShapeTrace, request: CycleRequest) -> MotionShapes:
-    """Shapes from the start of an integrated motion, as the request stores them."""
+    """The recorded shapes of an integrated motion, at the requested numbers of times and nodes."""
     returns = [time for time, _ in transient.past]
     return trace.motion(returns, transient.mode.period, request.frames, request.nodes)
 
@@ -157,8 +157,8 @@ def _with_chain_state(
     accuracy: float,
     stability: StraightRod,
 ) -> Cycle:
-    """The outcome `cycle` with the data from which the next rod of a chain starts; unchanged if `along` is
-    None, outside a chain."""
+    """The outcome `cycle` with the data of the solved cycle `found` from which the next rod of a chain
+    starts; unchanged outside a chain (`along` is None). before: data of the previous rod."""
     if along is None:
         return cycle
     eigenvalues = eigenvalues_to_follow(found.orbit.form.rod, stability)
@@ -166,15 +166,16 @@ def _with_chain_state(
 
 
 def _checked_by_spectrum(cycle: Cycle, stability: StraightRod) -> Cycle:
-    """The outcome `cycle`; a status `straight` becomes `not_settled` unless the spectrum proves the straight
-    rod stable."""
+    """The outcome `cycle`, with the status `not_settled` instead of `straight` unless the spectrum proves the
+    straight rod stable."""
     if cycle.status != CycleStatus.straight or stability.stable:
         return cycle
     return replace(cycle, status=CycleStatus.not_settled, message=stability.doubt)
 
 
 def _with_second_state(rod: Rod, cycle: Cycle, stability: StraightRod) -> Cycle:
-    """The outcome `cycle` with the knowledge about a second stable state of the rod."""
+    """The outcome `cycle` with the second stable state of the rod, as far as known, and a message about this
+    state."""
     state, F, why = second_state(rod, cycle.status, stability.stable)
     message = "; ".join(filter(None, (cycle.message, why)))
     return replace(cycle, second_state=int(state), subcritical_F=F, message=message)
@@ -187,16 +188,16 @@ def _from_hopf(
     stability: StraightRod,
     workspace: NewtonWorkspace,
 ) -> Cycle:
-    """The outcome for the cycle on the branch from the Hopf point below the force of the rod.
+    """The outcome of the search for the cycle on the branch from the Hopf point below the force of the rod.
 
-    straight: outcome to which the cycle's quantities are added, and returned with a status if no Hopf point
-    lies below the force.
+    straight: outcome to which the quantities of the cycle are added, or only a status and a message if no
+    cycle is found.
     """
     try:
         hopf = hopf_point_below(form.rod)
         if hopf is None:
             status = CycleStatus.straight if stability.stable else CycleStatus.not_settled
-            return replace(straight, status=status, message="no Hopf point at any smaller force")
+            return replace(straight, status=status, message="there is no Hopf point at a smaller force")
         found = refined_cycle(orbit_from_hopf(form, hopf, workspace), request.accuracy, workspace)
     except Unsolvable as why:
         return replace(straight, status=CycleStatus.not_settled, message=str(why))

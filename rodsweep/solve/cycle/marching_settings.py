@@ -9,39 +9,40 @@ class MarchingSettings:
     of two integrations."""
 
     local_tolerance: float = 0.01
-    """Local tolerance of the integrator, in units of the accuracy; the errors of a cycle reach ten times this
-    tolerance."""
+    """Local tolerance of the integrator divided by the requested accuracy; the errors of a cycle reach ten
+    times the local tolerance."""
     tolerance_ratio: float = 0.2
-    """Local tolerance of the second integration, in units of the tolerance of the first integration."""
+    """Local tolerance of an integration divided by the tolerance of the previous integration."""
     order_increase: int = 2
-    """Increase of the order of the elements in the second integration."""
+    """Increase of the element order from an integration to the next, finer integration."""
     max_comparisons: int = 3
-    """Maximum number of comparisons of two integrations; the finer integration of a comparison is the coarser
-    integration of the next."""
+    """Maximum number of comparisons of two successive integrations of increasing accuracy."""
     settled_distance: float = 0.1
-    """Largest relative distance of a settled motion from the cycle, in units of the accuracy."""
+    """A motion has settled if its relative distance from the cycle is at most this fraction of the
+    accuracy."""
     return_noise: float = 10.0
-    """Relative distance of two returns that the error of the integrator may cause, in units of the local
+    """Relative distance between two returns that integration errors alone may cause, divided by the local
     tolerance."""
     first_steps_per_period: int = 1000
-    """Number of first time steps of a motion in a period of the leading mode."""
+    """Period of the leading mode divided by the first time step of a motion."""
     max_run_duration: int = 3
-    """Longest duration of a run, in units of the expected duration of its returns."""
+    """Longest duration of a run divided by (number of returns * period of the leading mode)."""
     returns_per_test: int = 5
     """Number of returns of the tip between two tests whether the motion repeats."""
     pair_factor: float = 2.0
-    """Safety factor on the difference between two integrations, which gives the error estimate."""
+    """Safety factor: error estimate divided by the difference between the results of two integrations."""
     pair_error_share_in_limit: float = 0.5
-    """For a rod in a limit, such as k1 = inf, largest error by two integrations in units of the accuracy. The
-    remaining error is due to the integrated rod, which is only near the limit."""
+    """For a limiting rod, such as a rod with k1 = inf, integrations are refined until their error is at most
+    this fraction of the accuracy; the rest of the accuracy is left for the error of integrating a nearby
+    rod."""
     limit_distance_ratio: float = 2.0
-    """Ratio of the distances from a limit of two rods that approximate a rod in the limit. Cycles change in
-    proportion to the distance, so the difference of the two cycles is the error of the rod nearer to the
-    limit."""
+    """A limiting rod is approximated by two rods, whose distances from the limit have this ratio. Cycles
+    change in proportion to the distance, so the difference of the two cycles is the error of the nearer
+    rod."""
     max_measured_tolerance: float = 2e-8
     """Largest local tolerance of the integration from which the cycle is measured. With a larger tolerance,
-    the steps (20 a period at an accuracy of 1e-3) are too long for the cubic between them: rates had errors
-    of 1 to 5 % (`test_marched.py`)."""
+    the time steps (20 per period at an accuracy of 1e-3) are too long for cubic interpolation: time
+    derivatives had errors of 1 to 5 % (`test_marched.py`)."""
     measured_stages: int = 3
     """Number of collocation stages per interval of the orbit from which the cycle is measured."""
     measured_intervals: int = 48

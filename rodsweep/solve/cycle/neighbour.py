@@ -1,11 +1,11 @@
-"""Chain of cycles over the rods of a sweep: the cycle of each rod predicts the cycle of the next rod, its
-neighbour.
+"""Chain of cycles over the rods of a sweep: the cycle of a rod predicts the cycle of the next, neighbouring
+rod.
 
 The prediction is a polynomial through a cycle, its tangent along the varied parameter, and earlier cycles.
-After the prediction, a single matrix factorisation usually gives the next cycle with its multipliers. A step
-too long for Newton's method is divided, on a coarser mesh. Mesh and calibrated errors pass along the chain as
-well. A cycle depends only on the data of its neighbour, so that an interrupted chain resumes with the same
-results.
+From the prediction, a single matrix factorisation usually gives the next cycle with its multipliers. A step
+too long for Newton's method is divided, on a coarser mesh. Mesh and calibrated errors are passed along the
+chain, too. The next cycle depends only on the data in `Neighbour`, so that an interrupted chain resumes with
+the same results.
 """
 
 from dataclasses import dataclass, field
@@ -42,13 +42,13 @@ class NeighbourSettings:
     """Settings for the choice of the next mesh in a chain of cycles."""
 
     max_error_of_same_mesh: float = 0.9
-    """Largest error of a cycle, in units of the accuracy, after which the next cycle is solved on the same
-    mesh."""
+    """A mesh is sufficient for the next cycle if the error of the present cycle is at most this fraction of
+    the accuracy."""
     max_new_mesh_cost: float = 0.8
-    """Largest cost of a mesh that replaces a sufficient mesh, in units of the cost of the sufficient mesh."""
+    """A new mesh replaces a sufficient mesh if it costs at most this fraction of the sufficient mesh."""
     max_new_mesh_cost_when_calibrated: float = 0.5
-    """The same limit if the calibration of the sufficient mesh is still valid: a new calibration costs as
-    much as three cycles."""
+    """Limit instead of `max_new_mesh_cost` if the errors were measured at the present cycle: measuring the
+    errors of a new mesh costs as much as three cycles."""
 
 
 NEIGHBOUR = NeighbourSettings()
@@ -83,13 +83,13 @@ class Neighbour:
         eigenvalues: Complex = UNKNOWN_EIGENVALUES,
     ) -> "Neighbour":
         """Data of the cycle `found`, which was solved with its tangent. before: data of the previous rod of
-        the chain. name: varied parameter."""
+        the chain, or None. name: varied parameter. accuracy: requested relative accuracy."""
         branch = predictor_from(found.converged, before.predictor if before else None, name)
         return cls(branch, *_next_mesh(found, before, name, accuracy), eigenvalues)
 
     def arrays(self) -> Arrays:
         """All data as named arrays, for a checkpoint: orbit (N,), data (m, N + 1), places and orders (m,),
-        eigenvalues (n,), meshes, rod and calibration."""
+        eigenvalues (n,), meshes, rod and calibration; N, m: as in `CyclePredictor`."""
         branch = self.predictor
         orbit = branch.orbit
         return {
@@ -108,7 +108,7 @@ class Neighbour:
 
     @classmethod
     def from_arrays(cls, arrays: Arrays) -> "Neighbour":
-        """The neighbour from its named arrays, as `Neighbour.arrays` makes them."""
+        """The neighbour from the named arrays that `Neighbour.arrays` returns."""
         mesh = OrbitMesh.from_numbers(arrays["mesh"])
         next_mesh = OrbitMesh.from_numbers(arrays["next_mesh"])
         parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))
@@ -123,13 +123,13 @@ class Neighbour:
 def _next_mesh(
     found: RefinedCycle, before: "Neighbour | None", name: str, accuracy: float
 ) -> tuple[OrbitMesh, Calibration]:
-    """(mesh for the next cycle of a chain, calibration, which is outdated if the errors must be measured
-    again)."""
+    """Returns (mesh, calibration) for the next cycle of a chain. The calibration is outdated if the errors
+    must be measured again at the next cycle. before: data of the previous rod."""
     present = mesh_of(found.orbit)
     known = found.calibration
     fits = found.errors.largest <= NEIGHBOUR.max_error_of_same_mesh * accuracy
     if known.reach and not fits:
-        # Scaled errors that are too large are measured on this mesh before another mesh is planned.
+        # Errors scaled from an earlier cycle, if too large, are first measured on this mesh.
         return present, known.rates_only
     share = inf if not fits else _share_of_cost(found, before, name)
     planned = known.cheapest_mesh(accuracy) if share else present
@@ -139,15 +139,15 @@ def _next_mesh(
 
 
 def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -> float:
-    """Largest cost of a mesh that replaces a sufficient mesh, in units of the cost of the sufficient mesh; 0
-    to keep it."""
+    """Largest cost of a new mesh divided by the cost of the present, sufficient mesh; 0 if the present mesh
+    remains in use."""
     if before is None:
         # Coefficient tails, not measured errors, determined the first mesh of a chain.
         return NEIGHBOUR.max_new_mesh_cost
     if not found.calibration.reach:
         return NEIGHBOUR.max_new_mesh_cost_when_calibrated
     step = relative_parameter_difference(before.predictor.orbit.form, found.orbit.form, name)
-    # A mesh whose errors must be measured anyway may as well be another one.
+    # If the errors must be measured again anyway, another mesh needs no additional measurement.
     return 0.0 if found.calibration.is_valid_after(step) else NEIGHBOUR.max_new_mesh_cost
 
 
@@ -160,7 +160,7 @@ def cycle_from_neighbour(
     form: the rod, on any mesh. workspace: memory of Newton's matrices.
     """
     if form.rod.build != neighbour.predictor.orbit.form.rod.build:
-        raise Unsolvable("the neighbouring rod has another law or another profile along its length")
+        raise Unsolvable("the neighbouring rod has another constitutive law or another profile along the rod")
     if form.omega_unknown != neighbour.predictor.orbit.form.omega_unknown:
         raise Unsolvable(
             "the rods have different unknowns: Omega is an unknown only at small rotational drag"

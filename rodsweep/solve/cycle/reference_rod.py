@@ -1,4 +1,4 @@
-"""A reference rod with a known cycle, which warms up the solver and checks the PETSc options."""
+"""A reference rod with a known cycle, solved to warm up the solver and to check the PETSc options."""
 
 from dataclasses import replace
 
@@ -11,17 +11,17 @@ from .limit_cycle import solve_cycle
 from .status import CycleStatus
 
 REFERENCE_PERIOD = 0.04204870
-"""Period, in tau2, of the cycle of the reference rod F, k1, k2, gamma3, gamma1 = 40, 1e4, 1e2, 1e-2, 1; an
-independent displacement-form code confirms all digits."""
+"""Period, in tau2, of the cycle of the reference rod with F, k1, k2, gamma3, gamma1 = 40, 1e4, 1e2, 1e-2, 1.
+An independent displacement-form code confirms all digits."""
 REFERENCE_REQUEST = CycleRequest(1e-3, 0.1, 1, 4, 1, 4, 50)
-"""Request for the cycle of the reference rod: a coarse accuracy, with samples, shapes and a transient."""
+"""Request for the cycle of the reference rod: a low accuracy, with time series and one shape."""
 
 
 def warm_up() -> None:
     """Loads compiled code and fills caches by solving the reference rod, so that the first point takes no
     extra time.
 
-    Raises EnvironmentIncomplete if the period is wrong and PETSc options with the prefix cycle_ are set.
+    Raises EnvironmentIncomplete if PETSc options with the prefix cycle_ are set and the cycle is wrong.
     """
     rod = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
     request = REFERENCE_REQUEST
@@ -34,6 +34,6 @@ def warm_up() -> None:
     if given and not reproduced:
         outcome = f"{cycle.status.name} {cycle.message}".strip()
         raise EnvironmentIncomplete(
-            f"with the PETSc options '{given}' the reference rod, whose cycle is known, ends as '{outcome}', "
-            "so the task limit_cycle cannot run; remove these options"
+            f"with the PETSc options '{given}' the known cycle of the reference rod is not found: "
+            f"'{outcome}'; the task limit_cycle cannot run; remove these options"
         )

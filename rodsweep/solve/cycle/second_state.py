@@ -1,8 +1,8 @@
-"""Second stable state of a rod, besides the final state of its motion.
+"""Second stable state of a rod, in addition to the final state of its motion.
 
 If the straight rod is stable and the final state is a different state, the rod has two stable states. If the
-final state is the straight rod, a nearby subcritical Hopf point makes a second state possible, but does not
-prove it.
+final state is the straight rod, a nearby subcritical Hopf point makes a second stable state possible, but is
+no proof of this state.
 """
 
 from enum import IntEnum
@@ -16,7 +16,7 @@ from .status import CycleStatus
 
 
 class SecondState(IntEnum):
-    """Knowledge about a second stable state of a rod; the result file stores the value."""
+    """Second stable state of a rod, as far as known; the result file stores the value."""
 
     not_known = -1
     none_known = 0
@@ -25,10 +25,11 @@ class SecondState(IntEnum):
 
 
 def second_state(rod: Rod, status: PointStatus, stable: bool | None) -> tuple[SecondState, float, str]:
-    """(second stable state of a rod, force of the subcritical Hopf point or NaN, message or "").
+    """Returns (state, F, message). state: second stable state of the rod. F: force of a subcritical Hopf
+    point, in k3/L^2, or NaN. message: for the user, or "".
 
-    status: outcome of the motion or search for a cycle. stable: whether the straight rod is stable; None if
-    this is not known.
+    status: outcome of the motion or of the search for a cycle. stable: whether the straight rod is stable;
+    None if not known.
     """
     if status == CycleStatus.failed or stable is None:
         return SecondState.not_known, nan, ""
@@ -47,7 +48,7 @@ def second_state(rod: Rod, status: PointStatus, stable: bool | None) -> tuple[Se
 
 def _sentence(beside: SubcriticalHopf) -> str:
     return (
-        f"the Hopf point at F = {beside.F:.9g} is subcritical: from a start beyond its unstable cycle, whose "
-        f"largest y is about {beside.unstable_y:.2g} L by the normal form, the rod may reach a stable cycle; "
-        "task `branch` follows this cycle"
+        f"the Hopf point at F = {beside.F:.9g} is subcritical: an unstable cycle exists, with a largest y of "
+        f"about {beside.unstable_y:.2g} L by the normal form, and from a start at larger y the rod may reach "
+        "a stable cycle; the task `branch` follows the branch of these cycles"
     )

@@ -1,9 +1,9 @@
 """Outcome of a small motion about the straight rod, from the normal form of the leading mode, without
 integration.
 
-Near a supercritical Hopf point the motion converges to the small cycle there. If the leading mode decays, and
-the cubic term of its growth rate is small compared with the linear term, the motion decays to the straight
-rod.
+Slightly beyond a supercritical Hopf point the motion converges to the small cycle of the normal form. If the
+leading mode decays, and the cubic term of its growth rate is small compared with the linear term, the motion
+decays to the straight rod.
 """
 
 from dataclasses import dataclass
@@ -26,8 +26,8 @@ class SmallMotionSettings:
     """Settings for small motions near a Hopf point."""
 
     max_cubic_growth_ratio: float = 0.02
-    """Cubic term of the growth rate, in units of the linear term, below which the linear term determines the
-    outcome of a motion."""
+    """A motion decays if Re w < 0 and |Re c| a^2 < max_cubic_growth_ratio |Re w|. a: tip's y at the start, w:
+    leading eigenvalue, c: cubic coefficient of the normal form, computed to this relative accuracy."""
 
 
 SMALL_MOTION = SmallMotionSettings()
@@ -37,10 +37,10 @@ def stable_cycle_near_hopf(
     form: StressForm, w: complex, request: CycleRequest, along: str | None, workspace: NewtonWorkspace
 ) -> RefinedCycle | None:
     """The stable small cycle near a Hopf point to which the motion from the requested start converges; None
-    if the normal form predicts none.
+    if no such cycle is found.
 
-    form: the rod. w: leading eigenvalue of the straight rod. along: parameter of the cycle's tangent.
-    workspace: memory of Newton's matrices.
+    form: the discretized rod. w: leading eigenvalue of the straight rod. along: parameter along which the
+    tangent of the cycle is computed, or None. workspace: memory of Newton's matrices.
     """
     try:
         found = refined_cycle(small_orbit(form, w, request.amplitude), request.accuracy, workspace, along)
@@ -51,10 +51,10 @@ def stable_cycle_near_hopf(
 
 
 def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
-    """Message why a motion that starts in the leading mode decays to the straight rod; "" if only an
-    integration can decide.
+    """Message that explains why a motion from the leading mode decays to the straight rod; "" if the normal
+    form does not prove the decay.
 
-    w: leading eigenvalue. amplitude: tip's y at the start, in L.
+    w: leading eigenvalue of the straight rod. amplitude: tip's y at the start, in L.
     """
     if not (w.real < 0 < w.imag):
         return ""
@@ -66,4 +66,4 @@ def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
     share = abs(normal.c.real) * amplitude**2 / -w.real
     if share >= SMALL_MOTION.max_cubic_growth_ratio:
         return ""
-    return f"decays: at this amplitude the cubic term of the growth rate is {share:.0e} of the linear term"
+    return f"the motion decays: at the start the cubic term is {share:.0e} of the linear growth rate"

@@ -1,11 +1,11 @@
-"""Status words of the task limit_cycle, each with the sentence that the user reads."""
+"""Status values of the task limit_cycle, each with a sentence for the user."""
 
 from ..status import PointStatus
 
 
 class CycleStatus(PointStatus):
-    """Status of a point of the task limit_cycle with `method: collocation`; a success if the final state of
-    the rod is known."""
+    """Status of a point of the task limit_cycle with `method: collocation`. A status is a success if it means
+    that the final state of the rod is known."""
 
     cycle = (
         0,
@@ -16,13 +16,14 @@ class CycleStatus(PointStatus):
     straight = 1, "the rod returns to the straight state, which is stable", True
     not_settled = (
         2,
-        "no stable cycle was found within the allowed periods, or its errors exceed the requested accuracy; "
-        "raise the allowed periods, start from a neighbour's cycle, or request a lower accuracy",
+        "no stable cycle was found within the allowed periods, or the errors of the cycle exceed the "
+        "requested accuracy; raise the allowed periods, start from a neighbour's cycle, or request a "
+        "lower accuracy",
     )
     left_the_model = (
         3,
-        "the rod was crushed somewhere (h1 <= 0), or its rubber lost its stiffness, where the model ends; "
-        "start from a smaller amplitude or from a neighbour's cycle, or lower F or raise k1",
+        "a section of the rod was crushed (h1 <= 0) or lost its stiffness, so the model is no longer valid; "
+        "start from a smaller amplitude or from a neighbour's cycle, lower F, or raise k1",
     )
     failed = 4, "the integration failed and nothing is stored; the message says why"
     unstable = (
@@ -34,8 +35,8 @@ class CycleStatus(PointStatus):
     torus = (
         6,
         "quasiperiodic motion on a torus: the cycle inside the torus is unstable by a complex pair of "
-        "Floquet multipliers, and the motion has a second frequency, which the message gives; the "
-        "stored multipliers are those of the cycle, of which nothing else is stored",
+        "Floquet multipliers, and the motion has a second frequency, which the message gives; only the "
+        "multipliers of this cycle are stored",
         True,
     )
 
@@ -52,12 +53,13 @@ class MarchedStatus(PointStatus):
     straight = 1, "the motion has decayed to rounding error: the rod returns to the straight state", True
     not_settled = (
         2,
-        "the motion does not repeat within the allowed periods, or its errors exceed the requested accuracy; "
-        "raise the allowed periods, request a lower accuracy, or use `method: collocation`",
+        "the motion does not repeat within the allowed periods, or the errors of the cycle exceed the "
+        "requested accuracy; raise the allowed periods, request a lower accuracy, or use "
+        "`method: collocation`",
     )
     left_the_model = (
         3,
-        "the rod was crushed somewhere (h1 <= 0), or its rubber lost its stiffness, where the model ends; "
-        "start from a smaller amplitude, or lower F or raise k1",
+        "a section of the rod was crushed (h1 <= 0) or lost its stiffness, so the model is no longer valid; "
+        "start from a smaller amplitude, lower F, or raise k1",
     )
     failed = 4, "the integration failed and nothing is stored; the message says why"

@@ -1,8 +1,8 @@
-"""Stability of the straight rod by its exact spectrum, which takes precedence over the motion on a mesh.
+"""Stability of the straight rod by its exact spectrum, which takes precedence over an integrated motion.
 
-The mesh of a motion displaces a Hopf point slightly, and so does the integration of a rod near a limit
-instead of the rod in the limit. Near a Hopf point the sign of the exact leading growth rate therefore
-decides, unless the sign is within the error estimate.
+In an integrated motion a Hopf point is slightly displaced by the mesh, and by the replacement of a limiting
+rod, such as a rod with k1 = inf, by a nearby rod. The sign of the exact leading growth rate therefore
+determines the stability, unless the growth rate is 0 within its error.
 """
 
 from dataclasses import dataclass, field
@@ -22,14 +22,14 @@ class StraightRodSettings:
     """Settings for the stability of the straight rod by its leading eigenvalue."""
 
     min_axis_distance_in_errors: float = 4.0
-    """Distance of the leading eigenvalue from the imaginary axis, in units of its error estimate, beyond
-    which the sign of the growth rate is certain. The task spectrum has the same criterion."""
+    """The sign of the growth rate Re w is certain if |Re w| exceeds this number times the error estimate of
+    the leading eigenvalue w. The task spectrum has the same criterion."""
     accuracy: float = 1e-9
     """Relative accuracy of the leading eigenvalue."""
     chain_eigenvalues: int = 6
-    """Number of eigenvalues of an arm from which a chain of rods starts. Near most Hopf points, with so many
-    eigenvalues, a few values of D prove that no other eigenvalue is the leading one; an eigenvalue count
-    takes three times as long."""
+    """Number of eigenvalues of a nonuniform arm that are followed along a chain of rods. Near most Hopf
+    points, with this many eigenvalues, a few values of the characteristic determinant prove which eigenvalue
+    leads; a count of the eigenvalues takes three times as long."""
 
 
 STRAIGHT_ROD = StraightRodSettings()
@@ -40,11 +40,11 @@ NO_EIGENVALUES: Complex = np.empty(0, complex)
 
 @dataclass(frozen=True, slots=True)
 class StraightRod:
-    """Leading eigenvalue w of the straight rod in 1/tau2, with Im w >= 0 and its error estimate; both NaN if
-    not known.
+    """Leading eigenvalue w of the straight rod, Im w >= 0, and its error estimate, in 1/tau2; w and error are
+    NaN if w is not known.
 
-    message: the reason for NaN. followed: eigenvalues that were followed from a similar rod, (n,), the
-    leading eigenvalue first; empty if the eigenvalue was found by a search.
+    message: reason why w is not known. followed: eigenvalues that were followed from a similar rod, (n,), the
+    leading eigenvalue first; empty if w was found by a search.
     """
 
     w: complex
@@ -54,8 +54,8 @@ class StraightRod:
 
     @property
     def stable(self) -> bool | None:
-        """Whether all small motions about the straight rod decay; None if the growth rate is 0 within its
-        error or unknown."""
+        """Whether all small motions about the straight rod decay; None if the growth rate is unknown or 0
+        within its error."""
         margin = max(
             STRAIGHT_ROD.min_axis_distance_in_errors * self.error, ROOTS.axis_tolerance * abs(self.w)
         )
@@ -63,7 +63,7 @@ class StraightRod:
         return self.w.real < 0 if abs(self.w.real) > margin else None
 
     def growth_rate(self, otherwise: float) -> float:
-        """Growth rate of the leading mode, in 1/tau2: 0 if its sign is undecided, `otherwise` if the
+        """Growth rate of the leading mode, in 1/tau2; 0 if its sign is undecided, `otherwise` if the
         eigenvalue is unknown."""
         if isnan(self.error):
             return otherwise
@@ -71,23 +71,23 @@ class StraightRod:
 
     @property
     def doubt(self) -> str:
-        """Message why the straight rod is not proved stable, for a rod whose motion on a mesh decays; "" for
-        a stable straight rod."""
+        """Message that the straight rod is not proved stable although its integrated motion decays; "" if the
+        straight rod is stable."""
         if self.stable:
             return ""
         if isnan(self.error):
             return f"the stability of the straight rod is not known: {self.message}"
         rate = f"the straight rod's growth rate is {self.w.real:.2g} +- {self.error:.0e}"
         if self.stable is None:
-            return f"{rate}, so whether it stays straight is not decided"
-        return f"{rate}, so it leaves the straight state, although its motion on a mesh decays to it"
+            return f"{rate}, so the stability of the straight rod is undecided"
+        return f"{rate}, so the straight rod is unstable, although the integrated motion decays"
 
 
 def straight_rod(rod: Rod, near: Complex | None = None, certify: bool = True) -> StraightRod:
     """The leading eigenvalue of a rod with its error estimate.
 
     near: eigenvalues of a similar rod, (n,), the leading eigenvalue first, which are followed to this rod if
-    possible. certify: whether to prove that the eigenvalue is the leading one.
+    possible. certify: whether to prove that no other eigenvalue has a larger growth rate.
     """
     request = SpectrumRequest(1, STRAIGHT_ROD.accuracy, certify)
     leader = None if near is None else follow_leading_eigenvalue(rod, near, request.accuracy)
@@ -101,8 +101,8 @@ def straight_rod(rod: Rod, near: Complex | None = None, certify: bool = True) ->
 
 
 def eigenvalues_to_follow(rod: Rod, found: StraightRod) -> Complex:
-    """Eigenvalues of a rod, (n,), the leading eigenvalue first, from which the eigenvalues of a similar rod
-    can be followed."""
+    """Eigenvalues of `rod`, (n,), the leading eigenvalue first, from which the eigenvalues of a similar rod
+    can be followed. found: leading eigenvalue of `rod`."""
     if len(found.followed):
         return found.followed
     if not rod.uniform:

@@ -40,9 +40,9 @@ def ended(point, amplitude=0.1, most_periods=400, **more):
     ("w", "error", "stable", "growth", "doubt"),
     [
         (-1 + 10j, 1e-12, True, -1.0, ""),
-        (1 + 10j, 1e-12, False, 1.0, "growth rate is 1 +- 1e-12, so it leaves"),
-        (-1e-13 + 10j, 5e-14, None, 0.0, "growth rate is -1e-13 +- 5e-14, so whether it stays straight"),
-        (1e-15 + 100j, 1e-17, None, 0.0, "is not decided"),
+        (1 + 10j, 1e-12, False, 1.0, "growth rate is 1 +- 1e-12, so the straight rod is unstable"),
+        (-1e-13 + 10j, 5e-14, None, 0.0, "growth rate is -1e-13 +- 5e-14, so the stability"),
+        (1e-15 + 100j, 1e-17, None, 0.0, "is undecided"),
         (complex(nan, nan), nan, None, 7.0, "is not known: no mesh"),
     ],
 )
@@ -128,7 +128,7 @@ def test_a_growth_rate_that_is_0_within_its_error_leaves_it_open(start, monkeypa
     monkeypatch.setattr(limit_cycle, "straight_rod", lambda rod, near: StraightRod(-1e-13 + 60j, 1e-13))
     c = ended(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0), start=start)
     assert (c.status, c.second_state) == (CycleStatus.not_settled, SecondState.not_known)
-    assert start == "hopf" or "so whether it stays straight is not decided" in c.message
+    assert start == "hopf" or "so the stability of the straight rod is undecided" in c.message
 
 
 @pytest.mark.parametrize(("F", "status"), [(43.0, "straight"), (44.2616704983273, "cycle"), (46.0, "cycle")])
@@ -148,4 +148,4 @@ def test_a_stored_motion_does_not_leave_the_straight_state_by_a_jump(F, why):
 def test_a_stretch_that_has_not_relaxed_is_named():
     c = ended(Rod(F=20.0, k1=100.0, k2=1e2, gamma3=1e-3, gamma1=1e4), 0.8)
     assert c.status == CycleStatus.not_settled
-    assert "its stretch has not relaxed" in c.message
+    assert "the stretch of the rod has not relaxed" in c.message

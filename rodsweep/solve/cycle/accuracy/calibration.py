@@ -1,9 +1,9 @@
-"""Calibration of a mesh: measured errors, reused for the next cycles on the same mesh, and convergence rates.
+"""Calibration of a mesh: measured errors, reused for later cycles on the same mesh, and convergence rates.
 
-The decay of the orbit's coefficients estimates the convergence rates in space and in time; two measured
-meshes give more accurate rates. The rates determine the cheapest sufficient mesh. Along a chain of cycles the
-errors are measured at the first cycle on a mesh. At later cycles these errors are scaled up as the
-coefficient tails of the orbits grow.
+The convergence rate in space is estimated from the decay of the orbit's coefficients, the order in time from
+the number of stages; errors measured on two meshes give more accurate rates. The rates determine the cheapest
+sufficient mesh. Along a chain of cycles the errors are measured at the first cycle on a mesh. At later cycles
+these errors are scaled up as the coefficient tails of the orbits grow.
 """
 
 from dataclasses import dataclass, field, replace
@@ -22,8 +22,8 @@ from .calibration_settings import CALIBRATION
 from .cycle_errors import CYCLE_ERRORS, CycleErrors, largest_error
 
 MULTIPLIER = 4
-"""Index of the error of the largest multiplier in the error arrays; smaller indices are those of
-`path_differences`."""
+"""Index of the error of the largest multiplier in the error arrays of a calibration; the smaller indices are
+the indices of `path_differences`."""
 ERROR_COUNT = 5
 """Length of the error arrays of a calibration: four errors of `path_differences`, and the error of the
 largest multiplier."""
@@ -41,7 +41,7 @@ class Calibration:
     space: Array
     time: Array
     fall: Array
-    """Decrease of the natural logarithm of the errors in space per order of the elements, (5,)."""
+    """Decrease of ln(error) in space if the order of the elements increases by 1, (5,)."""
     power: Array
     """Order of convergence of the errors in time, (5,)."""
     tails: Array
@@ -61,59 +61,60 @@ class Calibration:
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, Array]) -> "Calibration":
-        """The calibration from the named arrays of `Calibration.arrays`."""
+        """The calibration from the named arrays that `Calibration.arrays` returns."""
         mesh = OrbitMesh.from_numbers(arrays["calibrated_mesh"])
         errors = {name: arrays[name] for name in ("space", "time", "fall", "power", "tails")}
         return cls(mesh=mesh, reach=float(arrays["reach"]), **errors)
 
     def scaled_on_chain(self, orbit: Orbit, change: float) -> "Calibration":
-        """The calibration with its errors scaled to a later orbit of a chain, after a further relative change
-        of the parameter."""
+        """This calibration with the errors scaled to a later orbit of a chain; outdated if the orbit has
+        shrunk too much. change: relative change of the parameter since the previous orbit."""
         tails = _tails(orbit)
-        # The errors are relative to the size of the orbit: for a shrinking cycle they are measured again.
+        # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
         dies = tails[-1] < CALIBRATION.min_size_ratio * self.tails[-1]
         return replace(
             self, error_growth=_growth(self.tails, tails), reach=inf if dies else self.reach + change
         )
 
     def scaled_on_branch(self, orbit: Orbit) -> "Calibration":
-        """The calibration with its errors scaled to a later orbit of a branch. On a branch, which is followed
-        by arc length, errors do not grow as orbits shrink."""
+        """This calibration with the errors scaled to a later orbit of a branch. The size of this orbit is
+        ignored: a branch is followed by arc length, and errors do not grow as orbits shrink."""
         growth = _growth(self.tails, _tails(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails * (0.0, 0.0, 1.0))
         return replace(self, error_growth=growth)
 
     @property
     def rates_only(self) -> "Calibration":
-        """The same calibration with `reach` = inf: its errors no longer apply, its convergence rates do."""
+        """This calibration with `reach` = inf: the errors no longer apply, the convergence rates still do."""
         return replace(self, reach=inf)
 
     @property
     def is_valid(self) -> bool:
-        """Whether the scaled errors still apply to the later orbit."""
+        """Whether the scaled errors apply: `reach` and `error_growth` do not exceed their limits."""
         return (
             self.reach <= CALIBRATION.max_parameter_change
             and float(self.error_growth.max()) <= CALIBRATION.max_error_growth
         )
 
     def is_valid_after(self, change: float) -> bool:
-        """Whether the errors may still apply after a further relative change of the parameter."""
+        """Whether the errors may still apply after a further relative change `change` of the parameter."""
         return self.reach + change <= CALIBRATION.max_parameter_change
 
     def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
-        """(smallest errors in space, smallest errors in time), (5,) each, that a new measurement on the same
-        mesh may give at an orbit."""
+        """Returns (errors in space, errors in time), (5,) each: lower limits of errors that are measured
+        again at `orbit` on the same mesh, a fraction of the present errors."""
         in_space, in_time = CALIBRATION.min_repeated_share * np.minimum(
             _change(self.tails, _tails(orbit)), 1.0
         )
         return in_space * self.space, in_time * self.time
 
     def errors(self, accuracy: float) -> CycleErrors:
-        """Error estimates of the orbit to which the measured errors are scaled, not below a fraction of the
+        """Error estimates of the orbit to which this calibration is scaled, not below a fraction of the
         accuracy.
 
-        For multiplier and other extrema, the errors in space and in time are both scaled by the larger
-        growth, because an error was once seen to grow 2.7 times as much as its tail. For period and largest
-        y, whose errors determine the mesh, the larger growth would cost a tenth of the time of a sweep.
+        For the multiplier and the other extrema, errors in space and in time are scaled by the larger of the
+        two growth factors, because an error was once seen to grow 2.7 times as much as its tail. For period
+        and largest y, whose errors determine the mesh, the larger factor would cost a tenth of the time of a
+        sweep.
         """
         in_space, in_time = self.error_growth
         stated = _errors_with_safety_factors(self.space * in_space, self.time * in_time, accuracy)
@@ -123,7 +124,8 @@ class Calibration:
         return CycleErrors(*stated.tolist())
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh on which the convergence rates predict a relative accuracy."""
+        """The cheapest mesh on which the convergence rates predict the relative accuracy `accuracy`; the next
+        finer mesh if no allowed mesh suffices."""
         present = self.mesh
         lowest = max(ORBIT_MESH.min_order, present.order - CALIBRATION.max_fewer_orders)
         orders = np.arange(lowest, min(RESOLUTION.max_order, present.order + CALIBRATION.max_more_orders) + 1)
@@ -131,11 +133,11 @@ class Calibration:
         most = min(CALIBRATION.max_interval_ratio * present.intervals, ORBIT_MESH.max_intervals)
         intervals = np.arange(fewest, most + 1)
         # Rates are measured up to the present mesh. On finer meshes errors in space may decrease no faster
-        # than the distance of the paths, and errors in time with the smallest order.
+        # than the distance of the tip's paths, and errors in time with the smallest order.
         least = np.minimum(self.fall, self.fall[WHOLE_PATH])
         fall = np.where(orders < present.order, self.fall[:, None], least[:, None])
         space = self.space[:, None] * np.exp(fall * (present.order - orders))
-        # For finer meshes the smallest order is taken, because the order was measured on coarser meshes.
+        # The order was measured on coarser meshes; for finer meshes the smallest order is taken.
         power = np.where(intervals < present.intervals, self.power[:, None], present.stages + 1)
         time = self.time[:, None] * (present.full_intervals / (intervals - 1)) ** power
         errors = _errors_with_safety_factors(space[:, :, None], time[:, None, :], accuracy)
@@ -170,18 +172,18 @@ def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> A
 
 
 def _tails(orbit: Orbit) -> Array:
-    """Tails of an orbit in space and in time, not below `min_tail`, and its size, (3,)."""
+    """Tails of an orbit in space and in time, not below CALIBRATION.min_tail, and size of the orbit, (3,)."""
     return np.append(np.maximum(smooth_tails(orbit), CALIBRATION.min_tail), orbit.size)
 
 
 def _growth(before: Array, after: Array) -> Array:
     """Estimated growth factors of the errors in space and in time between two orbits, (2,), at least 1.
 
-    before, after: tails in space and in time, and size, of both orbits, (3,) each.
+    before, after: tails in space and in time, and size, of the earlier and of the later orbit, (3,) each.
 
-    Absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, whose location
-    depends on the mesh, the error of the size also grows as the reciprocal of the squared size. A predicted
-    decrease is ignored.
+    Absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, the error of
+    the size also grows as the reciprocal of the squared size, because the mesh displaces the Hopf point. A
+    predicted decrease is ignored.
     """
     # Errors are of second order in the tails.
     growth: Array = np.maximum(_change(before, after), 1.0) * max((before[2] / after[2]) ** 2, 1.0)
@@ -189,8 +191,8 @@ def _growth(before: Array, after: Array) -> Array:
 
 
 def _change(before: Array, after: Array) -> Array:
-    """Ratios of the squared absolute tails of two orbits, in space and in time, (2,). before, after: relative
-    tails and size, (3,)."""
+    """Growth factors of the squared absolute tails in space and in time between two orbits, (2,). before,
+    after: relative tails and size, (3,)."""
     change: Array = ((after * after[2] / (before * before[2])) ** 2)[:2]
     return change
 
@@ -200,8 +202,8 @@ def calibration_of(
 ) -> Calibration:
     """Calibration of a mesh from its measured errors in space and in time, (5,) each, with convergence rates.
 
-    orbit: the measured orbit. before: calibration at a nearby orbit, on any mesh, from which the rates
-    follow; None if the decay of the orbit's coefficients gives the rates.
+    orbit: the measured orbit. before: calibration at a nearby orbit, on any mesh, whose errors give the
+    rates; None if the rates are estimated from the coefficients of `orbit` and the number of stages.
     """
     tails = _tails(orbit)
     if before is None:
@@ -220,9 +222,8 @@ def calibration_of(
 
 
 def _space_rate(before: Array, after: Array, orders: int) -> Array:
-    """Decrease of the natural logarithm of the errors in space per order of the elements, (5,). before,
-    after: errors on two meshes, (5,) each. orders: increase of the order from the first mesh to the
-    second."""
+    """Decrease of ln(error) in space if the order of the elements increases by 1, (5,). before, after: errors
+    on two meshes, (5,) each. orders: increase of the order from the first mesh to the second."""
     fall: Array = np.clip(
         _logarithm(before, after) / orders, CALIBRATION.min_space_decay, CALIBRATION.max_space_decay
     )
@@ -230,9 +231,9 @@ def _space_rate(before: Array, after: Array, orders: int) -> Array:
 
 
 def _time_order(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
-    """Order of convergence in time, (5,). before, after: errors, (5,) each, on two meshes, `previous` and
-    `mesh`, with different numbers of time intervals."""
-    # Radau IIA has the order 2 stages - 1, of which stiff problems may keep only stages + 1.
+    """Order of convergence of the errors in time, (5,). before, after: errors in time, (5,) each, on the
+    meshes `previous` and `mesh` with different numbers of time intervals."""
+    # Radau IIA has the order 2 stages - 1, which stiff problems may reduce to stages + 1.
     least = mesh.stages + 1
     steps = np.log(mesh.full_intervals / previous.full_intervals)
     power: Array = np.clip(_logarithm(before, after) / steps, least, CALIBRATION.max_time_order_ratio * least)
@@ -240,7 +241,7 @@ def _time_order(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMes
 
 
 def _logarithm(before: Array, after: Array) -> Array:
-    """Logarithm of the ratios before/after of two arrays of errors of any shape; an error may be 0."""
+    """Natural logarithm of before/after, for errors of a common shape; 0 is replaced by a tiny number."""
     least = EXPONENTS.least_divisor
     quotient: Array = np.log(np.maximum(before, least) / np.maximum(after, least))
     return quotient

@@ -1,10 +1,10 @@
 """Prediction of a cycle and its errors on a fine mesh, from the cycle on three coarser meshes.
 
-The first mesh is coarse in space, the second in time, the third in both. The sum of the first two orbits
-minus the third equals the orbit on the fine mesh up to a product of two small errors (combination technique:
-Griebel, Schneider, Zenger 1992). One matrix factorisation on the fine mesh then gives the cycle and its
-multipliers. The differences between the three orbits measure the errors of the coarse meshes; pessimistic
-convergence rates bound the errors of the fine mesh.
+The first mesh is coarse in space, the second in time, the third in space and time. The sum of the first two
+orbits minus the third equals the orbit on the fine mesh up to a product of two small errors (combination
+technique: Griebel, Schneider, Zenger 1992). One matrix factorisation on the fine mesh then gives the cycle
+and its multipliers. The differences between the three orbits measure the errors of the coarse meshes;
+pessimistic convergence rates bound the errors of the fine mesh.
 """
 
 from dataclasses import dataclass, replace
@@ -33,35 +33,35 @@ class CoarserMeshSettings:
     max_fewer_orders: int = 4
     """Largest difference between the orders of a fine mesh and of its coarse mesh."""
     min_space_decay: float = 1.5
-    """Smallest expected decrease of the natural logarithm of the errors in space from the coarse mesh to the
-    fine mesh, which determines the difference of the orders. Where coefficients decay slowly, errors
-    oscillate with the order, and meshes of nearly the same order may agree by coincidence. With a difference
-    of 2 orders, 16 of 112 errors of slender cones exceeded their estimates, by factors up to 2.2. With this
-    decrease none did; the largest error was 0.4 times its estimate."""
+    """The difference of the orders is chosen so that ln(error) in space is expected to decrease by at least
+    this number from the coarse mesh to the fine mesh. Where coefficients decay slowly, errors oscillate with
+    the order, and meshes of nearly the same order may agree by coincidence. With a difference of 2 orders, 16
+    of 112 errors of slender cones exceeded their estimates, by factors up to 2.2. With this decrease no error
+    exceeded 0.4 times its estimate."""
     more_intervals: float = 0.4
     """Additional time intervals of the fine mesh, as a fraction of the number of intervals of the coarse
     mesh."""
     max_more_orders: int = 2
-    """Largest increase of the order, beyond the fine mesh for which the coarse mesh was made, at which the
-    coarse mesh still predicts a cycle."""
+    """A coarse mesh made for a fine mesh of order p predicts cycles on meshes of orders up to p +
+    max_more_orders."""
     max_interval_ratio: float = 2.0
-    """Largest ratio of the numbers of time intervals of the fine mesh and of the coarse mesh that predicts
-    its cycle."""
+    """A coarse mesh predicts the cycle on a fine mesh only if the ratio of the numbers of time intervals,
+    fine mesh to coarse mesh, is at most this."""
     slowest_decay_ratio: float = 1.2
-    """Pessimistic decrease of the logarithm of the errors in space per order, in units of the same decrease
-    of the coefficients."""
+    """Pessimistic decrease of ln(error) in space per order, divided by the decrease of ln(coefficient) per
+    order."""
 
 
 COARSER_MESHES = CoarserMeshSettings()
 
 
 class CoarserMeshes:
-    """The cycle on a coarse mesh and on meshes finer only in space or only in time, which together predict
-    the cycle on a fine mesh."""
+    """The cycle on a coarse mesh, on meshes finer only in space and on meshes finer only in time, from which
+    the cycle on a fine mesh is predicted."""
 
     def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
-        """mesh: the fine mesh. near: an orbit near the cycle, on any mesh. accuracy: requested relative
-        accuracy. Raises Unsolvable."""
+        """Solves the cycle on the coarse mesh; raises Unsolvable. mesh: the fine mesh. near: an orbit near
+        the cycle, on any mesh. accuracy: requested relative accuracy."""
         fewer = _fewer_orders(near)
         order = max(mesh.order - fewer, ORBIT_MESH.min_order - COARSER_MESHES.min_fewer_orders)
         self._highest_order = order + fewer + COARSER_MESHES.max_more_orders
@@ -73,7 +73,8 @@ class CoarserMeshes:
         self._finer: dict[OrbitMesh, ComparedCycle] = {}
 
     def can_predict(self, mesh: OrbitMesh) -> bool:
-        """Whether the coarse mesh is fine enough to predict the cycle on the fine mesh `mesh`."""
+        """Whether the cycle on `mesh` can be predicted: with the elements and stages of the coarse mesh, an
+        order and a number of time intervals that are not too large."""
         near = (
             mesh.order <= self._highest_order
             and self._refined_in_time(mesh) <= COARSER_MESHES.max_interval_ratio
@@ -81,8 +82,8 @@ class CoarserMeshes:
         return near and (mesh.edges, mesh.stages) == (self.mesh.edges, self.mesh.stages)
 
     def predicted(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:
-        """(predicted orbit on the fine mesh `mesh`, calibration of this mesh with predicted errors); raises
-        Unsolvable."""
+        """Returns (orbit, calibration): predicted orbit on the fine mesh `mesh`, and calibration of this mesh
+        with predicted errors; raises Unsolvable."""
         space = self._on(replace(self.mesh, order=mesh.order))
         time = self._on(replace(self.mesh, intervals=mesh.intervals))
         fine_in_space = mesh.carry(space.orbit)
@@ -91,8 +92,8 @@ class CoarserMeshes:
         orbit = replace(fine_in_space, values=fine_in_space.values + fine_in_time.values - coarse.values)
         by_orders = np.exp(_fall(space.orbit) * (mesh.order - self.mesh.order))
         by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
-        # The error of the multipliers may decrease more slowly than the errors of the paths. It is bounded by
-        # the difference between the mesh fine only in space and the mesh fine only in time.
+        # The error of the multipliers may decrease more slowly than the errors of the paths. The difference
+        # between the multipliers on the two finer meshes bounds this error.
         of_multipliers = multiplier_change(space.multipliers, time.multipliers)
         in_space = np.append(self._errors(space, by_orders), 0.0)
         in_time = np.append(self._errors(time, by_intervals), of_multipliers)
@@ -107,22 +108,22 @@ class CoarserMeshes:
         return ComparedCycle(newton(mesh.carry(near), self._tolerance, self._workspace))
 
     def _errors(self, finer: ComparedCycle, factor: float) -> Array:
-        """Errors of a finer mesh, (4,) as `path_differences`, from the difference between its cycle and the
-        cycle on the coarse mesh.
+        """Errors of a finer mesh, (4,), in the order of `path_differences`, from the difference between the
+        cycles on this mesh and on the coarse mesh.
 
-        factor: ratio of the errors of the coarse mesh and of the finer mesh.
+        factor: errors of the coarse mesh divided by the errors of the finer mesh.
         """
         errors: Array = path_differences(self._coarse.path, finer.path) / (factor - 1)
         return errors
 
     def _refined_in_time(self, mesh: OrbitMesh) -> float:
-        """Ratio of the numbers of full time intervals of the fine mesh `mesh` and of the coarse mesh."""
+        """Number of full time intervals of `mesh` divided by the number of full time intervals of the coarse
+        mesh."""
         return mesh.full_intervals / self.mesh.full_intervals
 
 
 def _fall(orbit: Orbit) -> float:
-    """Pessimistic decrease of the natural logarithm of the errors in space per order, from the coefficients
-    of an orbit."""
+    """Pessimistic decrease of ln(error) in space per order, from the coefficients of an orbit."""
     slowest = COARSER_MESHES.slowest_decay_ratio * tails_of(orbit).decay
     return min(max(slowest, CALIBRATION.min_space_decay), CALIBRATION.max_space_decay)
 

@@ -1,5 +1,5 @@
-"""Error estimates of a cycle: of its period, of the tip's largest y and other extrema, and of its largest
-multiplier."""
+"""Error estimates of a cycle: of the period, of the largest y and other extrema of the tip, and of the
+largest multiplier."""
 
 from dataclasses import dataclass
 from math import nan
@@ -17,9 +17,9 @@ class CycleErrorSettings:
     rounding_error: float = 2e-14
     """Smallest relative error estimate of period and extrema: the rounding error on any mesh."""
     min_error_share: float = 0.1
-    """Smallest error estimate, in units of the accuracy: a smaller estimate may be a coincidence."""
+    """Lower limit of error estimates, divided by the accuracy: a smaller estimate may be a coincidence."""
     extrema_tolerance_ratio: float = 100.0
-    """Tolerance of the tip's other extrema, in units of the tolerance of period and largest y. Period and
+    """Tolerance of the tip's other extrema divided by the tolerance of period and largest y. Period and
     largest y converge fastest, because a time node lies at the largest y."""
 
 
@@ -31,7 +31,7 @@ class CycleErrors:
     """Error estimates of a cycle.
 
     period_error: relative, of the period. amplitude_error: relative, of the tip's largest y. extrema_error:
-    largest error of the tip's other extrema, in units of the largest y. multiplier_error: absolute, of the
+    largest error of the tip's other extrema, divided by the largest y. multiplier_error: absolute, of the
     largest nontrivial multiplier.
     """
 
@@ -42,13 +42,13 @@ class CycleErrors:
 
     @property
     def largest(self) -> float:
-        """The error that is compared with the requested accuracy: the largest of the errors of period and
-        largest y, and of the error of the other extrema divided by `extrema_tolerance_ratio`."""
+        """The error that is compared with the requested accuracy: the largest of the error of the period, the
+        error of the largest y, and the error of the other extrema divided by `extrema_tolerance_ratio`."""
         return float(largest_error(self.period_error, self.amplitude_error, self.extrema_error))
 
 
 def largest_error(period: Array | float, amplitude: Array | float, extrema: Array | float) -> Array:
-    """`CycleErrors.largest` from the errors of period, amplitude and other extrema: numbers, or arrays of a
+    """`CycleErrors.largest` from the errors of period, largest y and other extrema: numbers, or arrays of a
     common shape."""
     largest: Array = np.maximum(
         np.maximum(period, amplitude), np.asarray(extrema) / CYCLE_ERRORS.extrema_tolerance_ratio

@@ -1,5 +1,4 @@
-"""A solved cycle with measures, multipliers and errors, and the status that follows: stable, unstable or not
-settled."""
+"""A solved cycle with measures, multipliers and errors, and the status that follows from these numbers."""
 
 from dataclasses import dataclass
 
@@ -19,9 +18,9 @@ from .minimal_period import undecided_divisor
 class RefinedCycle:
     """A solved cycle with its measures, multipliers and errors.
 
-    converged: orbit and matrix. calibration: source of the errors. path: motion of the tip. multipliers:
-    nontrivial multipliers, (rank - 1,), by descending modulus. trivial_error: distance of the computed
-    trivial multiplier from 1.
+    converged: orbit and matrix. calibration: source of the errors. path: motion of the orbit over its period.
+    multipliers: nontrivial multipliers, (rank - 1,), by descending modulus. trivial_error: distance of the
+    computed trivial multiplier from 1.
     """
 
     converged: ConvergedOrbit
@@ -43,13 +42,13 @@ class RefinedCycle:
 
     @property
     def divisor(self) -> int:
-        """Divisor by which the minimal period may be shorter than the period; 1 proves the period minimal."""
+        """Number g such that the minimal period may be 1/g of the period; g = 1 proves the period minimal."""
         return undecided_divisor(self.path, self.errors.extrema_error)
 
     @property
     def margin(self) -> float:
-        """Error of the largest multiplier's modulus; the stability is undecided if this modulus is closer to
-        1."""
+        """Error of the largest multiplier's modulus; the stability is undecided if the modulus differs from 1
+        by this error or less."""
         return max(self.trivial_error, self.errors.multiplier_error)
 
     @property
@@ -60,10 +59,10 @@ class RefinedCycle:
         return None if abs(beyond) <= self.margin else beyond < 0
 
     def verdict(self, accuracy: float) -> tuple[CycleStatus, str]:
-        """(status of the cycle for a requested relative accuracy, message if the status is not a stable or
-        unstable cycle)."""
+        """Returns (status, message) of the cycle for a requested relative accuracy; the message is "" for a
+        stable or unstable cycle."""
         if self.measures.least_stretch <= 0:
-            return CycleStatus.left_the_model, f"h1 = {self.measures.least_stretch:.3g} on the cycle"
+            return CycleStatus.left_the_model, f"smallest h1 = {self.measures.least_stretch:.3g} on the cycle"
         if self.errors.largest > accuracy:
             return CycleStatus.not_settled, "the cycle's errors exceed the requested accuracy"
         if self.divisor != 1:

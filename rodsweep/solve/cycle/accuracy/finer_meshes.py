@@ -1,5 +1,4 @@
-"""Measurement of the errors of a mesh by comparison with two finer meshes, one finer in space and one finer
-in time.
+"""Measurement of the errors of a mesh by comparison with a mesh finer in space and a mesh finer in time.
 
 A comparison with a coarser mesh would measure only the error of the coarser mesh, and the error of the mesh
 itself would need an assumed, pessimistic order. Two finer meshes measure the error directly.
@@ -24,12 +23,12 @@ class ComparisonSettings:
     """Settings for the two finer meshes by which the errors of a mesh are measured."""
 
     more_orders: int = 2
-    """Increase of the order on the mesh finer in space: the errors decrease there to a tenth or less."""
+    """Increase of the order on the mesh finer in space, which reduces the errors to a tenth or less."""
     more_intervals: float = 0.4
-    """Additional time intervals of the mesh finer in time, as a fraction of the intervals of the mesh; the
-    fraction of the error in time that remains is known."""
+    """Additional time intervals of the mesh finer in time, as a fraction of the number of intervals of the
+    mesh. A known fraction of the error in time remains on the finer mesh."""
     newton_tolerance_share: float = 0.1
-    """Tolerance of Newton's method on the finer meshes, in units of the accuracy."""
+    """Tolerance of Newton's method on the finer meshes, divided by the accuracy."""
     matrix_distance: float = 1e-3
     """Largest relative distance between a cycle and the orbit whose matrix gives its multipliers."""
 
@@ -38,10 +37,10 @@ COMPARISON = ComparisonSettings()
 
 
 def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
-    """((mesh finer in space, mesh finer in time), fraction of the error in time that the second mesh
-    removes)."""
+    """Returns ((space, time), share): the mesh finer in space, the mesh finer in time, and the fraction of
+    the error in time that the mesh finer in time removes."""
     longer = ceil((1 + COMPARISON.more_intervals) * mesh.intervals)
-    # Errors fall with this power of the intervals; the last two intervals count as one.
+    # Errors in time fall with this power of the full intervals; the last two intervals have half the length.
     share = 1 - (mesh.full_intervals / (longer - 1)) ** (mesh.stages + 1)
     return (replace(mesh, order=mesh.order + COMPARISON.more_orders), replace(mesh, intervals=longer)), share
 
@@ -50,8 +49,8 @@ def measured_calibration(found: ConvergedOrbit, accuracy: float, before: Calibra
     """Calibration of the mesh of the orbit `found`, with errors measured on two finer meshes; raises
     Unsolvable.
 
-    before: calibration at a nearby orbit, on any mesh, from which the convergence rates follow; None if the
-    decay of the orbit's coefficients gives the rates.
+    before: calibration at a nearby orbit, on any mesh, whose errors give the convergence rates; None if the
+    rates are estimated from the coefficients of the orbit and the number of stages.
     """
     mesh = mesh_of(found.orbit)
     measured = ComparedCycle(found)
@@ -80,7 +79,7 @@ class ComparedCycle:
         return multipliers_of(at_orbit(self._found, COMPARISON.matrix_distance))[0]
 
     def difference(self, fine: "ComparedCycle") -> Array:
-        """Differences from the same cycle on a finer mesh, (5,): four of `path_differences`, and of the
-        largest multiplier."""
+        """Differences between this cycle and the same cycle `fine` on a finer mesh, (5,): the four of
+        `path_differences`, and the error of the largest multiplier."""
         change = multiplier_change(self.multipliers, fine.multipliers)
         return np.append(path_differences(self.path, fine.path), change)

@@ -8,15 +8,15 @@ from .cycle_errors import CycleErrors
 
 
 def errors_of_pair(one: CyclePath, other: CyclePath, share: float) -> CycleErrors:
-    """Error estimates from the cycles of two time integrations. share: relative distance of a settled motion
-    from the cycle, which is added to each error."""
+    """Error estimates from the cycles `one` and `other` of two time integrations. share: relative distance of
+    a settled motion from the cycle, which is added to the error estimates."""
     a = one.extrema
     b = other.extrema
     size = abs(b["tip_y_max"])
     period = abs(one.orbit.period / other.orbit.period - 1)
     height = abs(a["tip_y_max"] - b["tip_y_max"]) / size
     worst = max(abs(a[name] - b[name]) for name in a) / size
-    # The distance is relative to each extremum; theta may be several times as large as y.
+    # Errors of extrema are divided by the largest y; theta may be several times as large as y.
     left = share * max(1.0, abs(b["tip_theta_max"]) / size)
     return CycleErrors(
         float(MARCHING.pair_factor * period + share),

@@ -19,25 +19,25 @@ from ...orbit.orbit import Orbit, node_times
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MinimalPeriodSettings:
-    """Settings for the size above which a harmonic counts as nonzero."""
+    """Settings for the test whether a harmonic is nonzero."""
 
     min_harmonic: float = 1e-3
-    """Size of a harmonic, in units of the largest harmonic, above which it counts as nonzero while the error
-    of the orbit is not known."""
+    """While the error of the orbit is not known, a harmonic is treated as nonzero if its size divided by the
+    size of the largest harmonic exceeds this."""
     certain_harmonic_ratio: float = 10.0
-    """Size of a harmonic relative to the largest, in units of the relative error of the extrema, above which
-    the harmonic is certainly nonzero."""
+    """A harmonic is certainly nonzero if its size divided by the size of the largest harmonic exceeds this
+    number times the relative error of the extrema."""
     min_certain_harmonic: float = 1e-6
-    """Lower limit of this relative size: the error estimate is of the tip, and the bending strain may have a
-    larger error."""
+    """A harmonic is not certainly nonzero if its size divided by the size of the largest harmonic is at most
+    this: the error estimate is of the tip, and the bending strain may have a larger error."""
 
 
 MINIMAL_PERIOD = MinimalPeriodSettings()
 
 
 def common_divisor(path: CyclePath, present: float) -> int:
-    """Greatest common divisor of the numbers of all harmonics larger than `present` times the largest; 0 if
-    all are 0."""
+    """Greatest common divisor of the numbers of all harmonics larger than `present` times the largest
+    harmonic; 0 if all harmonics are 0."""
     return int(_divisor_of(path.bending_harmonics, present))
 
 
@@ -54,7 +54,7 @@ def _divisor_of(sizes: Array, present: float) -> int:
 
 
 def undecided_divisor(path: CyclePath, error: float) -> int:
-    """Divisor by which the minimal period may be shorter than the period of the path; 1 proves the period
+    """Number g such that the minimal period may be 1/g of the period of `path`; g = 1 proves the period
     minimal.
 
     error: relative error of the extrema.
@@ -65,7 +65,7 @@ def undecided_divisor(path: CyclePath, error: float) -> int:
 
 
 def over_minimal_period(orbit: Orbit) -> Orbit:
-    """The orbit over the minimal period by its large harmonics, as a start for Newton's method."""
+    """The orbit over the minimal period that its large harmonics show, as a start for Newton's method."""
     g = common_divisor(CyclePath(orbit), MINIMAL_PERIOD.min_harmonic)
     if g == 1:
         return orbit

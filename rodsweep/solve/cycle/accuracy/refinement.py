@@ -26,8 +26,8 @@ from .refinement_settings import REFINEMENT
 
 
 def with_calibrated_errors(calibration: Calibration, found: ConvergedOrbit, accuracy: float) -> RefinedCycle:
-    """The solved orbit `found` as a cycle, with measures, multipliers and the errors of a calibration that
-    holds at this orbit."""
+    """The solved orbit `found` as a cycle, with measures, multipliers and the errors of a calibration that is
+    scaled to this orbit."""
     path = CyclePath(found.orbit)
     errors = calibration.errors(accuracy)
     multipliers, trivial_error = multipliers_of(found)
@@ -57,8 +57,8 @@ def refined_at_period(
     """The cycle near an approximate orbit, to a relative accuracy or on the finest allowed mesh; raises
     Unsolvable.
 
-    workspace: memory of Newton's matrices. parameter: parameter of the cycle's tangent; None for a single
-    cycle, whose errors coarser meshes predict if possible.
+    workspace: memory of Newton's matrices. parameter: parameter along which the tangent of the cycle is
+    computed; None for a single cycle, whose errors are predicted from coarser meshes if possible.
 
     Near a Hopf point a coarse mesh may have no cycle, because the mesh displaces the Hopf point. Finer meshes
     are then tried.
@@ -91,7 +91,7 @@ def refined_at_period(
 def _predicted_cycle(
     mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace
 ) -> RefinedCycle:
-    """A single cycle with errors predicted by coarser meshes, on the given mesh or a finer mesh. near: an
+    """A single cycle with errors predicted from coarser meshes, on the mesh `mesh` or a finer mesh. near: an
     orbit near the cycle.
 
     The most accurate cycle is returned if no allowed mesh reaches the accuracy. Raises Unsolvable if a
@@ -133,8 +133,8 @@ def calibrated_cycle(
     """The solved orbit `found` as a cycle with measured errors, solved again on finer meshes if necessary;
     raises Unsolvable.
 
-    before: calibration at a nearby cycle. The most accurate cycle is returned if no allowed mesh reaches the
-    accuracy.
+    before: calibration at a nearby cycle, or None. parameter: parameter of the cycle's tangent, or None. The
+    most accurate cycle is returned if no allowed mesh reaches the accuracy.
     """
     best = None
     last = inf
@@ -156,8 +156,8 @@ def calibrated_cycle(
 
 
 def _on(mesh: OrbitMesh, found: ConvergedOrbit, accuracy: float, parameter: str | None) -> ConvergedOrbit:
-    """The orbit `found` solved again on another mesh, with a matrix assembled at the solution, whose
-    multipliers are exact to rounding; raises Unsolvable."""
+    """The orbit `found` solved again on the mesh `mesh`, with a matrix assembled at the solution, so that its
+    multipliers are exact to rounding error; raises Unsolvable."""
     # `linearised` makes one more, quadratically convergent step, so half of the digits suffice here.
     last = (newton_tolerance(accuracy) / ORBIT_NEWTON.quadratic_error) ** 0.5
     solution = newton(mesh.carry(found.orbit), last, found.workspace)
@@ -182,7 +182,7 @@ def refined_cycle(
     found = refined_at_period(over_minimal_period(orbit), accuracy, workspace, parameter)
     if common_divisor(found.path, MINIMAL_PERIOD.min_harmonic) > 1:
         found = refined_at_period(over_minimal_period(found.orbit), accuracy, workspace, parameter)
-    # The multiplier is 1 within its error: a hundredth of the error may decide.
+    # The largest multiplier is 1 within its error; a hundredth of the error may show the stability.
     if found.stable is None:
         found = refined_at_period(
             found.orbit,

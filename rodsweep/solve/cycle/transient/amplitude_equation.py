@@ -2,10 +2,10 @@
 
 The logarithm of the amplitude a grows per period by g = g0 - c a^2, with the exact linear growth g0, so that
 a cycle has the amplitude a* = sqrt(g0/c). The coefficient c is measured from a motion at amplitudes where c
-a^2 exceeds the error of the integrator. A rod near a limit has a slightly different linear growth rate than
-the rod in the limit; the measured growth is corrected by the difference. The state of a slowly decaying
-motion is scaled down until the motion decays at the linear rate. The state of a slowly growing motion is
-scaled up if its growth increases with the amplitude (c < 0).
+a^2 exceeds the error of the integrator. For a limiting rod, such as a rod with k1 = inf, a nearby rod is
+integrated; the measured growth is corrected by the difference of the two linear growth rates. A slowly
+growing motion is scaled to the amplitude a*, or scaled up step by step if its growth increases with the
+amplitude (c < 0). A slowly decaying motion is scaled down until the motion decays at the linear rate.
 """
 
 from dataclasses import dataclass
@@ -21,23 +21,22 @@ class AmplitudeEquationSettings:
     """Settings for the prediction of the amplitude of a slowly growing motion."""
 
     max_slow_growth: float = 0.2
-    """Linear growth per period, in modulus, below which the final amplitude of a motion is predicted instead
-    of integrated."""
+    """The final amplitude of a motion is predicted instead of integrated if the linear and the measured
+    growth per return are at most this in modulus."""
     min_significant_growth: float = 10.0
-    """Smallest contribution c a^2 to the growth, in units of the noise, at which a new measurement of c
-    replaces an earlier one. The noise then is a tenth of c; a c measured within the noise may have the wrong
-    sign."""
+    """A new measurement replaces an earlier c if |c| a^2 exceeds this number times the noise, so that the
+    noise is at most a tenth of c a^2. A c measured within the noise may have the wrong sign."""
     max_amplitude_distance: float = 0.1
-    """Relative distance from the predicted amplitude below which the state is not scaled, because Newton's
-    method converges."""
+    """The state is not scaled if the factor to the predicted amplitude differs from 1 by less than this,
+    because Newton's method converges."""
     decay_factor: float = 0.7
-    """Factor on the state of a slowly decaying motion; its inverse is the factor on a growing motion with c <
-    0. The factor is close enough to 1 not to miss a cycle."""
+    """Factor by which a slowly decaying motion is scaled; a growing motion with c < 0 is scaled by the
+    inverse. The factor is close enough to 1 not to miss a cycle."""
     max_jump_factor: float = 4.0
-    """Largest factor by which a state is scaled up, or its inverse down, in one jump."""
+    """Largest factor by which a state is scaled in one jump; the smallest factor is the inverse."""
     linear_tolerance: float = 0.05
-    """Largest relative deviation of a motion's decay rate and frequency from the leading mode's, at which the
-    rod counts as straight."""
+    """A decaying motion ends at the straight rod if its decay rate and period differ by less than this
+    fraction from the decay rate and the period of the leading mode."""
 
 
 AMPLITUDE_EQUATION = AmplitudeEquationSettings()
@@ -46,10 +45,10 @@ AMPLITUDE_EQUATION = AmplitudeEquationSettings()
 class AmplitudeEquation:
     """Amplitude equation g = g0 - c |z|^2 of one rod, with c measured from returns of its motion.
 
-    period: of the leading mode, in tau2. linear_rate: exact linear growth rate of the rod, in 1/tau2. excess:
-    linear growth rate of the rod minus the rate of the integrated beam, in 1/tau2. noise: growth per period
-    that the integrator may add. Arguments of the methods: times of returns, (k,), and states at the returns,
-    (k, unknowns).
+    g: growth of ln |z| per return. period: of the leading mode, in tau2. linear_rate: exact linear growth
+    rate of the rod, in 1/tau2. excess: linear growth rate of the rod minus the linear growth rate of the
+    integrated beam, in 1/tau2. noise: growth per return that integration errors may add. Arguments of the
+    methods: times of returns, (k,), and states z at the returns, (k, unknowns).
     """
 
     def __init__(self, period: float, linear_rate: float, excess: float, noise: float) -> None:
@@ -61,39 +60,39 @@ class AmplitudeEquation:
         """Coefficient c; NaN until a contribution c |z|^2 to the growth exceeds the noise."""
 
     def growth(self, times: Array, states: Array) -> tuple[float, float]:
-        """(growth of log |z| over the last return, linear growth of the rod over the same time); the first is
-        corrected from the integrated beam to the rod.
+        """Returns (growth, linear). growth: increase of ln |z| over the last return, corrected from the
+        integrated beam to the rod. linear: increase by the linear growth rate over the same time.
 
         times: (k,); states: (k, unknowns).
         """
         sizes = np.linalg.norm(states[-2:], axis=1)
         duration = float(times[-1] - times[-2])
         growth = float(np.log(sizes[1] / sizes[0]))
-        # The beam of a coarse mesh grows at a slightly different rate; the difference is taken out.
+        # The integrated beam grows at a slightly different rate; `excess` corrects the difference.
         return growth + self.excess * duration, self.linear_rate * duration
 
     def slow(self, times: Array, states: Array) -> bool:
-        """Whether a motion is the slowly growing or decaying leading mode. times: (k,); states:
-        (k, unknowns)."""
+        """Whether a motion grows or decays slowly and has the period of the leading mode. times: (k,);
+        states: (k, unknowns)."""
         return max(
             map(abs, self.growth(times, states))
         ) <= AMPLITUDE_EQUATION.max_slow_growth and self._has_period_of_mode(times)
 
     def decays_as_linear(self, times: Array, states: Array) -> bool:
-        """Whether a motion decays steadily, and over its last return as the leading mode. times: (k,);
+        """Whether a motion decays with the linear rate and the period of the leading mode. times: (k,);
         states: (k, unknowns)."""
         growth, linear = self.growth(times, states)
         sizes = np.linalg.norm(states, axis=1)
         margin = AMPLITUDE_EQUATION.linear_tolerance * abs(linear)
         falls = np.diff(np.log(sizes)) + self.excess * np.diff(times) < 0
         alike = bool(falls.all()) and abs(growth - linear) < margin
-        # With a known c the distance from the linear rate is bounded by c |z|^2, whatever the noise.
+        # With a known c the deviation from the linear rate is |c| |z|^2, whatever the noise.
         small = abs(self.coefficient) * sizes[-1] ** 2 < margin and growth - linear < margin + self.noise
         return linear < 0 and (alike or small) and self._has_period_of_mode(times)
 
     def decays_faster(self, times: Array, states: Array) -> bool:
-        """Whether a motion decays faster than the leading mode, so that no cycle is near. times: (k,);
-        states: (k, unknowns)."""
+        """Whether a motion decays at least 1 - max_slow_growth times as fast as the leading mode, so that no
+        cycle is near. times: (k,); states: (k, unknowns)."""
         growth, linear = self.growth(times, states)
         known = self.coefficient > 0 and self.slow(times, states)
         return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION.max_slow_growth) + (
@@ -101,17 +100,17 @@ class AmplitudeEquation:
         )
 
     def jump(self, times: Array, states: Array) -> float | None:
-        """Factor by which the state is scaled to the predicted amplitude of the cycle, or towards this
-        amplitude.
+        """Factor by which the state is to be scaled: to the predicted amplitude of the cycle, or by a fixed
+        factor if no amplitude is predicted.
 
-        None if the state is close to this amplitude, or if no amplitude is predicted. times: (k,); states:
-        (k, unknowns).
+        None if the motion is not slow, if the factor is close to 1, or if the growth is within the noise.
+        times: (k,); states: (k, unknowns).
         """
         growth, linear = self.growth(times, states)
         if not self.slow(times, states):
             return None
         size = float(np.linalg.norm(states[-1]))
-        # d|z|/dt = linear |z| - c |z|^3, so what the growth lacks is c |z|^2.
+        # d|z|/dt = linear |z| - c |z|^3, so linear - growth = c |z|^2.
         measured = (linear - growth) / size**2
         if abs(linear - growth) > self.noise * (
             1 if isnan(self.coefficient) else AMPLITUDE_EQUATION.min_significant_growth
@@ -119,7 +118,7 @@ class AmplitudeEquation:
             self.coefficient = measured
         coefficient = measured if isnan(self.coefficient) else self.coefficient
         if isnan(self.coefficient) and linear > 0:
-            factor = AMPLITUDE_EQUATION.max_jump_factor  # at this small amplitude the growth does not show c
+            factor = AMPLITUDE_EQUATION.max_jump_factor  # c is within the noise at this small amplitude
         elif linear > 0 and coefficient > 0:
             factor = float(
                 np.clip(
@@ -138,6 +137,6 @@ class AmplitudeEquation:
         return factor if abs(factor - 1) >= AMPLITUDE_EQUATION.max_amplitude_distance else None
 
     def _has_period_of_mode(self, times: Array) -> bool:
-        """Whether the last return took the leading mode's period; otherwise the motion is not the leading
-        mode. times: (k,)."""
+        """Whether the last return took as long as a period of the leading mode, within `linear_tolerance`.
+        times: (k,)."""
         return bool(abs((times[-1] - times[-2]) / self.period - 1) < AMPLITUDE_EQUATION.linear_tolerance)

@@ -22,21 +22,20 @@ class NewtonFromMotionSettings:
     intervals: int = 20
     """Number of time intervals of the approximate orbit per return of the tip."""
     peak_search_times: int = 128
-    """Number of times per period at which the largest y is searched."""
+    """Number of equidistant times per period from which the time of the largest y is chosen."""
     max_asymmetry: float = 0.2
-    """Relative distance of a motion from its reflection half a period later, below which the orbit is solved
-    as symmetric."""
+    """The orbit is solved as symmetric if the `relative_asymmetry` of the motion is less than this."""
 
 
 FROM_MOTION = NewtonFromMotionSettings()
 
 
 def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: float, turns: int) -> Orbit:
-    """Approximate orbit of the rod in `form` from the last period of an integrated motion, on the mesh of the
-    integrated beam.
+    """Approximate orbit of the rod in `form` from the last period of the motion `run` of `beam`, on the mesh
+    of `beam`.
 
     period: in tau2. turns: number of returns of the tip to theta = 0 per period. If the rod in `form` is a
-    limit, for example inextensible, the integrated beam is a nearby rod.
+    limiting rod, for example an inextensible rod, `beam` is a nearby rod.
     """
     from scipy.interpolate import CubicSpline  # slow import: 0.1 s, for few runs
 
@@ -55,8 +54,8 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
 
 
 def relative_asymmetry(beam: Beam, states: Array) -> float:
-    """Relative distance between the bending moments over a period and their reflection half a period later.
-    states: at m equidistant times over a period, (m, n)."""
+    """Norm of the difference between m3(t) and the reflection -m3(t + T/2), divided by the norm of m3; m3:
+    bending moments, T: period. states: at m equidistant times over a period, (m, n)."""
     moments = beam.layout.field(states, "m3")
     mirrored = -np.roll(moments, len(moments) // 2, axis=0)
     return float(np.linalg.norm(moments - mirrored) / np.linalg.norm(moments))

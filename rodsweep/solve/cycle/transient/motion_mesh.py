@@ -1,4 +1,4 @@
-"""Rod and mesh for the integration of a motion: a rod near a limit replaces a rod in the limit."""
+"""Rod and mesh for the integration of a motion; a nearby rod replaces a limiting rod (k1 = inf, ...)."""
 
 from dataclasses import dataclass, replace
 
@@ -14,32 +14,32 @@ class MotionMeshSettings:
     """Settings for the rod and the mesh of an integrated motion."""
 
     accuracy: float = 1e-5
-    """Relative accuracy of the mesh of an integrated motion. The motion determines only the basin of
-    attraction; Newton's method gives the accuracy of the cycle."""
+    """Relative accuracy of the mesh of an integrated motion. The motion only has to reach the basin of
+    attraction of the cycle; Newton's method gives the accuracy of the cycle."""
     expected_modes: int = 3
     """Number of modes that the first mesh resolves; the mesh is refined for the cycle later."""
     waves_per_root_force: float = 2.5
-    """Largest wave number of a cycle, in units of sqrt(F) (with F in k3/L^2), the inverse of the length on
-    which the force bends a rod."""
+    """Largest expected wave number of a cycle, in 1/L, divided by sqrt(F), F in k3/L^2; 1/sqrt(F) is the
+    length over which the force bends a rod."""
     order_per_wave: float = 0.55
-    """Order of the coarse mesh, in units of the largest wave number of a cycle (in 1/L)."""
+    """Order of the coarse mesh divided by the largest expected wave number of a cycle, in 1/L."""
     min_order: int = 12
     """Smallest order of the coarse mesh."""
     coarse_accuracy: float = 1e-4
     """Relative accuracy of the linear problem that the coarse mesh of an arm must reach."""
     max_stiffness: float = 1e8
-    """Largest dimensionless stiffness k1 or k2 of an integrated rod; a stiffer rod is replaced, and moves
-    equally to 1e-6 or better."""
+    """A larger dimensionless stiffness k1 or k2 is replaced by this value for the integration; the motion
+    changes by 1e-6 or less."""
     min_drag: float = 1e-6
-    """Smallest rotational drag gamma3 of an integrated rod; a rod with less drag is replaced, and moves
-    equally to 1e-6 or better."""
+    """A smaller rotational drag gamma3 is replaced by this value for the integration; the motion changes by
+    1e-6 or less."""
 
 
 MOTION_MESH = MotionMeshSettings()
 
 
 def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
-    """The first mesh for the integration of a rod's motion to a relative accuracy."""
+    """The first mesh for the integration of the motion of `rod` to the relative accuracy `accuracy`."""
     by_force = MOTION_MESH.waves_per_root_force * abs(rod.F) ** 0.5
     if not rod.standard:
         modal = arm_mesh(rod, MOTION_MESH.expected_modes, accuracy)
@@ -61,8 +61,8 @@ def coarse_mesh(rod: Rod) -> Mesh:
 
 
 def integrable_rod(rod: Rod) -> Rod:
-    """The rod, with finite stiffnesses and positive rotational drag: the time integrator cannot integrate a
-    rod in a limit."""
+    """The rod with k1 and k2 of at most MOTION_MESH.max_stiffness and gamma3 of at least
+    MOTION_MESH.min_drag; a limiting rod (k1 = inf, k2 = inf or gamma3 = 0) cannot be integrated in time."""
     return replace(
         rod,
         k1=min(rod.k1, MOTION_MESH.max_stiffness),

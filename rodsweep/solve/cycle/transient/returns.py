@@ -23,20 +23,21 @@ class ReturnSettings:
     """Settings for the returns of the tip to the section theta = 0, by which a motion is classified."""
 
     straight_size: float = 1e-6
-    """Norm of the state z below which a rod with a stable straight state counts as straight, and norm of the
-    bending and shear components of z below which a rod no longer swings. Numerical damping governs smaller
-    motions."""
+    """A motion with |z| < straight_size has decayed to the straight state, if this state is stable; z: state.
+    If the norm of the bending and shear components of z is smaller than this, the rod no longer oscillates.
+    Numerical damping governs smaller motions."""
     max_return_distance: float = 0.03
-    """Largest relative distance between the states at two returns that count as equal."""
+    """Two returns are equal if their relative distance is at most this, or twice the smallest distance."""
     max_returns_per_period: int = 8
-    """Largest number of returns of the tip per period of a recognised cycle."""
+    """A cycle is recognised if the tip returns at most this number of times per period."""
     max_steps_per_run: int = 20_000
     """Maximum number of time steps in one run."""
     last_states: int = 200
-    """Number of states before the end of a failed run that are examined for a section whose energy is not
-    convex. The equations are ill-posed there, and the integrator may fail some steps later."""
+    """If a run fails, this number of its last states is searched for a section whose strain energy is not
+    convex. The equations are ill-posed for such a section, and the integrator may fail only some steps
+    later."""
     bisections: int = 50
-    """Number of bisections of a time step for the time of a crossing; enough for all digits."""
+    """Number of bisections of a time step that locate a return in time; enough for all digits."""
 
 
 RETURNS = ReturnSettings()
@@ -77,23 +78,23 @@ def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:
         return None
     if run.ending == RunEnding.left_the_model:
         h1 = beam.least_stretch(run.states[-1])
-        return EarlyEnd(True, f"h1 = {h1:.3g} somewhere on the rod, {returns} returns from the start")
+        return EarlyEnd(True, f"h1 = {h1:.3g} at a point of the rod after {returns} returns of the tip")
     if not run.message and _loses_convexity(beam, run.states[-RETURNS.last_states :]):
-        why = f"the energy of a section is not convex, {returns} returns from the start"
+        why = f"after {returns} returns of the tip the strain energy of a section is not convex"
         return EarlyEnd(True, why)
-    why = "the integrator finds no step of acceptable error"
+    why = "the integrator finds no time step with an acceptable error"
     if run.ending == RunEnding.too_many_steps:
         why = "the integrator reached its maximum number of steps"
     return EarlyEnd(False, run.message or why)
 
 
 def _loses_convexity(beam: Beam, states: Array) -> bool:
-    """Whether the energy of a section is not convex in one of the `states`, (k, unknowns)."""
+    """Whether the strain energy of a section is not convex in one of the `states`, (k, unknowns)."""
     return any(np.isfinite(state).all() and not beam.is_convex(state) for state in states[::-1])
 
 
 def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
-    """(times, (k,), states, (k, unknowns)) at which the tip's theta rises through 0 on a run.
+    """Returns (times, states), (k,) and (k, unknowns), at which the tip's theta rises through 0 on a run.
 
     Between two time steps a run is interpolated by the cubic Hermite polynomial.
     """
@@ -129,8 +130,8 @@ def _hermite_weights(x: float) -> tuple[float, float, float, float]:
 
 
 def repetition(moments: Sequence[Array]) -> tuple[int, float]:
-    """(m, relative distance between the last return and the return m before) for the smallest m with a nearly
-    minimal distance.
+    """Returns (m, distance). m: number of returns per period, the smallest number with a nearly minimal
+    distance. distance: relative distance between the last return and the return m earlier.
 
     moments: bending moments at successive returns of the tip, (nodes,) each. Only bending moments are
     compared, because the interpolation between time steps has errors in the stiff components, 1e-2 at k1 =
@@ -140,19 +141,22 @@ def repetition(moments: Sequence[Array]) -> tuple[int, float]:
     if size < RETURNS.straight_size:  # moments of this size are rounding errors, which do not repeat
         return 1, inf
     found = [(float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))]
-    # The first repetition that is nearly as good as the best: multiples of a period repeat as well.
+    # The smallest m with a distance near the minimum: multiples of a period repeat as well.
     enough = max(2 * min(found)[0], RETURNS.max_return_distance)
     return next((m, distance) for distance, m in found if distance <= enough)
 
 
 def why_not_settled(waited: int, returns: int, last: float) -> str:
-    """Message why a motion has not settled after the time of `waited` returns.
+    """Message that explains why a motion has not settled after the time of `waited` returns.
 
     returns: number of returns with a known state. last: relative distance of the last return from an earlier
     return; NaN for too few returns, inf for a decayed motion.
     """
     if isfinite(last):
-        return f"{waited} returns of the tip, the last at a relative distance {last:.1e} from an earlier one"
+        return (
+            f"the motion does not repeat: after {waited} returns of the tip the last return has a relative "
+            f"distance of {last:.1e} from an earlier return"
+        )
     if isnan(last):
         return f"the tip returned to theta = 0 only {counted(returns, 'time')}, so no period is known"
     return "the deflection has decayed to rounding error, but the straight rod is not stable"

@@ -12,27 +12,36 @@ class SchemeSettings:
     """Settings for the time schemes `default_scheme`, `fast_growth_scheme` and `accurate_scheme`, and for the
     choice of a scheme by the linear growth."""
 
+
     max_growth_of_accurate: float = 0.01
     """Linear growth per period, in modulus, below which the scheme is `accurate_scheme`."""
+
     default_noise: float = 1e-3
     """Largest growth per period that integration errors of the schemes `default_scheme` and
     `fast_growth_scheme` may add; 3e-4 was measured."""
+
     accurate_noise: float = 1e-5
     """Largest growth per period that integration errors of the scheme `accurate_scheme` may add; 8e-6 was
     measured."""
+
     default_max_steps: int = 200
     """Maximum number of time steps of the scheme `default_scheme`, divided by the allowed number of returns.
     22 to 101 steps per return were measured on motions of 400 returns. A motion with rare returns takes far
     more, and ends at this maximum."""
+
     accurate_max_steps: int = 2000
     """Maximum number of time steps of the scheme `accurate_scheme`, divided by the allowed number of returns;
     its steps are a tenth as long as those of `default_scheme`."""
+
     default_tolerance: float = 1e-5
     """Local tolerance of the scheme `default_scheme`."""
+
     fast_growth_tolerance: float = 1e-4
     """Local tolerance of the scheme `fast_growth_scheme`."""
+
     accurate_tolerance: float = 1e-9
     """Local tolerance of the scheme `accurate_scheme`."""
+
 
     @property
     def default_scheme(self) -> TimeScheme:
@@ -41,14 +50,13 @@ class SchemeSettings:
 
     @property
     def fast_growth_scheme(self) -> TimeScheme:
-        """Time scheme of the first run of a fast-growing motion: no decision depends on the measured
-        growth."""
+        """Time scheme of the first run of a fast-growing motion, whose measured growth is not used."""
         return TimeScheme("arkimex", "4", tolerance=self.fast_growth_tolerance)
 
     @property
     def accurate_scheme(self) -> TimeScheme:
-        """Time scheme of motions with a small growth per period, whose sign must be correct, and of stored
-        paths."""
+        """Time scheme of motions with a small growth per period, of which the sign must be correct, and of
+        motions with a stored path."""
         return TimeScheme("arkimex", "5", tolerance=self.accurate_tolerance)
 
 

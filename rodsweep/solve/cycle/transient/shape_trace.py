@@ -21,10 +21,9 @@ class ShapeTraceSettings:
     max_frames: int = 1600
     """Maximum number of stored shapes: 50 periods of 32 shapes."""
     max_rest_deflection: float = 2e-3
-    """Tip's |y|, in L, below which an arm counts as at rest."""
+    """An arm is at rest if the tip's |y|, in L, is at most this."""
     min_returns: int = 3
-    """Number of returns of the tip below which the leading mode's period is taken as the period of the
-    motion."""
+    """With fewer returns than this, the period of the leading mode is used as the period of the motion."""
 
 
 SHAPE_TRACE = ShapeTraceSettings()
@@ -46,13 +45,13 @@ class ShapeTrace:
         return self.steps >= SHAPE_TRACE.max_steps
 
     def needs_more_motion(self, z: Array) -> bool:
-        """True until the recorded motion is complete, that is, the arm is at rest or the record is full, even
-        if the outcome is known. z: present state, (unknowns,)."""
+        """True until the record is complete, that is, the arm is at rest or the record is full. The motion is
+        integrated until then, even if the outcome is known. z: present state, (unknowns,)."""
         return not self.is_full and abs(float(self.beam.tip(z)[1])) > SHAPE_TRACE.max_rest_deflection
 
     def begin(self, z: Array, relaxed: Array, duration: float) -> None:
-        """Records the start state z, (unknowns,). Its relaxation to the state `relaxed`, (unknowns,), within
-        `duration` is too short to be visible."""
+        """Records the start state z, (unknowns,). The relaxation from z to `relaxed`, (unknowns,), over
+        `duration`, in tau2, is not recorded, because it is too short to be visible."""
         self._keep(np.zeros(1), z[None])
 
     def add(self, run: Trajectory, clock: float) -> None:
@@ -70,10 +69,10 @@ class ShapeTrace:
     def motion(self, returns: Sequence[float], period: float, frames: int, nodes: int) -> MotionShapes:
         """Shapes on `nodes` Lobatto nodes, `frames` shapes per return of the tip, until the arm is at rest.
 
-        returns: times of the last returns of the tip. period: period of the leading mode, in tau2, used for
-        too few returns.
+        returns: times of the last returns of the tip. period: period of the leading mode, in tau2, used if
+        there are fewer than SHAPE_TRACE.min_returns returns.
         """
-        from scipy.interpolate import CubicSpline  # a tenth of a second of every start
+        from scipy.interpolate import CubicSpline  # slow import: 0.1 s, for few runs
 
         step = (
             float(np.median(np.diff(returns))) if len(returns) >= SHAPE_TRACE.min_returns else period

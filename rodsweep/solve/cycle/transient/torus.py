@@ -1,4 +1,4 @@
-"""Recognition of quasiperiodic motions: motions on a torus, with two frequencies, which never close.
+"""Recognition of quasiperiodic motions: motions on a torus, with two frequencies, which never repeat.
 
 A torus surrounds a cycle whose largest multipliers are a complex pair outside the unit circle. The returns of
 the motion to the Poincare section lie on a closed curve around the return of the cycle, and advance on this
@@ -32,22 +32,22 @@ class TorusTestSettings:
     """Number of harmonics of the second frequency in the fitted Fourier series. On the studied tori each
     harmonic was a fifth of the previous harmonic, and the sum of all harmonics beyond the sixth was 6e-4."""
     min_returns_around: int = 16
-    """Inverse of the largest allowed gap between returns, as a fraction of the closed curve. The returns then
+    """The returns must leave no gap larger than 1/min_returns_around of the closed curve. The returns then
     determine the 13 terms of the Fourier series, and a motion that closes after fewer returns is rejected."""
     max_prediction_error: float = 0.05
-    """Largest rms error of the predicted returns on a torus, in units of the rms modulation. Errors of 7e-4
-    to 0.03 were measured on tori, and 0.11 for a growing modulation."""
+    """Largest rms error of the predicted returns on a torus, divided by the rms modulation. Errors of 7e-4 to
+    0.03 were measured on tori, and 0.11 for a growing modulation."""
     skipped_fraction: float = 1 / 3
     """Fraction of the returns, counted from the start, that the test ignores, because the motion still
     approaches the torus."""
     max_angle_difference: float = 0.3
     """Largest difference, in rad, between the angle per return on a torus and the angle of the cycle's
-    multipliers. The difference is 0 at the torus point; 0.18 was observed far away."""
+    multipliers. The difference is 0 at the torus point; 0.18 was observed far from this point."""
     trials_per_width: int = 4
-    """Number of trial angles over the width of the residual's minimum for one harmonic, before the best trial
-    is refined."""
+    """The spacing of the trial angles, before the best angle is refined, is 2/(trials_per_width k) rad for k
+    returns; with one harmonic, the minimum of the residual is 2 pi/k wide."""
     angle_tolerance_share: float = 1e-4
-    """Tolerance of the fitted angle, in units of half the width of the residual's minimum."""
+    """Tolerance of the fitted angle divided by half the width of the residual's minimum."""
     max_period_difference: float = 0.1
     """Largest relative difference between the mean return time on a torus and the period of the cycle; the
     difference is 0 at the torus point."""
@@ -66,11 +66,11 @@ class Modulation:
 
 
 def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> TransientOutcome:
-    """The outcome `torus` for a motion on a torus; the outcome `end` for any other motion, and for a motion
-    that has settled."""
+    """An outcome with the status `torus` if the motion of `transient` is on a torus; otherwise the outcome
+    `end` of this motion, unchanged."""
     if end.status != CycleStatus.not_settled or end.cycle is not None:
         return end
-    # Only the last returns are stored, so the first third may be missing already, in part or wholly.
+    # Only the last returns are stored, so some or all of the returns to skip may be missing already.
     skipped = max(
         0, int(TORUS_TEST.skipped_fraction * transient.waited) - (transient.waited - len(transient.past))
     )
@@ -87,8 +87,8 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
         modulation = modulation_of(moments, angle) if near and angle else None
         if modulation and modulation.prediction_error <= TORUS_TEST.max_prediction_error:
             message = (
-                f"modulated with {modulation.angle / (2 * np.pi):.3f} of the return frequency; "
-                f"the cycle inside the torus is unstable, multiplier {cycle.largest_multiplier:.3g}"
+                f"the motion is modulated at {modulation.angle / (2 * np.pi):.3f} times the return rate; "
+                f"the cycle inside the torus has a multiplier of modulus {cycle.largest_multiplier:.3g}"
             )
             return TransientOutcome(CycleStatus.torus, message, end.periods, unstable_cycle=cycle)
     return end
@@ -109,8 +109,8 @@ def _unstable_cycles(transient: Transient) -> Iterator[RefinedCycle]:
 
 
 def unstable_pair_angle(cycle: RefinedCycle) -> float | None:
-    """Angle in (0, pi) of the complex pair of multipliers outside the unit circle; None unless this pair is
-    the only instability of the cycle."""
+    """Argument, in (0, pi), of the complex pair of multipliers outside the unit circle; None unless this pair
+    is the only instability of the cycle."""
     outside = cycle.multipliers[np.abs(cycle.multipliers) > 1 - cycle.margin]
     if cycle.stable is not False or len(outside) != 2 or abs(outside[0].imag) <= cycle.margin:
         return None
@@ -118,8 +118,8 @@ def unstable_pair_angle(cycle: RefinedCycle) -> float | None:
 
 
 def modulation_of(returns: Array, angle: float) -> Modulation | None:
-    """Modulation of the states at successive returns, (k, n), which advance on a closed curve by about
-    `angle` rad per return.
+    """Modulation of a motion whose returns advance on a closed curve by about `angle` rad per return.
+    returns: states at successive returns, (k, n).
 
     The Fourier series is fitted to the first half of the returns, and predicts the second half. None if the
     returns do not fill a closed curve.
@@ -139,8 +139,8 @@ def modulation_of(returns: Array, angle: float) -> Modulation | None:
 
 
 def fitted_angle(returns: Array, angle: float) -> float:
-    """Angle per return, in rad and near `angle`, with the least-squares fit of a Fourier series to the states
-    at successive returns, (k, n)."""
+    """Angle per return, in rad, near `angle`, for which a Fourier series fits the returns best in the
+    least-squares sense. returns: states at successive returns, (k, n)."""
     from scipy.optimize import minimize_scalar  # slow import: 0.1 s, for few runs
 
     numbers = np.arange(len(returns))
@@ -149,7 +149,7 @@ def fitted_angle(returns: Array, angle: float) -> float:
         basis = fourier_basis(at * numbers, harmonics)
         return float(np.linalg.norm(returns - basis @ np.linalg.lstsq(basis, returns, rcond=None)[0]))
 
-    # The minimum for one harmonic is 2 pi/k wide, that for m harmonics m times narrower.
+    # With one harmonic the minimum is 2 pi/k wide, with m harmonics 2 pi/(k m); k: number of returns.
     tried = np.linspace(
         angle - TORUS_TEST.max_angle_difference,
         angle + TORUS_TEST.max_angle_difference,

@@ -1,7 +1,7 @@
 """Path of the tip from the start of a motion to the end of its integration, interpolated between time steps.
 
 Only position and velocity of the tip are recorded at each time step: six numbers instead of a state of
-several hundred. Cubic interpolation has smaller errors than the integrator.
+several hundred numbers. Cubic interpolation has smaller errors than the integrator.
 """
 
 import numpy as np
@@ -33,7 +33,7 @@ class TipTrace:
         """Records a straight line from the tip at the start state z to the tip at the state `relaxed`, both
         (unknowns,), over `duration`, in tau2.
 
-        The relaxation rates, up to 1e10/tau2, are too large for a cubic.
+        The relaxation rates, up to 1e10/tau2, are too large for cubic interpolation.
         """
         tips = self.beam.tip(np.stack([z, relaxed]))
         slope = (tips[:, 1:] - tips[:, :1]) / duration

@@ -6,7 +6,7 @@ to the amplitude that the amplitude equation predicts (`amplitude_equation`). A 
 no jumps.
 
 A rod with an unstable straight state leaves this state. The deflection may nevertheless decay while a large
-stretch relaxes slowly; the motion then restarts from a small deflection in the leading mode.
+axial stretch relaxes slowly; the motion then restarts from a small deflection in the leading mode.
 """
 
 from collections import deque
@@ -41,10 +41,10 @@ from .transient_settings import TRANSIENT
 class Transient:
     """Integration of the motion of one rod from a start; `follow` is called only once.
 
-    form: the rod whose cycle is solved for. straight: stability of the straight rod. along: parameter of the
-    cycle's tangent. unstable: a nearby unstable cycle. workspace: memory of Newton's matrices. beam: the
-    integrated rod on the same mesh; a rod near the limit if `form` is in a limit. trace: record of the tip's
-    path or of shapes, if the request stores either.
+    form: the rod whose cycle is solved for, and the mesh. straight: stability of the straight rod. along:
+    parameter of the cycle's tangent, or None. unstable: a nearby unstable cycle, or None. workspace: memory
+    of Newton's matrices. beam: the integrated rod; a nearby rod if `form` has a limiting rod (k1 = inf, ...).
+    trace: record of the tip's path or of shapes, or None if not requested.
     """
 
     def __init__(
@@ -83,10 +83,10 @@ class Transient:
         self.failed_starts = 0
         """Number of successive failures of Newton's method."""
         self.unsolved = ""
-        """Message why a periodic motion has no cycle; "" while the search continues."""
+        """Message that no cycle is found near a periodic motion; "" while the search continues."""
 
     def _trace(self, request: CycleRequest) -> TipTrace | ShapeTrace | None:
-        """Record of the tip's path or of shapes, if the request stores either; else None."""
+        """A new record of the tip's path or of shapes, as requested; None if neither is requested."""
         if request.frames:
             return ShapeTrace(self.beam)
         return TipTrace(self.beam) if request.transient else None
@@ -104,9 +104,9 @@ class Transient:
             z = run.states[-1]
             times, states = section_crossings(self.beam, run)
             self._remember(run, times, states)
-            # Rounding errors hide the growth of a motion this small, so an unstable rod is not straight.
+            # An unstable rod is excluded, because rounding errors hide the growth of so small a motion.
             if self.straight.stable is not False and np.linalg.norm(z) < RETURNS.straight_size:
-                return self._ended(CycleStatus.straight, "decayed to rounding")
+                return self._ended(CycleStatus.straight, "the motion has decayed to rounding error")
             if self.straight.stable is False and not self._bends_visibly(z):
                 if self.trace or self.jumps >= TRANSIENT.max_jumps:
                     break
@@ -119,7 +119,7 @@ class Transient:
                 continue
             shown = self.trace is not None and self.trace.needs_more_motion(z)
             if not early and not shown and self.small.decays_as_linear(times, states):
-                return self._ended(CycleStatus.straight, "decays at the rate of the leading mode")
+                return self._ended(CycleStatus.straight, "the motion decays at the rate of the leading mode")
             factor = None if early or self.jumps >= TRANSIENT.max_jumps else self.small.jump(times, states)
             if factor is not None and self.trace and not self.trace.is_full:
                 continue  # a motion with a stored path has no jumps
@@ -135,8 +135,8 @@ class Transient:
         return self._ended(CycleStatus.not_settled, self._not_settled(z))
 
     def _remember(self, run: Trajectory, times: Array, states: Array) -> None:
-        """Counts the returns and time steps of a run, and records times, (k,), and bending moments of its
-        returns. states: at the returns, (k, unknowns)."""
+        """Counts the returns and time steps of a run, and records times and bending moments of the returns.
+        times, states: at the returns, (k,) and (k, unknowns)."""
         self.waited += max(len(times), 1)
         self.steps += len(run.times) - 1
         moments = self.beam.layout.field(states, "m3")
@@ -144,40 +144,40 @@ class Transient:
         self.clock += run.times[-1]
 
     def _jumped(self, z: Array) -> Array:
-        """State, (unknowns,), after a jump to the state z, (unknowns,), and the relaxation of its fast
-        components."""
+        """The state, (unknowns,), after a jump to the state z, (unknowns,), and the decay of its fast
+        components. The earlier returns are discarded."""
         self.jumps += 1
         self.past.clear()
         return relaxed(self.beam, z, self.mode.period)
 
     def _not_settled(self, z: Array) -> str:
-        """Message why the motion, which has reached the state z, (unknowns,), has not settled."""
+        """Message that explains why the motion, now at the state z, (unknowns,), has not settled."""
         if self.unsolved:
-            return f"{counted(self.waited, 'return')} of the tip, {self.unsolved}"
+            return f"after {counted(self.waited, 'return')} of the tip {self.unsolved}"
         if self._bends_visibly(z):
-            work = f" in {self.steps} time steps, the most allowed" if self.steps >= self.max_steps else ""
-            return f"{counted(self.waited, 'return')} of the tip{work}, none periodic"
+            work = f" and the maximum of {self.steps} time steps" if self.steps >= self.max_steps else ""
+            return f"no periodic motion within {counted(self.waited, 'return')} of the tip{work}"
         unstable = self.straight.stable is False
-        why = "the straight rod is unstable" if unstable else "its stretch has not relaxed"
+        why = "the straight rod is unstable" if unstable else "the stretch of the rod has not relaxed"
         return f"the deflection has decayed after {self.waited} returns, but {why}"
 
     def _bends_visibly(self, z: Array) -> bool:
-        """Whether bending and shear of the state z, (unknowns,), exceed rounding errors."""
+        """Whether the bending and shear components of the state z, (unknowns,), exceed rounding errors."""
         return bool(np.linalg.norm(self.beam.layout.transverse(z)) >= RETURNS.straight_size)
 
     def _rate_of_the_beam(self, rate: float) -> float:
         """Linear growth rate of the integrated rod, in 1/tau2, from its exact spectrum.
 
-        rate: linear growth rate of the rod in `form`, the result if both rods are equal. Eigenvalues of the
-        matrix of a stiff beam would have rounding errors of 1e-4.
+        rate: linear growth rate of the rod in `form`, returned if the integrated rod is the same rod.
+        Eigenvalues of the matrix of a stiff beam would have rounding errors of 1e-4.
         """
         if self.beam.rod == self.form.rod:
             return rate
         return straight_rod(self.beam.rod, np.array([self.straight.w])).growth_rate(rate)
 
     def _relaxed(self, z: Array) -> Array:
-        """State, (unknowns,), to which the fast components of the start z, (unknowns,), relax; a stored path
-        includes the relaxation."""
+        """The state, (unknowns,), after the decay of the fast components of the start z, (unknowns,). A
+        record of the motion, if any, begins at z."""
         after = relaxed(self.beam, z, self.mode.period)
         if self.trace:
             self.clock = INTEGRATOR.relaxation_share * self.mode.period
@@ -188,9 +188,9 @@ class Transient:
         return TransientOutcome(status, why, self.waited, found)
 
     def _run_of_returns(self, z: Array, first: bool) -> Trajectory:
-        """A run from the state z, (unknowns,), over TRANSIENT.returns_per_run returns, or
-        TRANSIENT.max_run_duration times their expected duration. first: whether this is the first run of the
-        motion."""
+        """A run from the state z, (unknowns,), over TRANSIENT.returns_per_run returns, but of at most
+        TRANSIENT.max_run_duration periods of the leading mode per return. first: whether this is the first
+        run, which has TRANSIENT.first_returns returns."""
         returns, scheme = (
             (TRANSIENT.first_returns, self.first_scheme)
             if first
@@ -211,7 +211,7 @@ class Transient:
         turns, distance = repetition([state for _, state in self.past][-1 - RETURNS.max_returns_per_period :])
         if self.failed_starts >= TRANSIENT.max_failed_starts and distance < TRANSIENT.max_periodic_distance:
             self.unsolved = (
-                f"periodic within {distance:.0e}, but on finer meshes no cycle is found near the motion"
+                f"the motion repeats within {distance:.0e}, but finer meshes have no cycle near this motion"
             )
             return None
         if distance >= self._near_enough() or self.waited < self.next_newton:
@@ -221,14 +221,14 @@ class Transient:
         return self._cycle_near(run, self.past[-1][0] - self.past[-1 - turns][0], turns)
 
     def _near_enough(self) -> float:
-        """Relative distance between two returns below which Newton's method starts next."""
+        """Newton's method starts if the relative distance between two returns is less than this number."""
         distance = TRANSIENT.max_newton_distance / TRANSIENT.newton_divisor**self.failures
         settles = self.trace and self.waited < self.most_periods // 2
         return min(distance, TRANSIENT.stored_path_distance) if settles else distance
 
     def _cycle_near(self, run: Trajectory, period: float, turns: int) -> RefinedCycle | None:
-        """The stable cycle near the end of a run, by Newton's method; None if not found. period: approximate,
-        in tau2. turns: number of returns of the tip per period."""
+        """The stable cycle near the end of a run, by Newton's method; None if not found. period: approximate
+        period, in tau2. turns: number of returns of the tip per period."""
         # The run may be shorter than a period of several returns.
         if run.times[-1] < period:
             run = integrator(self.beam.mesh, self.scheme).run(self.beam, run.states[-1], period, self.step)
@@ -243,5 +243,5 @@ class Transient:
         self.failed_starts = 0
         if found.stable is False:
             self.unstable = found
-        # A multiplier of 1 to rounding belongs to a family of periodic orbits of any amplitude.
+        # If the largest multiplier is 1 to rounding error, periodic orbits of any amplitude form a family.
         return found if found.stable and 1 - found.largest_multiplier >= TRANSIENT.min_unit_distance else None

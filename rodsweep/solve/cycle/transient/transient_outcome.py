@@ -8,8 +8,9 @@ from ..status import CycleStatus
 
 @dataclass(frozen=True, eq=False)
 class TransientOutcome:
-    """Outcome of integrating a motion. periods: number of returns of the tip. cycle: the cycle, if the motion
-    reached a cycle. unstable_cycle: the unstable cycle inside the torus, if the motion is on a torus."""
+    """Outcome of integrating a motion. periods: number of returns of the tip. cycle: the cycle that the
+    motion approached, or None. unstable_cycle: the unstable cycle inside the torus, or None if the motion is
+    not on a torus."""
 
     status: CycleStatus
     message: str

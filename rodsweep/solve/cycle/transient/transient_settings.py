@@ -10,41 +10,41 @@ class TransientSettings:
     returns_per_run: int = 5
     """Number of returns of the tip in one run, after which the motion is classified."""
     first_steps_per_period: int = 1000
-    """Number of first time steps of a motion in a period of the leading mode."""
+    """Period of the leading mode divided by the first time step of a motion."""
     max_run_duration: int = 3
-    """Longest duration of a run, in units of the expected duration of its returns."""
+    """Longest duration of a run divided by (number of returns * period of the leading mode)."""
     first_returns: int = 3
-    """Number of returns of the first run, after which only a periodic motion is recognised: a fast-growing
-    motion may reach its cycle early."""
+    """Number of returns of the first run. A fast-growing motion may already have reached its cycle then; slow
+    growth and decay are recognised only after later runs."""
     max_newton_distance: float = 0.1
-    """Relative distance between two returns below which Newton's method starts."""
+    """Newton's method starts if the relative distance between two returns is less than this."""
     newton_divisor: int = 10
-    """Divisor of `max_newton_distance` after each failure of Newton's method."""
+    """After each failure of Newton's method, `max_newton_distance` is divided by this number."""
     stored_path_distance: float = 1e-3
-    """Relative distance between two returns below which Newton's method starts, for a stored path in the
-    first half of the allowed returns: smaller, so that the path shows how the motion settles."""
+    """Upper limit of `max_newton_distance` for a motion with a stored path, in the first half of the allowed
+    returns, so that the path shows how the motion settles."""
     max_newton_failures: int = 5
-    """Number of failures of Newton's method up to which each failure doubles the number of returns before the
-    next start."""
+    """Each failure of Newton's method, up to this number of failures, doubles the number of returns before
+    the next start."""
     max_jumps: int = 60
     """Maximum number of jumps of a motion, to a scaled state or to a restart."""
     restart_deflection: float = 1e-3
-    """Tip's y, in L, at a restart in the leading mode; its square is the relative change of the linear
-    growth."""
+    """Tip's y, in L, at a restart in the leading mode; the relative nonlinear change of the growth rate is
+    about the square of this number."""
     min_unit_distance: float = 3e-8
-    """Distance of the largest multiplier's modulus from 1 below which a periodic orbit is no limit cycle, but
-    one of a family with any amplitude."""
+    """A periodic orbit with 1 - |mu| less than this, mu: largest multiplier, is no limit cycle, but belongs
+    to a family of orbits with any amplitude."""
     max_stored_returns: int = 400
     """Number of last returns that are stored for the recognition of a torus."""
     max_periodic_distance: float = 1e-4
-    """Relative distance between two returns below which a motion counts as periodic. Periodic motions,
+    """A motion is periodic if the relative distance between two returns is less than this. Periodic motions,
     integrated with a tolerance of 1e-5, return to within 1e-6 to 1e-4."""
     max_failed_starts: int = 4
-    """Number of successive failures of Newton's method after which the integration of a periodic motion ends:
-    further starts would be the same."""
+    """The integration of a periodic motion ends after this number of successive failures of Newton's method:
+    further starts would fail in the same way."""
     min_returns: int = 100
-    """Number of returns for which time steps are allowed even if fewer returns are requested, because few
-    returns may need many time steps."""
+    """The maximum number of time steps is computed for at least this number of returns, because few returns
+    may need many time steps."""
 
 
 TRANSIENT = TransientSettings()
