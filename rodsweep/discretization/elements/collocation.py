@@ -44,7 +44,7 @@ class Collocation(NamedTuple):
         return len(self.nodes)
 
     def evaluation(self, at: Array) -> Array:
-        """Matrix (m, s + 1) from values at 0 and at the nodes to values at the times `at`, (m,), in [0, 1]."""
+        """Matrix (m, s + 1) from values at 0 and the nodes to values at the times `at`, (m,), in [0, 1]."""
         return interpolation(np.append(0.0, self.nodes), at)
 
 

@@ -68,7 +68,7 @@ class Elements:
 
     @cached_property
     def element_nodes(self) -> NDArray[np.int64]:
-        """Indices of the nodes of every element, (elements, order + 1); neighbouring elements share a node."""
+        """Indices of the nodes of every element, (elements, order + 1). Neighbours share a node."""
         return np.arange(self.elements)[:, None] * self.order + np.arange(self.order + 1)
 
     @cached_property

@@ -59,7 +59,7 @@ def lobatto_points(nodes: int) -> Array:
 
 
 def _legendre_pair(p: int, x: Array) -> tuple[Array, Array]:
-    """Returns (P_p(x), P_{p-1}(x)), Legendre polynomials at the points x, (n,), by the three-term recurrence."""
+    """Returns (P_p(x), P_{p-1}(x)), Legendre polynomials at points x, (n,), by the three-term recurrence."""
     previous = np.ones_like(x)
     current = x.copy()
     for n in range(1, p):
