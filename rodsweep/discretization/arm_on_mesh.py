@@ -36,8 +36,8 @@ def material_on(rod: Rod, grid: Mesh) -> Material:
 
 
 def material_change_on(rod: Rod, name: str, grid: Mesh) -> Material:
-    """The derivative of `material_on` by the path variable of the parameter `name`: by 1/k for a stiffness k,
-    else by the parameter itself.
+    """The derivative of `material_on` with respect to the coordinate of the parameter `name`: 1/k for a
+    stiffness k, else the parameter itself.
     """
     if rod.standard and name != "taper":
         return rod.material_change(name)
@@ -74,7 +74,8 @@ def jumps_on(rod: Rod, grid: Mesh) -> Jumps:
 
 
 def jump_change_on(rod: Rod, name: str, grid: Mesh) -> Array:
-    """Derivatives of nu, c1 and c3 on both sides of each jump by the path variable of a parameter, (k, 2, 3).
+    """Derivatives of nu, c1 and c3 on both sides of each jump with respect to the coordinate of the parameter
+    `name`, (k, 2, 3).
 
     Returns `NO_JUMP_CHANGE` for a linear law, because the stress at a jump then depends only on the mean
     strain.

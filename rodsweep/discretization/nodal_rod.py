@@ -53,8 +53,8 @@ of length 0."""
 
 
 class NodalChange(NamedTuple):
-    """The derivatives of fields of a `NodalRod` by the path variable of a parameter, with the shapes of the
-    fields.
+    """The derivatives of fields of a `NodalRod` with respect to the coordinate of a parameter, with the
+    shapes of the fields.
     """
 
     tip_stress: Array

@@ -44,10 +44,10 @@ class RodOnMesh(ABC):
         """
 
     def with_coordinate(self, name: str, coordinate: float) -> Self:
-        """The same rod on the same mesh, with `coordinate` as the value of the path variable of the parameter
-        `name`.
+        """The same rod on the same mesh with another coordinate of the parameter `name` (see
+        `Rod.with_coordinate`).
 
-        Raises ValueError for an invalid rod.
+        Raises ValueError for an invalid coordinate.
         """
         return replace(self, rod=self.rod.with_coordinate(name, coordinate))
 

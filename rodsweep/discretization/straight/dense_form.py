@@ -71,8 +71,8 @@ def dense_form(rod: Rod, pencil: AnyPencil) -> DenseForm:
 
 
 def _inside(mesh: Elements, points: Array) -> Array:
-    """Points, (n,), of which each is moved just inside the element to which `Elements.by_element` assigns
-    it."""
+    """The points, (n,), each moved just inside the element to which `Elements.by_element` assigns the
+    point."""
     moved = np.array(points, dtype=float)
     for first, inside, local in mesh.by_element(points):
         e = first // mesh.order

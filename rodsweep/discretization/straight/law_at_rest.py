@@ -161,8 +161,7 @@ def _on_sides(law: Law, nu: Array, c1: Array, c3: Array) -> LawDerivatives:
 
 
 def inverse_derivatives(of: LawDerivatives) -> LawDerivatives:
-    """Derivatives of the inverse function g = f^-1 from the derivatives `of` f, by differentiating f(g(y)) =
-    y three times."""
+    """Derivatives of g = f^-1 from the derivatives `of` f, by differentiating f(g(y)) = y three times."""
     f1, f2, f3 = of
     g1 = np.linalg.inv(f1)
     g2 = -np.einsum("...ai,...ijk,...jb,...kc->...abc", g1, f2, g1, g1)

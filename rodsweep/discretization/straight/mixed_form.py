@@ -14,9 +14,9 @@ where E = (nu, 0, 0) + C S. With X = (S; v1, v2, Omega3) this is
 
 where only a nonlinear law has terms beyond the quadratic terms. No formula contains a stiffness or the
 inverse of a drag, so c1 = c2 = gamma3 = 0 are allowed. M is singular: components of X without a time
-derivative satisfy algebraic equations. On several elements the fields are continuous and D = W^-1 sum_e W_e
-D_e, summed over the elements e. Summation by parts, W D + D^T W = diag(-1, 0, ..., 0, 1), and therefore the
-energy law hold to rounding on every mesh.
+derivative satisfy algebraic equations. On several elements e the fields are continuous, and D = W^-1 sum_e
+W_e D_e. Summation by parts, W D + D^T W = diag(-1, 0, ..., 0, 1), and therefore the energy law hold to
+rounding on every mesh.
 """
 
 from dataclasses import dataclass
@@ -77,8 +77,8 @@ class MixedForm:
 
     @cached_property
     def parity(self) -> Array:
-        """Diagonal of the reflection R, +1 or -1, (unknowns,). If X solves the equations, the mirror image R
-        X is also a solution.
+        """Diagonal of the reflection R, +1 or -1, (unknowns,). If X solves the equations, then so does its
+        mirror image R X.
         """
         signs = np.repeat(MIRROR_SIGNS[:, None], self.mesh.nodes + 1, axis=1)
         return self.layout.state(signs, signs)

@@ -1,8 +1,8 @@
 """The tip layer of an arm without rotational drag, in which the angle theta follows y instantaneously.
 
 d = theta - theta+, the difference between the angle and the adjoint angle (`rodsweep.model.adjoint`), solves
-d' = c3 m, m' = q d with q = g nu/c2 and d(0) = 0; the module computes T = d(1)/m(1). The weak form is int b'
-d'/c3 + b q d = b(1) m(1) with test functions b. T is the energy of d for m(1) = 1, so the error of T is the
+d' = c3 m, m' = q d with q = g nu/c2 and d(0) = 0; this module computes T = d(1)/m(1). With test functions b
+the weak form is int b' d'/c3 + b q d = b(1) m(1). T is the energy of d for m(1) = 1, so the error of T is the
 square of the error of d.
 """
 

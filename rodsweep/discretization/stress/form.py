@@ -66,8 +66,8 @@ class StressForm(RodOnMesh):
         return layout.state(self.stresses_on(grid, x), V)
 
     def parameter_derivative(self, name: str) -> NodalChange:
-        """Derivative of `nodal` by the path variable of the parameter `name`: by 1/k for a stiffness k, else
-        by the parameter itself.
+        """Derivative of `nodal` with respect to the coordinate of the parameter `name`: 1/k for a stiffness
+        k, else the parameter itself.
         """
         change = material_change_on(self.rod, name, self.mesh)
         return nodal_change(change, self.mesh, jump_change_on(self.rod, name, self.mesh))
