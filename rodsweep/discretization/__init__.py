@@ -1,4 +1,4 @@
-"""Spectral elements on the rod: quadrature, basis, matrices, and the choice of the mesh.
+"""Spectral elements on the rod: quadrature, basis functions, matrices, and the choice of the mesh.
 
-Only NumPy arrays; no PETSc and no MPI.
+The package uses NumPy arrays only, neither PETSc nor MPI.
 """

@@ -1,11 +1,11 @@
 """Compliances, drags and strains at rest of an arm at the nodes of a mesh, and their derivatives by a
 parameter.
 
-At a node between two elements a coefficient may jump. The mass is lumped, so the equations of this node
-contain the mean strain of both sides, weighted by the quadrature. This keeps the accuracy of the mesh if
-elements end at the jumps. For a linear law the mean compliance gives the stress of the mean strain; another
-law needs both sides (`rodsweep.model.material.jump`). Shapes need both sides for every law
-(`element_strains`).
+At a node between two elements a coefficient may jump. The mass is lumped, so the equations of such a node
+contain the mean of the coefficient over both sides, weighted with the quadrature weights. If elements end at
+the jumps, this mean does not reduce the order of accuracy. For a linear law the mean compliance gives the
+mean strain for a given stress; for another law the strain of each side must be computed
+(`rodsweep.model.material.jump`). Shapes need the strains of both sides for every law (`element_strains`).
 """
 
 from functools import lru_cache
@@ -24,9 +24,10 @@ from .nodal_rod import NO_JUMP_CHANGE, NO_JUMPS, IntegerArray, Jumps
 
 
 def material_on(rod: Rod, grid: Mesh) -> Material:
-    """The material of a rod at the nodes of a mesh; for an arm, compliance, drag and rest are (3, nodes + 1).
+    """The material of a rod at the nodes of a mesh; compliance, drag and rest of an arm have the shape
+    (3, nodes + 1).
 
-    The elements of an arm must end at the breaks of its profile.
+    Elements of the mesh must end at the breaks of the arm's profile.
     """
     if rod.standard:
         return rod.material
@@ -35,7 +36,9 @@ def material_on(rod: Rod, grid: Mesh) -> Material:
 
 
 def material_change_on(rod: Rod, name: str, grid: Mesh) -> Material:
-    """The derivative of `material_on` by the path variable of the parameter `name`: 1/k for a stiffness k."""
+    """The derivative of `material_on` with respect to the coordinate of the parameter `name`: 1/k for a
+    stiffness k, else the parameter itself.
+    """
     if rod.standard and name != "taper":
         return rod.material_change(name)
     compliance, drag, rest = _at_nodes(rod.section_changes(name, grid.points_inside.ravel()), grid)
@@ -43,10 +46,9 @@ def material_change_on(rod: Rod, name: str, grid: Mesh) -> Material:
 
 
 def profile_compliance_on(build: Build, grid: Mesh) -> Array:
-    """Bending compliance of an arm without taper at all nodes, in units of its value at the clamp,
-    (nodes + 1,).
+    """Bending compliance c3(u)/c3(0) of an arm without taper at all nodes, (nodes + 1,).
 
-    At a jump it is the mean of both sides: times m3 it gives the mean bending strain.
+    At a jump the value is the mean of both sides, so that its product with m3 is the mean bending strain.
     """
     if build.profile is None:
         return np.ones(grid.nodes + 1)
@@ -54,7 +56,9 @@ def profile_compliance_on(build: Build, grid: Mesh) -> Array:
 
 
 def jumps_on(rod: Rod, grid: Mesh) -> Jumps:
-    """The nodes of a mesh at which the material of a rod jumps, with the material on both sides."""
+    """The nodes of a mesh at which the material of a rod jumps, and the material on both sides of these
+    nodes.
+    """
     inside, at = _beside_jumps(rod.build, grid)
     if not len(at):
         return NO_JUMPS
@@ -70,9 +74,11 @@ def jumps_on(rod: Rod, grid: Mesh) -> Jumps:
 
 
 def jump_change_on(rod: Rod, name: str, grid: Mesh) -> Array:
-    """Derivatives of nu, c1 and c3 on both sides of each jump by the path variable of a parameter, (k, 2, 3).
+    """Derivatives of nu, c1 and c3 on both sides of each jump with respect to the coordinate of the parameter
+    `name`, (k, 2, 3).
 
-    `NO_JUMP_CHANGE` for a linear law, whose stress at a jump depends on the mean strain only.
+    Returns `NO_JUMP_CHANGE` for a linear law, because the stress at a jump then depends only on the mean
+    strain.
     """
     inside, at = _beside_jumps(rod.build, grid)
     if rod.build.constitutive_law is LINEAR or not len(at):
@@ -83,7 +89,9 @@ def jump_change_on(rod: Rod, name: str, grid: Mesh) -> Array:
 
 
 def _beside_jumps(build: Build, grid: Mesh) -> tuple[IntegerArray, IntegerArray]:
-    """(indices in `points_inside` before and behind each jump, (k, 2); its node, (k,))."""
+    """Returns (points, nodes) of the k jumps. points: indices in `points_inside` of the points before and
+    behind each jump, (k, 2). nodes: node of each jump, (k,).
+    """
     jumps = build.jumps
     ends = np.array([e for e in range(1, grid.elements) if grid.edges[e] in jumps], np.int64)
     size = grid.order + 1
@@ -91,10 +99,9 @@ def _beside_jumps(build: Build, grid: Mesh) -> tuple[IntegerArray, IntegerArray]
 
 
 def _at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
-    """Compliance, drag and strain at rest at all nodes, (3, nodes + 1) each, from those at the
-    `points_inside`.
+    """Returns (compliance, drag, strain at rest) at all nodes, (3, nodes + 1) each.
 
-    sections: the coefficients there, or their derivatives.
+    sections: the coefficients at the `points_inside` of the mesh, or derivatives of the coefficients.
     """
     rest = np.zeros_like(sections.drag)
     rest[0] = sections.nu
@@ -105,7 +112,9 @@ def _at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
 
 
 def _mean_at_nodes(values: Array, grid: Mesh) -> Array:
-    """Means over both sides of each node, (m, nodes + 1), of `values` at the `points_inside`, (m, points)."""
+    """Means over both sides of each node, (m, nodes + 1). values: m fields at the `points_inside`,
+    (m, points).
+    """
     place, weights = _places_of(grid)
     mean: Array = np.array([np.bincount(place, weights * row) for row in values]) / grid.quadrature
     return mean
@@ -113,6 +122,8 @@ def _mean_at_nodes(values: Array, grid: Mesh) -> Array:
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def _places_of(grid: Mesh) -> tuple[IntegerArray, Array]:
-    """(node, quadrature weight) of each of the `points_inside`, (elements (order + 1),) each."""
+    """Returns (nodes, weights) of all `points_inside`, (elements (order + 1),) each: node of the mesh, and
+    quadrature weight within the element.
+    """
     weights = grid.lengths[:, None] / 2 * gauss_lobatto(grid.order)[1]
     return grid.element_nodes.ravel(), weights.ravel()

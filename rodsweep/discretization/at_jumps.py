@@ -1,8 +1,8 @@
-"""Stresses of a rod on both sides of the jumps of its material, where the stresses S of a law are not smooth.
+"""Stresses of a rod on both sides of the jumps of its material.
 
-S are the stresses that a linear rod needs for the same strain. With another law S has different values on the
-two sides of a jump (`rodsweep.model.material.jump`), and the unknown at its node is the mean of both.
-Everywhere else S is smooth within each element.
+S is the stress of a linear rod with the same strain. For a nonlinear law S has different values on the two
+sides of a jump (`rodsweep.model.material.jump`); the unknown at the node of the jump is the mean of both
+values. S is smooth within each element.
 """
 
 from functools import lru_cache
@@ -24,16 +24,15 @@ from .nodal_rod import NO_JUMPS, IntegerArray, NodalRod
 
 STRETCHING = 0
 BENDING = 2
-"""Components of S that are not smooth at a jump: indices of the stretching stress S1 and of the bending
-stress S3."""
+"""STRETCHING, BENDING: indices of the stretching stress S1 and the bending stress S3, the components of S
+that are discontinuous at a jump."""
 
 
 @compiled
 def split_at_jump(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
-    """Writes (q1, q3) before a jump and (q1, q3) behind it into out, (4, m), from the means q1, q3 of both
-    sides, (m,).
+    """Writes q1 and q3 before a jump, then q1 and q3 behind the jump, into out, (4, m).
 
-    sides: the material of both sides, (2, 7).
+    q1, q3: means over both sides, (m,). sides: the material on both sides, (2, 7).
     """
     for i in range(len(q1)):
         q = Unknowns(q1[i], q3[i])
@@ -60,10 +59,10 @@ def stresses_beside_jumps(rod: NodalRod, S: Array) -> Array:
 
 
 def stresses_by_element(rod: NodalRod, grid: Mesh, S: Array) -> Array:
-    """S at the nodes of each element, (3, ..., elements, order + 1); at a jump each element has the S of its
-    own side.
+    """S at the nodes of every element, (3, ..., elements, order + 1); the two elements at a jump have the
+    values of their own side.
 
-    S: (3, ..., nodes + 1).
+    S: (3, ..., nodes + 1), with the mean of both sides at a jump.
     """
     fields: Array = S[..., grid.element_nodes]
     for node, sides in zip(rod.jumps, stresses_beside_jumps(rod, S), strict=True):
@@ -75,12 +74,12 @@ def stresses_by_element(rod: NodalRod, grid: Mesh, S: Array) -> Array:
 
 
 def interpolate_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Values:
-    """S at all nodes of the mesh `target`, (3, ..., target.nodes + 1), from S on `source`,
+    """S at all nodes of the mesh `target`, (3, ..., target.nodes + 1), from S at all nodes of `source`,
     (3, ..., nodes + 1).
 
-    The map is linear. The unknown at a jump is not a value of the polynomials on either side. These
-    polynomials are taken from the other nodes of their elements, and the means of their ends are the unknowns
-    at the jumps of the target.
+    The map is linear. At a jump of `source`, S is a mean and not a value of the polynomial on either side;
+    these polynomials are therefore interpolated from the other nodes of their elements. At a jump of
+    `target`, the new S is the mean of the values of the polynomials on both sides.
     """
     E = transfer(source, target)
     out = S @ E.T
@@ -97,13 +96,14 @@ def interpolate_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Value
 def _across(  # noqa: PLR0913, PLR0917 - of both meshes
     E: Array, source: Mesh, target: Mesh, here: IntegerArray, there: IntegerArray, shares: Array
 ) -> Array:
-    """Interpolation matrix E between two meshes, (target nodes, source nodes), changed for a field with
+    """The interpolation matrix E, (target nodes, source nodes), modified for a field that is discontinuous at
     jumps.
 
-    here, there: nodes of the jumps in source and target, (k,) each. shares: of both sides in the unknown at a
-    jump, (k, 2).
+    here, there: nodes of the jumps in `source` and `target`, (k,) each. shares: weights of both sides in the
+    mean at each jump, (k, 2).
     """
-    # E interpolates the mean at a jump; rows of elements beside one extrapolate from inside instead.
+    # In elements with an end at a jump, E uses the mean at this end. Extrapolation from the other nodes
+    # replaces this value.
     out = E.copy()
     p = source.order
     element = np.searchsorted(source.edges, target.positions, side="right") - 1
@@ -117,7 +117,7 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
             out[rows, node] = 0.0
             out[rows, columns] += weights[:, None] * row
     for e, node, (before, behind) in zip(at_jumps, there, shares, strict=True):
-        # The new node at the jump gets the mean of both sides, as all states hold it.
+        # States contain the mean of both sides at the node of a jump.
         out[node] = 0.0
         for side, share in ((e - 1, before), (e, behind)):
             row = _end_from_inside(p, side in at_jumps, side + 1 in at_jumps, first=side == e)
@@ -127,13 +127,14 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def _end_from_inside(order: int, starts: bool, stops: bool, first: bool) -> Array:
-    """Weights, (p + 1,), that extrapolate from the nodes of an element, without those at jumps, to one end.
+    """Weights, (p + 1,), that extrapolate from the nodes of an element, except nodes at jumps, to one end of
+    the element.
 
-    starts, stops: whether the element starts, and stops, at a jump. first: whether to its first node, else
-    the last.
+    starts, stops: whether a jump is at the first, and at the last node. first: whether to extrapolate to the
+    first node; otherwise to the last node.
     """
     x = gauss_lobatto(order)[0]
-    # Nodes at jumps hold means over both sides, which belong to neither polynomial.
+    # A value at a jump is a mean over both sides, not a value of the polynomial.
     used = slice(int(starts), order + 1 - int(stops))
     row = np.zeros(order + 1)
     row[used] = interpolation(x[used], np.array([-1.0 if first else 1.0]))[0]

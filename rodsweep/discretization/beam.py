@@ -1,9 +1,10 @@
 """One nonlinear rod on one mesh as an explicit system for time stepping: dz/dt = f(z) and its exact Jacobian.
 
-The unknown is z = C^(1/2) S, in units of the square root of an energy density. S is the stress of a linear
-rod minus the stress of the straight rod, at all nodes except the tip, where S = 0. z1 at every node comes
-first, then z2, then z3. |z|^2/2 is an energy density of the linear rod, the mass matrix is the identity, and
-large k1 or k2 cost no digits. The form needs c1, c2, gamma3 > 0; `StressForm` includes the limits.
+The unknown is z = C^(1/2) S, with the compliances C; its unit is the square root of an energy density. S is
+the stress of a linear rod with the same strain minus the stress of the straight rod, at all nodes except the
+tip, where S = 0. A state contains z1 at every node, then z2, then z3. |z|^2/2 is an energy density of the
+linear rod, the mass matrix is the identity, and large k1 or k2 cost no digits. The form requires c1, c2,
+gamma3 > 0; `StressForm` also covers c1 = 0, c2 = 0 and gamma3 = 0.
 """
 
 from dataclasses import dataclass
@@ -23,8 +24,8 @@ class BeamSettings:
     """Settings for the velocity of the tip."""
 
     tip_step: float = 1e-30
-    """Imaginary step, in tau2, of the complex-step derivative in `tip_motion`. Its square underflows, so it
-    causes no error."""
+    """Imaginary step, in tau2, of the complex-step derivative in `tip_motion`. The square of the step
+    underflows, so the derivative has no truncation error."""
 
 
 BEAM = BeamSettings()
@@ -34,7 +35,7 @@ BEAM = BeamSettings()
 class Beam(RodOnMesh):
     """One rod with finite k1, k2 and gamma3 > 0 on one mesh, as an explicit system.
 
-    z has the shape (unknowns,) and the unit of the square root of an energy density, sqrt(k3)/L.
+    States z have the shape (unknowns,) and the unit of the square root of an energy density, sqrt(k3)/L.
     """
 
     @property
@@ -43,19 +44,19 @@ class Beam(RodOnMesh):
 
     @cached_property
     def sqrt_compliance(self) -> Array:
-        """Square roots of C, (3, nodes + 1): z = sqrt(C) S, and E - E0 = sqrt(C) z."""
+        """Square roots of the compliances C, (3, nodes + 1): z = sqrt(C) S, and E - E0 = sqrt(C) z."""
         return np.sqrt(self.nodal.compliance)
 
     @cached_property
     def crushing_z1(self) -> Array:
         """Values of z1 at which the stretch h1 is 0, at all nodes except the tip, (nodes,).
 
-        At a jump h1 vanishes on one side first if the law is linear, and on both sides at once otherwise.
+        At a jump, h1 reaches 0 first on one side if the law is linear, and on both sides at once otherwise.
         """
         crushed = -self.nodal.rest[0, :-1] / self.sqrt_compliance[0, :-1]
         if self.smooth_stresses:
             for node, sides in zip(self.nodal.jumps, self.nodal.sides, strict=True):
-                # The side that is crushed first counts.
+                # The larger value belongs to the side that is crushed first.
                 crushed[node] = self.sqrt_compliance[0, node] * (-sides[:, 0] / sides[:, 1]).max()
         return np.ascontiguousarray(crushed)
 
@@ -64,12 +65,12 @@ class Beam(RodOnMesh):
         return scaled / self._along(scaled)
 
     def state_of_stresses(self, S: Array) -> Array:
-        """States z of stresses S at all nodes, (3, ..., nodes + 1)."""
+        """States z, (..., unknowns), of stresses S at all nodes, (3, ..., nodes + 1)."""
         return self.layout.state(S * self._along(S), S)
 
     def state_of_strains(self, strains: Array) -> Array:
-        """The state z of strains (h1, h2, Pi) at all nodes, (3, nodes + 1); strains at the tip are
-        ignored."""
+        """The state z, (unknowns,), with the given strains (h1, h2, Pi) at all nodes, (3, nodes + 1). Strains
+        at the tip are ignored."""
         return self.layout.state((strains - self.nodal.rest) / self.sqrt_compliance, strains)
 
     def rate(self, z: Array) -> Array:
@@ -90,19 +91,22 @@ class Beam(RodOnMesh):
         return out.swapaxes(-1, -2)
 
     def tip_motion(self, z: Array, direction: Array) -> tuple[Array, Array]:
-        """(x, y, theta) of the tip and its time derivative for dz/dt = direction, (3, ...) each.
+        """Returns (position, velocity) of the tip, (3, ...) each: (x, y, theta) at z, and its time derivative
+        for dz/dt = direction.
 
-        z, direction: (..., unknowns). A small imaginary step gives the velocity without cancellation.
+        z, direction: (..., unknowns). The velocity is a complex-step derivative, which has no cancellation.
         """
         change = self.element_strain_changes(z, BEAM.tip_step * direction)
         moved = shape_from_strains(self.mesh, self.element_strains(z) + 1j * change, np.zeros(3))[..., -1]
-        # Complex step: the imaginary part is the derivative times the step, without a difference.
+        # The imaginary part is the derivative times the step.
         return moved.real, moved.imag / BEAM.tip_step
 
     def tip_velocity(self, z: Array, direction: Array) -> Array:
-        """Time derivative of (x, y, theta) of the tip for dz/dt = direction, (3, ...)."""
+        """Time derivative of (x, y, theta) of the tip at z for dz/dt = direction, (3, ...); z, direction:
+        (..., unknowns).
+        """
         return self.tip_motion(z, direction)[1]
 
     def _along(self, field: Values) -> Array:
-        """`sqrt_compliance` reshaped to broadcast against a field (3, ..., nodes + 1)."""
+        """`sqrt_compliance`, reshaped to broadcast against a field (3, ..., nodes + 1)."""
         return self.sqrt_compliance.reshape(3, *(1,) * (field.ndim - 2), -1)

@@ -1,11 +1,12 @@
-"""Strains at the nodes of every element, compiled; at a jump of the material, the strain of each side.
+"""Compiled strains at the nodes of every element; at a jump of the material, the strains of both sides.
 
-At a jump stress is continuous and strain is not. The unknown at the node of a jump gives the mean strain of
-both sides, which neither side has. A shape integrated with the mean strain converges only with the fifth
-power of the order. The strains of both sides follow from the stress (`rodsweep.model.material.jump`), and a
-shape integrated with these converges exponentially.
+At a jump the stress is continuous and the strain is not. The unknown at the node of a jump gives the mean
+strain of both sides. The error of a shape that is integrated from mean strains decreases only with the fifth
+power of the order. The strains of both sides follow from the stress (`rodsweep.model.material.jump`); a shape
+that is integrated from these strains converges exponentially.
 
-Arrays at the nodes of every element hold one element after the other, like `Elements.element_nodes`.
+Arrays over the nodes of every element contain the elements one after the other, like
+`Elements.element_nodes`.
 """
 
 from ..arrays import Array
@@ -22,8 +23,10 @@ from .nodal_rod import NodalRod
 
 @compiled
 def index_before_jump(node: int, order: int) -> int:
-    """Index, among the nodes of every element, of the side before the jump at `node`; the side behind is the
-    next.
+    """Index of the last node of the element before the jump at `node`, in arrays over the nodes of every
+    element.
+
+    The first node of the element behind the jump has the next index. order: order of the elements.
     """
     return node + node // order - 1
 
@@ -32,7 +35,8 @@ def index_before_jump(node: int, order: int) -> int:
 def write_element_strains(S: Array, rod: NodalRod, order: int, out: Array) -> None:
     """Writes the strains (h1, h2, Pi) at the nodes of every element into out, (3, m, elements (order + 1)).
 
-    S: stresses of m states at all nodes, (3, m, nodes + 1), with E = E0 + C S. order: of the elements.
+    S: stresses of m states at all nodes, (3, m, nodes + 1), with the strain E = E0 + C S. order: order of the
+    elements.
     """
     for a in range(len(S)):
         for k in range(S.shape[1]):
@@ -55,10 +59,10 @@ def write_element_strains(S: Array, rod: NodalRod, order: int, out: Array) -> No
 
 @compiled_for_vectors
 def write_element_strain_changes(S: Array, rates: Array, rod: NodalRod, order: int, out: Array) -> None:
-    """Writes changes of strains at the nodes of every element into out, (3, m, elements (order + 1)).
+    """Writes changes of the strains at the nodes of every element into out, (3, m, elements (order + 1)).
 
-    S: stresses of m states at all nodes, (3, m, nodes + 1). rates: changes of the (mean) strains there, same
-    shape.
+    S: stresses of m states at all nodes, (3, m, nodes + 1). rates: changes of the strains at all nodes,
+    (3, m, nodes + 1); at a jump, of the mean strain. order: order of the elements.
     """
     for a in range(len(rates)):
         for k in range(rates.shape[1]):
@@ -73,7 +77,7 @@ def write_element_strain_changes(S: Array, rates: Array, rod: NodalRod, order: i
         c3 = rod.compliance[2, node]
         for k in range(rates.shape[1]):
             q = Unknowns(S[0, k, node], S[2, k, node])
-            # A rigid component keeps its strain, whatever its stress does.
+            # The strain of a rigid component is constant for every stress.
             dq1 = rates[0, k, node] / c1 if c1 > 0 else 0.0
             dq2 = rates[1, k, node] / c2 if c2 > 0 else 0.0
             changes = changes_beside_jump(rod.law, sides, q, Unknowns(dq1, rates[2, k, node] / c3))

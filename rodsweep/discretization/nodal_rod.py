@@ -16,15 +16,14 @@ IntegerArray = NDArray[np.int64]
 
 
 class NodalRod(NamedTuple):
-    """A rod with d stress components at all nodes of a mesh, tip included: the argument of compiled
-    functions.
+    """A rod with d stress components at all nodes of a mesh, tip included: an argument of compiled functions.
 
-    tip_stress: Sigma(1), (d,). rest: E0, the strain of the straight rod under its force; rest, compliance and
-    drag are (d, nodes + 1). mobility: 1/drag, but 0 for the components of V that are unknowns. second: -D^T W
-    mobility D, (d, nodes + 1, nodes + 1). unknown_velocities: indices of the components of V that are
-    unknowns. law: number of the constitutive law, see `rodsweep.model.material.response`. jumps: nodes at
-    which the material jumps, increasing, (k,). sides: the material on both sides of these nodes, (k, 2, 7),
-    see `rodsweep.model.material.jump`.
+    tip_stress: stress Sigma(1), (d,). rest: E0, the strain of the straight rod under its force,
+    (d, nodes + 1). compliance, drag: (d, nodes + 1). mobility: 1/drag, but 0 for the components of V that are
+    unknowns, (d, nodes + 1). second: -D^T W mobility D, (d, nodes + 1, nodes + 1). unknown_velocities:
+    indices of the components of V that are unknowns. law: number of the constitutive law, see
+    `rodsweep.model.material.response`. jumps: nodes at which the material jumps, increasing, (k,). sides: the
+    material on both sides of each jump, (k, 2, 7), see `rodsweep.model.material.jump`.
     """
 
     tip_stress: Array
@@ -40,21 +39,23 @@ class NodalRod(NamedTuple):
 
 
 class Jumps(NamedTuple):
-    """Nodes at which the material jumps, (k,), and the material on both sides of each, (k, 2, 7)."""
+    """Nodes at which the material jumps, (k,), and the material on both sides of each jump, (k, 2, 7)."""
 
     nodes: IntegerArray
     sides: Array
 
 
 NO_JUMPS = Jumps(np.zeros(0, np.int64), np.zeros((0, 2, len(COLUMNS))))
-"""The jumps of a rod whose material is continuous: none."""
+"""Jumps of a rod with a continuous material: arrays of length 0."""
 NO_JUMP_CHANGE = np.zeros((0, 2, 3))
-"""Derivatives of the material beside jumps, for a rod without jumps or of linear material: none, (0, 2,
-3)."""
+"""Derivatives of the material on both sides of jumps, for a rod without jumps or with a linear law: an array
+of length 0."""
 
 
 class NodalChange(NamedTuple):
-    """The derivative of the fields of a `NodalRod` by the path variable of a parameter; same shapes."""
+    """The derivatives of fields of a `NodalRod` with respect to the coordinate of a parameter, with the
+    shapes of the fields.
+    """
 
     tip_stress: Array
     rest: Array
@@ -71,8 +72,9 @@ def nodal_rod(
     law: int = 0,
     jumps: Jumps = NO_JUMPS,
 ) -> NodalRod:
-    """The `NodalRod` of a material on a mesh; unknown_velocities: indices of the components of V that are
-    unknowns.
+    """The `NodalRod` of a material on a mesh.
+
+    unknown_velocities: indices of the components of V that are unknowns. law: number of the constitutive law.
     """
     size = grid.nodes + 1
     rest = _at_nodes(material.rest, size)
@@ -82,8 +84,8 @@ def nodal_rod(
 
 
 def nodal_change(change: Material, grid: Mesh, sides: Array = NO_JUMP_CHANGE) -> NodalChange:
-    """The `NodalChange` from the derivative of a material on a mesh; sides: (k, 2, 3), as in
-    `NodalChange`."""
+    """The `NodalChange` of a mesh. change: derivative of the material by a parameter. sides: derivatives at
+    the jumps, (k, 2, 3), as in `NodalChange`."""
     fields = change.rest, change.compliance, change.drag
     rest, compliance, drag = (_at_nodes(field, grid.nodes + 1) for field in fields)
     return NodalChange(change.tip_stress, rest, compliance, drag, sides)
@@ -93,8 +95,10 @@ def nodal_change(change: Material, grid: Mesh, sides: Array = NO_JUMP_CHANGE) ->
 def _resistance_of(
     drag: bytes, shape: tuple[int, ...], grid: Mesh, unknown_velocities: tuple[int, ...]
 ) -> tuple[Array, Array, Array, IntegerArray]:
-    """`_resistance`, cached by the bytes of the drag, because rods that differ in F only have equal drags."""
-    # Bytes are hashable keys of the cache, and hold the array itself.
+    """The result of `_resistance`, cached by the bytes of the drag, because rods that differ only in F have
+    equal drags.
+    """
+    # Bytes can be a key of the cache, and the array is restored from the bytes.
     values = np.frombuffer(drag).reshape(shape)
     return _resistance(values if len(shape) > 1 else values[:, None], grid, unknown_velocities)
 
@@ -102,20 +106,20 @@ def _resistance_of(
 def _resistance(
     drag: Array, grid: Mesh, unknown_velocities: tuple[int, ...]
 ) -> tuple[Array, Array, Array, IntegerArray]:
-    """The fields drag, mobility, second_derivative and unknown_velocities of a `NodalRod`; drag: (d, 1) or
+    """Returns (drag, mobility, second, unknown_velocities), fields of a `NodalRod`. drag: (d, 1) or
     (d, nodes + 1).
     """
     drag = _at_nodes(drag, grid.nodes + 1)
     mobility = np.zeros(drag.shape)
     eliminated = [a for a in range(len(drag)) if a not in unknown_velocities]
     mobility[eliminated] = 1 / drag[eliminated]
-    # Stresses enter twice through their derivative, D* and then the weak D: a product that no state changes.
+    # The product of the two differentiations of the stress, D* and the weak D, does not depend on the state.
     second = grid.matrices.weak @ (mobility[:, :, None] * grid.matrices.D)
     return drag, mobility, second, np.array(unknown_velocities, np.int64)
 
 
 def _at_nodes(field: Array, size: int) -> Array:
-    """A field (d, size), from a field of this shape or from one constant for each component, (d,)."""
+    """`field` as an array (d, size). field: (d, size), or one constant per component, (d,) or (d, 1)."""
     out = np.empty((len(field), size))
     out[:] = field.reshape(len(field), -1)
     return out

@@ -1,4 +1,4 @@
-"""The compiled equations of the rod in the plane: those of `stress` for the Lie algebra se(2)."""
+"""Compiled equations of the planar rod: the functions of `stress`, specialised to the Lie algebra se(2)."""
 
 from ..model.algebra import SE2
 from .stress import balance as stress_balance

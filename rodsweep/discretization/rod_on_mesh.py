@@ -1,7 +1,7 @@
 """One nonlinear rod on one mesh: its strains, shape and energy, computed from its stresses.
 
-This is the common base of two forms: `StressForm`, whose unknowns are stresses, and `Beam`, whose unknowns
-are stresses scaled to the root of an energy density.
+`RodOnMesh` is the base class of `StressForm`, whose unknowns are stresses, and of `Beam`, whose unknowns are
+stresses times the square roots of the compliances.
 """
 
 from abc import ABC, abstractmethod
@@ -38,22 +38,22 @@ class RodOnMesh(ABC):
 
     @abstractmethod
     def stresses(self, x: Values) -> Values:
-        """Stresses S of states x at all nodes, tip included, (3, ..., nodes + 1), with the strain E = E0 + C
-        S.
+        """Stresses S of states x at all nodes, tip included, (3, ..., nodes + 1); the strain is E = E0 + C S.
 
         In a linear rod S is (n1 + F, n2, m3).
         """
 
     def with_coordinate(self, name: str, coordinate: float) -> Self:
-        """The rod with another value of the path variable of the parameter `name`, on the same mesh.
+        """The same rod on the same mesh with another coordinate of the parameter `name` (see
+        `Rod.with_coordinate`).
 
-        Raises ValueError for an invalid rod.
+        Raises ValueError for an invalid coordinate.
         """
         return replace(self, rod=self.rod.with_coordinate(name, coordinate))
 
     @cached_property
     def layout(self) -> StateLayout:
-        """Positions of the fields in a state."""
+        """Indices of the fields in a state."""
         return plane_layout(self.mesh.nodes, self.unknown_velocities)
 
     @property
@@ -62,7 +62,7 @@ class RodOnMesh(ABC):
 
     @cached_property
     def nodal(self) -> NodalRod:
-        """The rod at the nodes of the mesh, as the argument of compiled functions."""
+        """The rod at the nodes of the mesh, as an argument of compiled functions."""
         rod = self.rod
         mesh = self.mesh
         law = rod.build.law_number
@@ -75,16 +75,16 @@ class RodOnMesh(ABC):
         return self.rod.build.constitutive_law is LINEAR or not len(self.nodal.jumps)
 
     def strains(self, x: Values) -> Values:
-        """Strains (h1, h2, Pi) at all nodes, tip included, (3, ..., nodes + 1); at a jump the mean of both
-        sides.
+        """Strains (h1, h2, Pi) of states x at all nodes, tip included, (3, ..., nodes + 1); at a jump, the
+        mean of both sides.
         """
         S = self.stresses(x)
         c = self.nodal
         return _along(c.rest, S) + _along(c.compliance, S) * S
 
     def element_strains(self, x: Array) -> Array:
-        """Strains (h1, h2, Pi) at the nodes of every element, (3, ..., elements (order + 1)); both sides of a
-        jump.
+        """Strains (h1, h2, Pi) of states x at the nodes of every element, (3, ..., elements (order + 1)); at
+        a jump, the strains of both sides.
         """
         S = self.stresses(x)
         out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
@@ -92,7 +92,10 @@ class RodOnMesh(ABC):
         return out
 
     def element_strain_changes(self, x: Array, change: Array) -> Array:
-        """Derivative of `element_strains` at states x along `change`; both (..., unknowns)."""
+        """Derivative of `element_strains` at states x along `change`, (3, ..., elements (order + 1)).
+
+        x, change: (..., unknowns).
+        """
         S = self.stresses(x)
         dS = self.stresses(change)
         moved = _along(self.nodal.compliance, dS) * dS
@@ -101,8 +104,8 @@ class RodOnMesh(ABC):
         return out
 
     def shape(self, x: Array) -> Array:
-        """Shape (x, y, theta) at all nodes in L and rad, (3, ..., nodes + 1), clamped at the origin along
-        e_x.
+        """Shape (x, y, theta) of states at all nodes, in L and rad, (3, ..., nodes + 1); the clamp is at the
+        origin, along e_x.
         """
         return shape_from_strains(self.mesh, self.element_strains(x), np.zeros(3))
 
@@ -121,7 +124,7 @@ class RodOnMesh(ABC):
         (c1, c2, c3) = _along(c.compliance, S)
         density = self._stored(nu, c1, c3, S[0], S[2])
         for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.sides, strict=True):
-            # A node at a jump has a mean stress, whose energy is not the mean of the energies of both sides.
+            # The energy of the mean stress at a jump is not the mean of the energies of both sides.
             density[..., node] = 0.0
             for (q1, q3), (nu, c1, c3, _, _, share, _) in zip(sides, numbers, strict=True):
                 density[..., node] += share * self._stored(nu, c1, c3, q1, q3)
@@ -129,14 +132,14 @@ class RodOnMesh(ABC):
         return energy
 
     def _stored(self, nu: Values, c1: Values, c3: Values, q1: Values, q3: Values) -> Values:
-        """Energy per length of stretching and bending, from the unknowns q1 and q3 of a section; shear is not
-        included.
+        """Energy per length of stretching and bending, without shear, from the nodal values nu, c1, c3 and
+        the stresses q1 = S1, q3 = S3.
         """
         F = self.rod.F
         law = self.rod.build.constitutive_law
         load = F * c1
         h1 = nu + c1 * q1
-        # shortening/load tends to 1 without load, also for c1 = 0, where (h1 - 1)/c1 is 0/0.
+        # shortening/load tends to 1 for load -> 0. For c1 = 0 this limit replaces (h1 - 1)/c1 = 0/0.
         ratio = np.where(load == 0, 1.0, law.shortening(load) / np.where(load == 0, 1.0, load))
         push = q1 - F * ratio  # (h1 - 1)/c1
         stored: Values = c1 * push**2 * law.energy_over_square(h1) + law.bending(h1) * c3 * q3**2 / 2
@@ -147,9 +150,8 @@ class RodOnMesh(ABC):
         return interpolate_stress(self.rod, self.stresses(x), self.mesh, grid)
 
     def least_stretch(self, x: Array) -> float:
-        """Smallest stretch h1 of all nodes and states x; the model is valid while it is positive.
-
-        At a jump both sides count.
+        """Smallest stretch h1 of all nodes and states x, over both sides of each jump. The model requires a
+        positive h1.
         """
         return float(self.element_strains(x)[0].min())
 
@@ -162,7 +164,7 @@ class RodOnMesh(ABC):
         c = self.nodal
         sections = np.stack([c.rest[0], c.compliance[0], c.compliance[2], S[0], S[2]], axis=1)
         for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.sides, strict=True):
-            # Convexity must hold on each side; the mean section at the node does not exist.
+            # The energy must be convex on each side; a section with the mean material does not exist.
             before, behind = np.column_stack([numbers[:, :3], sides])
             sections[node] = before
             sections = np.vstack([sections, behind])
@@ -171,10 +173,10 @@ class RodOnMesh(ABC):
 
 
 def _listed(field: Array) -> Array:
-    """A field (3, ..., n) reshaped to (3, m, n), without a copy."""
+    """A view of a field (3, ..., n) with the shape (3, m, n)."""
     return field.reshape(len(field), -1, field.shape[-1])
 
 
 def _along(constant: Array, field: Values) -> Array:
-    """A constant (3, nodes + 1) or (3, 1), reshaped to broadcast against a field (3, ..., nodes + 1)."""
+    """A field (3, nodes + 1) or (3, 1), reshaped to broadcast against `field`, (3, ..., nodes + 1)."""
     return constant.reshape(len(constant), *(1,) * (field.ndim - 2), -1)

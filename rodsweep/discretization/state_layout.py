@@ -1,6 +1,6 @@
 """Indices of the fields in a flat state: stresses at all nodes except the tip, then unknown velocities.
 
-No other module computes indices into a state. Python code uses a `StateLayout`. Compiled code uses
+Other modules take indices into a state from here. Python code uses a `StateLayout`. Compiled code uses
 `stress_index` and `velocity_index`, because an array view costs as much as a sum over the nodes.
 """
 
@@ -13,7 +13,7 @@ from ..model.balance import Values
 from ..model.compiled.compilation import compiled_for_vectors
 
 STRESS_NAMES = {3: ("n1", "n2", "m3"), 6: ("n1", "n2", "n3", "m1", "m2", "m3")}
-"""Names of the stress components in the plane (3) and in space (6)."""
+"""Names of the stress components, by the number of components: 3 in the plane, 6 in space."""
 PLANE_COMPONENTS = 3
 BENDING_INDEX = 2
 """PLANE_COMPONENTS: number of stress components in the plane. BENDING_INDEX: index of m3 among them. For
@@ -25,8 +25,8 @@ class StateLayout:
     """Order of the unknowns in states of the shape (..., unknowns).
 
     components: number of stress components. nodes: number of nodes without the tip. unknown_velocities:
-    indices of the components of V that are unknowns. At the tip velocities are unknown too, but stresses are
-    0.
+    indices of the components of V that are unknowns. Velocities at the tip are unknowns, stresses at the tip
+    are 0.
     """
 
     components: int
@@ -52,13 +52,13 @@ class StateLayout:
         return at
 
     def transverse(self, x: Values) -> Values:
-        """All unknowns of states x in the plane but the axial stress n1, a view; all are 0 for a straight
-        rod.
+        """All unknowns of planar states x except the axial stress n1, a view; all these unknowns are 0 for a
+        straight rod.
         """
         return x[..., self.nodes :]
 
     def stresses(self, x: Values) -> Values:
-        """All stresses of states x at all nodes, 0 at the tip, (components, ..., nodes + 1)."""
+        """Stresses of states x at all nodes, (components, ..., nodes + 1); stresses at the tip are 0."""
         S = np.zeros((self.components, *x.shape[:-1], self.nodes + 1), x.dtype)
         known = x[..., : self.components * self.nodes].reshape(*x.shape[:-1], self.components, self.nodes)
         S[..., :-1] = np.moveaxis(known, -2, 0)
@@ -77,7 +77,9 @@ class StateLayout:
         return np.concatenate([*S[..., :-1], *(V[a] for a in self.unknown_velocities)], axis=-1)
 
     def interpolate(self, x: Array, E: Array) -> Array:
-        """States x interpolated to another mesh; E: `mesh.transfer`, (target.nodes + 1, nodes + 1)."""
+        """States x interpolated to another mesh. E: interpolation matrix from all nodes of the present mesh
+        to all nodes of the other mesh, (target.nodes + 1, nodes + 1).
+        """
         split = self.components * self.nodes
         slices = [slice(first, first + self.nodes) for first in range(0, split, self.nodes)]
         parts = [x[..., stress] @ E[:-1, :-1].T for stress in slices]
@@ -86,9 +88,7 @@ class StateLayout:
         )
 
     def vector(self, values: dict[str, Array]) -> Array:
-        """A vector (unknowns,) with the given values, (nodes,), of each named stress; all other entries are
-        0.
-        """
+        """A vector (unknowns,) with the given stresses: {name: values, (nodes,)}; all other entries are 0."""
         vector = np.zeros(self.unknowns)
         for name, numbers in values.items():
             self.field(vector, name)[:] = numbers
@@ -96,8 +96,8 @@ class StateLayout:
 
 
 def plane_layout(nodes: int, unknown_velocities: tuple[int, ...] = ()) -> StateLayout:
-    """Layout of a rod in the plane. nodes: number without the tip. unknown_velocities: indices of unknown
-    components of V.
+    """Layout of the states of a rod in the plane. nodes: number of nodes without the tip. unknown_velocities:
+    indices of the components of V that are unknowns.
     """
     return StateLayout(PLANE_COMPONENTS, nodes, unknown_velocities)
 
@@ -110,5 +110,8 @@ def stress_index(a: int, node: int, nodes: int) -> int:
 
 @compiled_for_vectors
 def velocity_index(k: int, node: int, components: int, nodes: int) -> int:
-    """Index in a state of the k-th unknown velocity at a node; nodes: number of nodes without the tip."""
+    """Index in a state of the k-th unknown velocity component at a node.
+
+    components: number of stress components. nodes: number of nodes without the tip.
+    """
     return components * nodes + k * (nodes + 1) + node

@@ -20,8 +20,8 @@ class Algebra(NamedTuple):
     """Structure constants of a Lie algebra, and the sparsity patterns of ad and ad*.
 
     components: indices of the components. terms: nonzero structure constants. forward: pattern of ad;
-    forward[a][c] is True if (ad_E V)_a contains V_c. backward: pattern of ad*; backward[c][b] is True if
-    (ad*_E Sigma)_c contains Sigma_b, or E_b, which depends on Sigma_b through the compliance.
+    forward[a][c] is True if (ad_E V)_a depends on V_c. backward: pattern of the derivative of ad*;
+    backward[c][b] is True if (ad*_E Sigma)_c depends on Sigma_b or on E_b, which depends on Sigma_b.
     """
 
     components: range
@@ -42,7 +42,7 @@ class Algebra(NamedTuple):
 
 def algebra(size: int, terms: list[Term]) -> Algebra:
     """The Lie algebra of dimension `size` whose nonzero structure constants are `terms`."""
-    # Blocks of the Jacobian that can be nonzero for some E. Loops skip all other blocks.
+    # Loops over the Jacobian skip all blocks that are not in these patterns.
     leads = {(a, c) for a, _, c, _ in terms}
     bends = {(c, other) for a, b, c, _ in terms for other in (a, b)}
     forward, backward = (
@@ -52,10 +52,10 @@ def algebra(size: int, terms: list[Term]) -> Algebra:
 
 
 def _cross(out: int, left: int, right: int) -> list[Term]:
-    """Structure constants of a cross product of two triples of components in ad_E V.
+    """Structure constants of a cross product of two triples of components, as a part of ad_E V.
 
-    The components of E from index `left` on are the first factor, the components of V from index `right` on
-    the second factor, and the components of ad_E V from index `out` on the product.
+    The first factor is the triple of components of E that starts at index `left`, the second factor the
+    triple of V that starts at `right`, and the product the triple of ad_E V that starts at `out`.
     """
     cyclic = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
     positive = [(out + a, left + b, right + c, 1.0) for a, b, c in cyclic]

@@ -1,15 +1,16 @@
-"""The nonlinear balance of the rod in its body frame, on se(2) and se(3), at one point, without a mesh.
+"""The nonlinear balance of the rod in the body frame, on se(2) and se(3), at points, without a mesh.
 
-A deformation E = (h; kappa) and a velocity V = (v; Omega) are elements of the Lie algebra; a stress
-Sigma = (n; m) is an element of the dual space. Components are (h1, h2, kappa3), (v1, v2, Omega3) and
-(n1, n2, m3) in the plane, all six in space. With ' = d/du the second formulation of Sec. III reads
+A deformation E = (h; kappa) and a velocity V = (v; Omega) are elements of the Lie algebra; a stress Sigma =
+(n; m) is an element of the dual space. Components are (h1, h2, kappa3), (v1, v2, Omega3) and (n1, n2, m3) in
+the plane, all six in space. With ' = d/du the second formulation of Sec. III reads
 
     dE/dt = D_E V = V' + ad_E V,                        ad_E V      = (kappa x v + h x Omega; kappa x Omega)
     Gamma V = D*_E Sigma = Sigma' + ad*_E Sigma,        ad*_E Sigma = (kappa x n; kappa x m + h x n)
     E = Ebar + C Sigma,     V(0) = 0,     Sigma(1) = (-F, 0, 0; 0, 0, 0)
 
-where <ad*_E Sigma, V> = -<Sigma, ad_E V>. The equations times Sigma and V, integrated, give the energy
-law dU/dt = Sigma(1) V(1) - <Gamma V, V> with U = <Sigma, C Sigma>/2 and Sigma(1) V(1) = -F v1(1).
+where <ad*_E Sigma, V> = -<Sigma, ad_E V>. The products of the equations with Sigma and V, integrated over the
+rod, give the energy law dU/dt = Sigma(1) V(1) - <Gamma V, V> with U = <Sigma, C Sigma>/2 and Sigma(1) V(1) =
+-F v1(1).
 
 Arrays have the shape (3, ...) in the plane and (6, ...) in space. A compliance may be 0, since no formula
 divides by a compliance. `rodsweep.discretization.straight.mixed_form` uses these functions;
@@ -24,27 +25,26 @@ from numpy.typing import NDArray
 from .algebra import ALGEBRAS
 
 Values = NDArray[Any]
-"""Components of a deformation, velocity or stress, real, or complex for complex-step derivatives."""
+"""Components of a deformation, velocity or stress: real, or complex for complex-step derivatives."""
 
 PLANE_COMPONENTS = [0, 1, 5]
 """Indices of the three components of se(2) among the six components of se(3)."""
 
 
 def ad(E: Values, V: Values) -> Values:
-    """ad_E V of two elements E and V of se(2) or se(3), (3, ...) or (6, ...); the shapes broadcast."""
+    """ad_E V of two elements E and V of se(2) or se(3), (3, ...) or (6, ...) each; the shapes broadcast."""
     out = np.zeros(np.broadcast(E, V).shape, np.result_type(E, V))
     for a, b, c, sign in ALGEBRAS[len(E)].terms:
-        # The index with ... makes the output argument a view for scalar components too; out[a] would be a
-        # copy.
+        # out[a, ...] is a view also for scalar components; out[a] would be a copy.
         (np.add if sign > 0 else np.subtract)(out[a], E[b] * V[c], out[a, ...])
     return out
 
 
 def coad(E: Values, Sigma: Values) -> Values:
-    """ad*_E Sigma of a deformation E and a stress Sigma, both (3, ...) in the plane or (6, ...) in space."""
+    """ad*_E Sigma of a deformation E and a stress Sigma, (3, ...) each in the plane or (6, ...) in space."""
     out = np.zeros(np.broadcast(E, Sigma).shape, np.result_type(E, Sigma))
     for a, b, c, sign in ALGEBRAS[len(E)].terms:
-        # Minus the transpose of `ad`: work of the stress is invariant under rigid motions.
+        # ad* is minus the transpose of `ad`.
         (np.subtract if sign > 0 else np.add)(out[c], E[b] * Sigma[a], out[c, ...])
     return out
 
@@ -52,7 +52,8 @@ def coad(E: Values, Sigma: Values) -> Values:
 def elastic_force(E: Values, Sigma: Values, dSigma: Values) -> Values:
     """Elastic force and moment per length, D*_E Sigma = dSigma + ad*_E Sigma, in k3/L^3 and k3/L^2.
 
-    E: deformation; Sigma: stress; dSigma: derivative of Sigma with respect to u; each (3, ...) or (6, ...).
+    E: deformation. Sigma: stress. dSigma: derivative of Sigma with respect to u. Each has the shape (3, ...)
+    or (6, ...).
     """
     return dSigma + coad(E, Sigma)
 
@@ -60,8 +61,8 @@ def elastic_force(E: Values, Sigma: Values, dSigma: Values) -> Values:
 class Material(NamedTuple):
     """Coefficients of the nonlinear balance of one rod under its tip force F.
 
-    compliance: diagonal of C. drag: diagonal of Gamma. rest: deformation E of the straight loaded rod. Each
-    array has the shape (3,) or (6,) for a uniform rod, and (3, nodes + 1) for other rods.
+    compliance: diagonal of C. drag: diagonal of Gamma. rest: deformation E of the straight rod under the
+    force. Each array has the shape (3,) or (6,) for a uniform rod, and (3, nodes + 1) for other rods.
     """
 
     compliance: Values
@@ -71,7 +72,7 @@ class Material(NamedTuple):
 
     @property
     def straight(self) -> Values:
-        """Ebar, the deformation of the undeformed rod: (1, 0, 0) or (1, 0, 0; 0, 0, 0)."""
+        """Ebar, the deformation of the rod without load: (1, 0, 0) or (1, 0, 0; 0, 0, 0)."""
         return first_component(1.0, len(self.drag))
 
     @property
@@ -84,23 +85,29 @@ class Material(NamedTuple):
         return _along(self.straight, Sigma) + _along(self.compliance, Sigma) * Sigma
 
     def velocity(self, Sigma: Values, dSigma: Values) -> Values:
-        """Velocity V = Gamma^-1 D*_E Sigma, (3, ...) or (6, ...), for nonzero drags.
+        """Velocity V = Gamma^-1 D*_E Sigma, (3, ...) or (6, ...). All drags must be nonzero.
 
-        Sigma: stress; dSigma: derivative of Sigma with respect to u.
+        Sigma: stress. dSigma: derivative of Sigma with respect to u.
         """
         return elastic_force(self.strain(Sigma), Sigma, dSigma) / _along(self.drag, Sigma)
 
     def energy(self, Sigma: Values) -> Values:
-        """Elastic energy per length, Sigma C Sigma/2, in k3/L^2; Sigma: stress, (3, ...) or (6, ...)."""
+        """Elastic energy per length, Sigma C Sigma/2, in k3/L^2, shape (...). Sigma: stress, (3, ...) or
+        (6, ...).
+        """
         return (_along(self.compliance, Sigma) * Sigma * Sigma).sum(axis=0) / 2
 
     def dissipation(self, V: Values) -> Values:
-        """Power per length lost to the fluid, V Gamma V, in k3/(L^2 tau2); V: velocity, (3 or 6, ...)."""
+        """Dissipated power per length, V Gamma V, in k3/(L^2 tau2), shape (...). V: velocity, (3, ...) or
+        (6, ...).
+        """
         return (_along(self.drag, V) * V * V).sum(axis=0)
 
 
 def in_space(plane: Values) -> Values:
-    """Embedding in se(3) or its dual, (6, ...), of the element `plane` of se(2) or its dual, (3, ...)."""
+    """Embedding in se(3) or its dual space, (6, ...), of an element `plane` of se(2) or its dual space,
+    (3, ...).
+    """
     space = np.zeros((6, *plane.shape[1:]), plane.dtype)
     space[PLANE_COMPONENTS] = plane
     return space
@@ -114,5 +121,7 @@ def first_component(number: float, size: int) -> Values:
 
 
 def _along(diagonal: Values, field: Values) -> Values:
-    """The diagonal of C or Gamma, (d,) or (d, nodes), reshaped to broadcast with `field`, (d, ..., nodes)."""
+    """The diagonal of C or Gamma, (d,) or (d, nodes), reshaped to broadcast against `field`,
+    (d, ..., nodes).
+    """
     return diagonal.reshape(len(diagonal), *(1,) * (field.ndim - diagonal.ndim), *diagonal.shape[1:])

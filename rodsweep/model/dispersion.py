@@ -4,8 +4,8 @@ A wave exp(i kappa u) with K = kappa^2 grows at the root w(K) of
 
     gamma3 c2 w^2 + [(c2 + gamma3) K + g nu] w + K^2 - F g K = 0.
 
-The largest growth rate suggests where to search for eigenvalues of the finite rod; the wave number suggests
-the mesh. Neither claims that an eigenvalue of the finite rod is near.
+The largest growth rate is used as a start of the search for eigenvalues of the finite rod, its wave number
+for the choice of the mesh. Both are estimates only.
 """
 
 from functools import lru_cache
@@ -18,20 +18,21 @@ from .material.build import Build, LocalCoefficients
 from .rod import Rod
 
 SAMPLE_COUNT = 64
-"""Number of samples of K = kappa^2, at equal ratios. Neighbours differ by 13 %, enough for an estimate."""
+"""Number of samples of K = kappa^2, with equal ratios of successive samples. A ratio of 1.15 suffices for an
+estimate."""
 SAMPLES_PER_INTERVAL = 33
-"""Number of points in each interval between two breaks of an arm's profile at which local waves are
-evaluated."""
+"""Number of points between two neighbouring breaks of an arm's profile at which local waves are computed."""
 CACHED_ARM_COUNT = 16
-"""Number of arms, or builds, whose latest results the caches of this module hold."""
+"""Maximum number of arms, and of builds, in the caches of this module."""
 MIN_K_FRACTION = 1e-4
-"""Smallest sample of K = kappa^2, divided by F g. Every wave with K > F g decays."""
+"""Ratio K/(F g) of the smallest sample of K = kappa^2. Every wave with K > F g decays."""
 K_FRACTIONS: Array = MIN_K_FRACTION ** (1 - np.arange(SAMPLE_COUNT) / SAMPLE_COUNT)
-"""Samples of K = kappa^2 divided by F g, increasing, (SAMPLE_COUNT,)."""
+"""Ratios K/(F g) of all samples of K = kappa^2, increasing, (SAMPLE_COUNT,)."""
 
 
 def most_amplified_wave(rod: Rod) -> tuple[float, float]:
-    """(growth rate in 1/tau2, wave number in 1/L) of the most amplified wave; (0, 0) if all waves decay.
+    """Returns (growth rate in 1/tau2, wave number in 1/L) of the most amplified wave; (0, 0) if all waves
+    decay.
 
     The wave travels on an infinitely long rod with the coefficients of the uniform `rod`. The function is not
     compiled, so that `rodsweep check` need not load numba.
@@ -46,9 +47,10 @@ def most_amplified_wave(rod: Rod) -> tuple[float, float]:
 
 
 class SampledArm(NamedTuple):
-    """Midpoints of short intervals of u along an arm, with the local coefficients at the midpoints.
+    """Midpoints of short intervals of u along an arm, and the local coefficients at the midpoints.
 
-    points: midpoints, (points,), none of them a break of the profile. weights: interval lengths, (points,).
+    points: midpoints, (points,); no midpoint is a break of the profile. weights: interval lengths, (points,).
+    local: coefficients at the midpoints.
     """
 
     points: Array
@@ -58,14 +60,16 @@ class SampledArm(NamedTuple):
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)
 def sampled(rod: Rod) -> SampledArm:
-    """Sample points of the arm `rod` and its local coefficients there, cached by rod."""
+    """Sample points of the arm `rod` and the local coefficients at these points, cached."""
     points, weights = _points_of(rod.build)
     return SampledArm(points, weights, rod.local(points))
 
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)
 def _points_of(build: Build) -> tuple[Array, Array]:
-    """(midpoints, lengths) of short intervals of u between the breaks of a profile, both (points,)."""
+    """Returns (midpoints, lengths) of short intervals of u between the breaks of a profile, (points,)
+    each.
+    """
     lengths = np.diff(build.breaks)
     inside = (np.arange(SAMPLES_PER_INTERVAL) + 0.5) / SAMPLES_PER_INTERVAL
     points = (build.breaks[:-1, None] + lengths[:, None] * inside).ravel()
@@ -74,9 +78,11 @@ def _points_of(build: Build) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)
 def local_growth(rod: Rod) -> tuple[Array, Array]:
-    """(growth rates, wave numbers) of the most amplified wave at each point of `sampled(rod)`: (points,).
+    """Returns (growth rates, wave numbers) of the most amplified wave at each point of `sampled(rod)`,
+    (points,) each.
 
-    A local wave travels on an infinitely long uniform rod with the coefficients of the arm at the point.
+    A local wave travels on an infinitely long uniform rod with the coefficients of the arm at the point. If
+    all waves at a point decay, both numbers are 0.
     """
     nu, c2, c3, gamma2, gamma3, g = sampled(rod).local
     top = np.maximum(rod.F * c3 * g, 0.0)
@@ -87,7 +93,7 @@ def local_growth(rod: Rod) -> tuple[Array, Array]:
 
 
 def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:
-    """(K, growth rates) of the sampled waves, both (..., SAMPLE_COUNT), for k3 = gamma2 = 1.
+    """Returns (K, growth rates) of the sampled waves, (..., SAMPLE_COUNT) each, for k3 = gamma2 = 1.
 
     A decaying wave has the growth rate 0. top: F g. relaxation: g nu. All arguments are numbers, or arrays
     (n, 1) for n rods.
@@ -95,7 +101,7 @@ def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Arra
     square = c2 * gamma3
     K = top * K_FRACTIONS
     with np.errstate(all="ignore"):
-        # Growth rates as functions of K = q^2: waves with K < F g grow.
+        # Waves with K < F g grow.
         drive = K * (top - K)
         linear = (c2 + gamma3) * K + relaxation
         spread = np.sqrt(linear**2 + 4 * square * drive)

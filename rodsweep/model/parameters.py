@@ -1,7 +1,7 @@
-"""The table of parameters: name, unit, range, symbol and meaning of each, stated once.
+"""The table of parameters: name, unit, range, symbol and meaning of every parameter.
 
 Axes of a config, headers of point lists, range checks, dimensions and units in result files, and labels of
-figures come from this table.
+figures are made from this table.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -11,7 +11,7 @@ from typing import TypeVar
 
 Decorated = TypeVar("Decorated")
 STIFFNESSES = ("k1", "k2")
-"""Names of the stiffnesses. The equations contain each stiffness as its compliance, 1/value."""
+"""Names of the stiffnesses k. The equations contain the compliances 1/k."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Range:
     allowed."""
 
     def first_outside(self, values: Iterable[float]) -> float | None:
-        """The first number in `values` outside the range; None if the range contains all values."""
+        """The first number in `values` that lies outside the range; None if the range contains all values."""
         return next((value for value in map(float, values) if not self.contains(value)), None)
 
 
@@ -42,20 +42,21 @@ class Parameter:
     unit: str
     meaning: str
     remark: str = ""
-    """Text that result files append to the meaning of the parameter."""
+    """Text that is appended to the meaning of the parameter in result files."""
     allowed: Range
     linear: bool = True
     """Whether the transverse linear problem contains the parameter."""
     rigid: str = ""
     """Adjective for a rod whose parameter is inf, like "inextensible"; empty if inf is not allowed."""
     optional: bool = False
-    """Whether a result file contains the parameter only if the config names the parameter."""
+    """Whether a result file contains the parameter only if the config contains it."""
     default: float | None = None
-    """Value of a parameter that the config does not name; None for a parameter that a grid must name."""
+    """Value of the parameter if a config does not contain it; None for a parameter that every grid must
+    contain."""
     scaled_names: tuple[str, ...] = ()
     """Names of the stiffnesses or drags that the value multiplies; empty for a load, a stiffness or a drag. A
-    parameter scales either stiffnesses or drags, so that the equations are affine in the parameter's
-    coordinate, as the covering of a path requires."""
+    parameter may multiply either stiffnesses or drags, not both, because the covering of a path requires
+    equations that are affine in the coordinate of the parameter."""
 
     def __post_init__(self) -> None:
         """Raises ValueError if the parameter scales both stiffnesses and drags."""
@@ -66,22 +67,26 @@ class Parameter:
 
     @property
     def by_compliance(self) -> bool:
-        """Whether the parameter enters the equations as 1/value, which may be 0, and not as the value."""
+        """Whether the coordinate of the parameter is 1/value; then the value may be inf."""
         return bool(self.rigid or set(self.scaled_names) & set(STIFFNESSES))
 
     def coordinate(self, value: float) -> float:
-        """The quantity in which the equations are affine: 1/value for a stiffness, otherwise the value."""
+        """The coordinate, in which the equations are affine: 1/value for a stiffness, otherwise the value."""
         return 1 / value if self.by_compliance else value
 
     def value(self, coordinate: float) -> float:
-        """Value of the parameter from its `coordinate`: 1/coordinate for a stiffness, inf at coordinate 0."""
+        """Value of the parameter with the given coordinate: 1/coordinate for a stiffness (inf for 0),
+        otherwise the coordinate.
+        """
         if self.by_compliance:
             return 1 / coordinate if coordinate else inf
         return coordinate
 
     @property
     def neutral(self) -> float:
-        """The parameter's default; without a default, the value at coordinate 0, valid for every rod."""
+        """The default of the parameter; without a default, the value at coordinate 0, which is valid for
+        every rod.
+        """
         return self.value(0.0) if self.default is None else self.default
 
     @property
@@ -90,19 +95,19 @@ class Parameter:
         return self.meaning + self.remark
 
     def require(self, value: float) -> None:
-        """Raises ValueError for a value outside the parameter's range. The check F < k1 is left to `Rod`."""
+        """Raises ValueError for a value outside the range of the parameter. `Rod` checks F < k1."""
         if not self.allowed.contains(value):
             raise ValueError(f"{self.name} = {value} is not {self.allowed.phrase}")
 
 
 SMALLEST_TAPER = 0.01
 LARGEST_TAPER = 100.0
-"""Largest taper; SMALLEST_TAPER is the smallest. Taper 0 is excluded: a pointed tip has no stiffness against
-the force."""
+"""SMALLEST_TAPER, LARGEST_TAPER: range of the taper. Taper 0 is excluded, because a pointed tip has no
+stiffness."""
 
 
 def stiffness(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
-    """Table row of a stiffness, which may be inf; `rigid`: adjective for a rod of infinite stiffness."""
+    """The table row of a stiffness that may be inf. rigid: adjective for a rod with infinite stiffness."""
     return Parameter(
         name=name,
         symbol=symbol,
@@ -170,26 +175,31 @@ NONLINEAR_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if n
 LINEAR_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if PARAMETERS[name].linear)
 """Names of the parameters of the transverse linear problem, without the optional parameters."""
 OPTIONAL_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.optional)
-"""Names of the parameters that a result file contains only if the config names them."""
+"""Names of the parameters that a result file contains only if the config contains them."""
 SCALINGS = tuple(
     (name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scaled_names
 )
 """All pairs (parameter name, name of a stiffness or drag that the parameter multiplies)."""
 TRANSVERSE_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
-"""Names of all parameters, optional parameters included, that the transverse linear problem may contain."""
+"""Names of all parameters of the transverse linear problem, optional parameters included."""
 RANGE_CHECKS = [(name, parameter.allowed.contains) for name, parameter in PARAMETERS.items()]
-"""(name, range check) of each parameter, prepared once because sweeps create many rods."""
+"""(name, predicate) of every parameter; the predicate is True for values in the range. The list is prepared
+once, because sweeps create many rods."""
 CRUSHING = ("F", "k1")
-"""Names of the force and of the stretch stiffness: the force F >= k1 crushes a rod of linear material."""
+"""Names of the force and of the stretch stiffness: a rod of linear material is crushed if F >= k1."""
 
 
 def all_but(varied: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
-    """The parameter names in `names` except `varied`; by default those of the transverse linear problem."""
+    """All names in `names` except `varied`. names: parameter names, by default the parameters of the
+    transverse linear problem.
+    """
     return tuple(name for name in names if name != varied)
 
 
 def with_parameters(cls: type[Decorated]) -> type[Decorated]:
-    """Class decorator: adds each parameter in `PARAMETERS` as a field with its default, in this order."""
+    """Class decorator that adds every parameter of `PARAMETERS`, in this order, as a field with its
+    default.
+    """
     own = dict(cls.__annotations__)
     cls.__annotations__ = dict.fromkeys(PARAMETERS, float) | {
         n: a for n, a in own.items() if n not in PARAMETERS

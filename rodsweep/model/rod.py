@@ -1,7 +1,7 @@
 """The rod: all parameters of the table, and the resulting coefficients of the equations.
 
-`Rod` is the only description of a rod. Equations read `coefficients` and `material`, never a stiffness or a
-drag by the name of a parameter, because other parameters may multiply the stiffness or drag.
+Equations use `coefficients` and `material` of a `Rod`, never a stiffness or drag by the name of its
+parameter, because other parameters may multiply the stiffness or drag.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,7 +19,7 @@ from .scaling import compression_factor, scaled
 
 
 class Crushed(ValueError):
-    """The follower force is not below the force that crushes the rod."""
+    """The follower force is not smaller than the force that crushes the rod."""
 
 
 class NotUniform(ValueError):
@@ -36,7 +36,7 @@ class Coefficients(NamedTuple):
 
 
 def coefficients_of(values: Mapping[str, Any]) -> Coefficients:
-    """Coefficients for parameter values by name, floats or arrays (n,) for n rods; checks no range."""
+    """Coefficients for parameter values by name, floats or arrays (n,) for n rods. Ranges are not checked."""
     own = scaled(values)
     F = own["F"]
     k1 = own["k1"]
@@ -46,10 +46,10 @@ def coefficients_of(values: Mapping[str, Any]) -> Coefficients:
 @dataclass(frozen=True, slots=True, kw_only=True)
 @with_parameters
 class Rod:
-    """A rod under its follower force: one point of parameter space, with every parameter of the table.
+    """A rod under its follower force, with every parameter of the table.
 
     Every parameter is a field; annotations exist only for parameters that code uses by name. build:
-    constitutive law and profile. Raises ValueError for a parameter outside its range, Crushed for a force
+    constitutive law and profile. Raises ValueError for a parameter outside its range, and Crushed for a force
     that is not below `crushing_force`.
     """
 
@@ -70,11 +70,11 @@ class Rod:
             values[name] = value = getattr(self, name)
             if not contains(value):
                 PARAMETERS[name].require(value)
-        # The dataclass is frozen; fields computed from others are set once, here.
+        # The dataclass is frozen; computed fields are set here only.
         object.__setattr__(self, "values", values)
         coefficients = None
         if self.build.standard and self.taper == 1:
-            # Floats only: for a whole number all kernels would be compiled anew.
+            # Kernels are compiled for floats; an int would cause another compilation.
             coefficients = Coefficients(*map(float, coefficients_of(values)))
         object.__setattr__(self, "_coefficients", coefficients)
         if coefficients is None and not self.crushing_force > self.F:
@@ -84,18 +84,18 @@ class Rod:
 
     @property
     def coefficients(self) -> Coefficients:
-        """Coefficients of the transverse operator; NotUniform for a varying arm or a nonlinear law."""
+        """Coefficients of the transverse operator. Raises NotUniform for a varying arm or a nonlinear law."""
         if self._coefficients is None:
             raise NotUniform(f"{self} is not a uniform rod of linear material")
         return self._coefficients
 
     def local(self, u: Array) -> LocalCoefficients:
-        """Coefficients of the transverse operator at points u, (points,), none a break of the profile."""
+        """Coefficients of the transverse operator at points u, (points,), away from breaks of the profile."""
         return self.build.local(self.F, scaled(self.values), u)
 
     @staticmethod
     def local_of_all(rods: Sequence["Rod"], u: Array) -> LocalCoefficients:
-        """`local` of n rods with the same build at points u; each array has the shape (n, *u.shape)."""
+        """Results of `local` at points u of n rods with the same build, as arrays (n, *u.shape)."""
         if len(rods) == 1:
             return LocalCoefficients(*(x[None] for x in rods[0].local(u)))
         shape = (len(rods), *(1,) * u.ndim)
@@ -106,7 +106,7 @@ class Rod:
 
     @property
     def crushing_force(self) -> float:
-        """The force that crushes the weakest section, in k3/L^2; inf if no force crushes it."""
+        """The force that crushes the weakest section, in k3/L^2; inf if no force crushes the section."""
         return self.build.relative_crushing_force(self.taper) * self.stretch_stiffness
 
     @property
@@ -118,17 +118,17 @@ class Rod:
 
     @property
     def uniform(self) -> bool:
-        """Whether stiffnesses and drags are the same all along the rod."""
+        """Whether stiffnesses and drags are constant along the rod."""
         return self.taper == 1 and self.build.profile is None
 
     @property
     def standard(self) -> bool:
-        """Whether the rod is uniform and of linear material, so that D has its closed form."""
+        """Whether the rod is uniform and of linear material; D then has a closed form."""
         return self._coefficients is not None
 
     @property
     def equivalent(self) -> tuple["Rod", float]:
-        """(rod of linear material, rate): eigenvalues of this rod are `rate` times those of the linear rod.
+        """Returns (linear rod, rate). Eigenvalues of this rod are `rate` times eigenvalues of the linear rod.
 
         With the bending factor K = B(nu) of this rod's law, the linear rod has the coefficients
         (F/K, nu, c2 K, gamma3), and rate = K. Raises NotUniform for an arm that varies.
@@ -137,7 +137,7 @@ class Rod:
             raise NotUniform(f"{self} is not uniform")
         law = self.build.constitutive_law
         shortening = float(law.shortening(self.F * self.c1))
-        # Units of K k3 make the bending stiffness 1 again; the rate is that of time, gamma2 L^4/(K k3).
+        # With the unit K k3 the bending stiffness is 1; the unit of time is then gamma2 L^4/(K k3).
         K = float(law.bending(1 - shortening))
         F = self.F / K
         k1 = F / shortening if shortening else self.stretch_stiffness / K
@@ -145,7 +145,7 @@ class Rod:
 
     @property
     def linear(self) -> "Rod":
-        """The rod with equal parameters of the transverse linear problem, and defaults of all other
+        """The rod with the same parameters of the transverse linear problem, and defaults of all other
         parameters.
         """
         return Rod(**{name: self.values[name] for name in TRANSVERSE_PARAMETERS}, build=self.build)
@@ -155,11 +155,11 @@ class Rod:
         return float(PARAMETERS[name].coordinate(getattr(self, name)))
 
     def with_coordinate(self, name: str, coordinate: float) -> "Rod":
-        """The rod with another coordinate of the parameter `name`; ValueError for an invalid value."""
+        """The rod with another coordinate of the parameter `name`; ValueError for an invalid coordinate."""
         return self.changed(**{name: PARAMETERS[name].value(coordinate)})
 
     def changed(self, **values: float) -> "Rod":
-        """The rod with other parameter values, given by name; ValueError for an invalid value."""
+        """The same rod with the given parameter values, by name. Raises ValueError for an invalid value."""
         # `dataclasses.replace` takes a third longer.
         return Rod(**{**self.values, **values}, build=self.build)
 
@@ -242,8 +242,8 @@ class Rod:
     def _slopes(self, name: str) -> dict[str, float]:
         """Nonzero derivatives of force, compliances and drags with respect to the coordinate of `name`.
 
-        Keys are F, k1, k2, gamma1 and gamma3; a stiffness stands for its compliance. Force, compliances and
-        drags are products of coordinates, so a derivative is the product of the other factors.
+        Keys are F, k1, k2, gamma1 and gamma3; keys of stiffnesses contain derivatives of compliances. Force,
+        compliances and drags are products of coordinates: a derivative is the product of the other factors.
         """
         others = scaled({**self.values, name: 1.0})
         changing = PARAMETERS[name].scaled_names or (name,)

@@ -13,11 +13,12 @@ from .parameters import SCALINGS
 
 
 def scaled(values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Force, stiffnesses and drags at the base, by name, from the parameter `values` by name.
+    """Force, stiffnesses and drags at the base, by name, from the parameter values by name.
 
-    Each is the value of the parameter of the same name times the values of the parameters that scale it, see
-    `Parameter.scaled_names`.
+    A result is the value of the parameter of the same name, times the values of all parameters that multiply
+    this parameter, see `Parameter.scaled_names`.
     """
+
     if not SCALINGS:
         return values
     own = dict(values)
@@ -29,7 +30,7 @@ def scaled(values: Mapping[str, Any]) -> Mapping[str, Any]:
 def compression_factor(F: Any, k1: Any) -> Any:
     """Stretch nu = 1 - F/k1 of the straight rod of linear material, for floats or arrays (...,).
 
-    There is no cancellation as F approaches k1. nu = 1 for k1 = inf.
+    The formula has no cancellation for F near k1. nu = 1 for k1 = inf.
     """
     if isinstance(k1, np.ndarray):
         with np.errstate(invalid="ignore"):  # inf/inf where k1 = inf

@@ -1,4 +1,4 @@
-"""Conversion of quantities like "10 cm" or "1.4 Pa s" to SI. The only importer of pint, at first use."""
+"""Conversion of quantities like "10 cm" or "1.4 Pa s" to SI. Only this module imports pint, at first use."""
 
 import math
 import re
@@ -15,29 +15,31 @@ if TYPE_CHECKING:
 Given = float | str
 """A quantity as the user writes it: a text with a unit, or a number in SI units."""
 NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.ASCII)
-"""Matches a text of a number and a unit, like "10 cm". The unit may be empty."""
+"""Pattern of a number and a unit, like "10 cm". The unit may be empty."""
 UNIT_TOKEN = re.compile(r"[A-Za-zµμ]+|(?:\^|\*\*)?-?[1-4](?!\d)|[²³⁴]|[\s*/]")
-"""Matches one token of a unit: a name, an exponent, a product or quotient sign. Text that is no sequence of
-such tokens must not reach pint, which would evaluate the text and might never return."""
+"""Pattern of one token of a unit: a name, an exponent, a product or quotient sign. Only sequences of tokens
+are passed to pint, which would evaluate any other text and might never return."""
 POWER_OF_POWER = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
-"""Matches the start of a power of a power, like 2**2**2, which pint would evaluate."""
+"""Pattern of the start of a power of a power, like 2**2**2, which pint would evaluate."""
 MAX_UNIT_LENGTH = 40
 """Maximum number of characters of a unit. Longer units are refused."""
 CONVERSION_CACHE_SIZE = 1000
 """Maximum number of cached conversion factors. A config has about ten different units."""
 COMMON_UNITS = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN", "kg/m^3", "g/cm^3", "mbar")
-"""Units to suggest to a user whose text differs from the unit only in blanks or capital letters."""
+"""Units that are suggested if the user's text differs from the unit only in blanks or capital letters."""
 MULTIPLE_OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
-"""Matches a load as a multiple of the flutter threshold, "1.2 of flutter" or "120 % of flutter"."""
+"""Pattern of a load as a multiple of the flutter threshold, "1.2 of flutter" or "120 % of flutter"."""
 PERCENT_FROM_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
-"""Matches a load as a distance from the flutter threshold, "20 % above flutter"."""
+"""Pattern of a load as a distance from the flutter threshold, "20 % above flutter"."""
 KINEMATIC_VISCOSITY = "is a kinematic viscosity; multiply it by the density of the fluid"
 """End of the message on a viscosity in units of length^2/time."""
 
 
 @cache
 def registry() -> "UnitRegistry":
-    """pint's registry of units, loaded at first use; EnvironmentIncomplete if pint is not installed."""
+    """pint's registry of units, loaded at first use. Raises EnvironmentIncomplete if pint is not
+    installed.
+    """
     try:
         from pint import UnitRegistry
     except ModuleNotFoundError:
@@ -46,7 +48,9 @@ def registry() -> "UnitRegistry":
 
 
 def split_quantity(given: str) -> tuple[float, str]:
-    """(number, unit) of a text like "10 cm"; (nan, "") for a text that does not start with a number."""
+    """Returns (number, unit) of a text like "10 cm"; (nan, "") for a text that does not start with a
+    number.
+    """
     found = NUMBER_AND_UNIT.fullmatch(given)
     if not found:
         return math.nan, ""
@@ -54,7 +58,7 @@ def split_quantity(given: str) -> tuple[float, str]:
 
 
 def in_si(name: str, given: Given, unit: str, example: str) -> float:
-    """Value of the quantity `name`, which the user wrote as `given`, in the SI unit `unit`.
+    """Value, in the SI unit `unit`, of the quantity `name`, which the user wrote as `given`.
 
     example: a valid text, for messages. Raises InputError, beginning with the name, for an invalid quantity.
     """
@@ -74,7 +78,11 @@ def in_si(name: str, given: Given, unit: str, example: str) -> float:
 
 
 def _number(name: str, given: Any, unit: str, allowed: str) -> float:
-    """Value in the SI unit `unit` of a number in SI or of a pint quantity; InputError for other objects."""
+    """Value in the SI unit `unit` of `given`, a number in SI or a pint quantity. Raises InputError for other
+    objects.
+
+    name, allowed: name of the quantity and allowed texts, for messages.
+    """
     if hasattr(given, "to_base_units"):
         return _number(name, given.magnitude, unit, allowed) * factor(
             f"{name} = '{given!s:.60}'", f"{given.units:C}", unit, allowed
@@ -113,7 +121,7 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
         if known and unit == "Pa*s" and units.Quantity(1.0, written).check("[length]**2/[time]"):
             why = KINEMATIC_VISCOSITY
         raise InputError(f"{subject} {why}; {_suggestion(written, unit)}write {allowed}") from None
-    except Exception as error:  # what pint's parser raises on nonsense is of many kinds
+    except Exception as error:  # pint's parser raises errors of many types for invalid units
         raise InputError(
             f"{subject} has the unit '{written}', which is not understood; write {allowed}"
         ) from error
@@ -126,7 +134,9 @@ def _ratio(written: str, unit: str) -> float:
 
 
 def _suggestion(written: str, unit: str) -> str:
-    """The text "did you mean 'kPa'? " for a misspelt common unit with the dimension of `unit`; else ""."""
+    """The text "did you mean 'kPa'? " for a misspelt common unit with the dimension of `unit`; otherwise
+    "".
+    """
     squeezed = "".join(written.split()).casefold()
     for common in COMMON_UNITS:
         if "".join(common.split()).casefold() == squeezed and registry()(common).check(registry()(unit)):
@@ -140,7 +150,7 @@ def unit_of(given: Given, default: str) -> str:
 
 
 def written_in(value: float, unit: str, si: str) -> float:
-    """The value in `unit` of a quantity that is `value` in the SI unit `si`."""
+    """Value in `unit` of the quantity that has the value `value` in the SI unit `si`."""
     return value / factor("", unit, si, "")
 
 
@@ -159,12 +169,12 @@ def share_of_flutter(given: Given) -> float | None:
 
 
 def compact(value: float, unit: str) -> tuple[float, str]:
-    """(factor, prefixed unit) such that `value` in the SI unit `unit` is factor * value in the prefixed unit.
+    """Returns (factor, prefixed unit): `value` in the SI unit `unit` is factor * value in the prefixed unit.
 
-    The prefix makes the number readable: compact(0.002, "m") is (1000.0, "mm").
+    The SI prefix makes the number readable: compact(0.002, "m") is (1000.0, "mm").
     """
     if not value or not math.isfinite(value):
         return 1.0, unit
     readable = registry().Quantity(value, unit).to_compact()
-    # Releases of pint differ in the sign for micro.
+    # Releases of pint use different characters for micro.
     return float(readable.magnitude) / value, f"{readable.units:~}".replace("\u03bc", "\u00b5")

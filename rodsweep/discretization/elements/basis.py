@@ -6,16 +6,19 @@ from ...arrays import Array
 
 
 def barycentric_weights(nodes: Array) -> Array:
-    """Barycentric weights 1/prod_(j != i) (x_i - x_j) of the nodes x, (n,), scaled to largest modulus 1."""
+    """Barycentric weights 1/prod_(j != i) (x_i - x_j) of the nodes x, (n,), over the largest modulus."""
     difference = nodes[:, None] - nodes[None, :]
     np.fill_diagonal(difference, 1.0)
-    # A product of many differences would underflow; only ratios of weights count.
+    # A product of many differences would underflow. Only ratios of weights are used, so the weights are
+    # scaled.
     logarithm = -np.log(np.abs(difference)).sum(axis=1)
     return np.sign(difference).prod(axis=1) * np.exp(logarithm - logarithm.max())
 
 
 def interpolation(nodes: Array, points: Array) -> Array:
-    """Matrix from values at `nodes`, (n,), to values of the interpolant at `points`, (m,): shape (m, n)."""
+    """Matrix (m, n) from values at `nodes`, (n,), to values of the interpolating polynomial at `points`,
+    (m,).
+    """
     difference = points[:, None] - nodes[None, :]
     hit = difference == 0
     difference[hit] = 1.0
@@ -28,14 +31,15 @@ def interpolation(nodes: Array, points: Array) -> Array:
 
 
 def differentiation(nodes: Array) -> Array:
-    """Matrix from values at `nodes`, (n,), to derivatives of the interpolant there, (n, n); rows sum to
-    exactly 0.
+    """Matrix (n, n) from values at `nodes`, (n,), to derivatives of the interpolating polynomial at `nodes`.
+    Every row sums to 0.
     """
     weights = barycentric_weights(nodes)
     difference = nodes[:, None] - nodes[None, :]
     np.fill_diagonal(difference, 1.0)
     matrix = weights[None, :] / weights[:, None] / difference
     np.fill_diagonal(matrix, 0.0)
-    # The derivative of a constant is 0 to the last bit, which loses less than the formula for the diagonal.
+    # With this diagonal the derivative of a constant is exactly 0; the formula for the diagonal has larger
+    # rounding errors.
     np.fill_diagonal(matrix, -matrix.sum(axis=1))
     return matrix

@@ -1,8 +1,8 @@
 """Radau IIA collocation in time: on each time interval the state is a polynomial in time.
 
-The polynomial satisfies the equations at the s collocation nodes, the last of which is the end of the
-interval. The error at the ends of intervals is of order 2 s - 1, also for algebraic unknowns, which have no
-time derivative.
+The polynomial satisfies the equations at the s collocation nodes; the last node is the end of the interval.
+The error at the ends of intervals is of order 2 s - 1, also for algebraic unknowns, which have no time
+derivative.
 """
 
 from dataclasses import dataclass
@@ -21,8 +21,8 @@ class RadauSettings:
     """Settings for the collocation nodes of Radau IIA."""
 
     newton_steps: int = 3
-    """Number of Newton steps to the nodes, from the eigenvalues of a companion matrix, whose errors are
-    1e-15. The first step already reaches rounding error."""
+    """Number of Newton steps that correct the nodes from the eigenvalues of a companion matrix, which have
+    errors of 1e-15. The first step already reaches rounding error."""
 
 
 RADAU = RadauSettings()
@@ -44,16 +44,14 @@ class Collocation(NamedTuple):
         return len(self.nodes)
 
     def evaluation(self, at: Array) -> Array:
-        """Matrix from values at 0 and at the nodes to values at the times `at` in [0, 1], (m,): shape
-        (m, s + 1).
-        """
+        """Matrix (m, s + 1) from values at 0 and the nodes to values at the times `at`, (m,), in [0, 1]."""
         return interpolation(np.append(0.0, self.nodes), at)
 
 
 @cache
 def radau_method(stages: int) -> Collocation:
-    """The Radau IIA method with s = `stages` stages; its nodes are the zeros of P_(s-1) - P_s, mapped to [0,
-    1].
+    """The Radau IIA method with s = `stages` stages; its nodes are the zeros of P_(s-1) - P_s, mapped to
+    [0, 1]. P_s: Legendre polynomial.
     """
     series = np.zeros(stages + 1)
     series[-2:] = 1.0, -1.0
@@ -63,8 +61,8 @@ def radau_method(stages: int) -> Collocation:
     x[-1] = 1.0
     moments = np.zeros(stages)
     moments[0] = 1.0
-    # Exact for Legendre polynomials: all integrals but the first vanish.
+    # The weights integrate Legendre polynomials exactly; only the integral of P_0 is nonzero.
     weights = np.linalg.solve(legendre.legvander(x, stages - 1).T, moments)
     D = 2 * differentiation(np.append(-1.0, x))
-    # The equations hold at the stages, not at the start: its row of D is not used.
+    # The equations hold at the stages, not at the start, so the first row of D is not used.
     return Collocation((x + 1) / 2, weights, np.ascontiguousarray(D[1:]))

@@ -14,21 +14,18 @@ from .quadrature import gauss_lobatto
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ElementSettings:
-    """Settings of elements: points just inside their ends, and numbers of meshes and matrices cached in
-    memory.
-    """
+    """Settings of elements: points close to the ends of elements, and maximum sizes of caches."""
 
     end_distance: float = 1e-15
-    """Distance of `Elements.points_inside` from the ends of an element, in L: a few rounding errors of u.
-    With 1e-9 instead, the largest y of cycles next to the Hopf point of a cone was off by 1e-8 on every
-    mesh."""
+    """Distance of the first and last `Elements.points_inside` from the ends of an element, in L: a few
+    rounding errors of u. With 1e-9, the largest y of cycles near the Hopf point of a cone had an error of
+    1e-8 on every mesh."""
     max_meshes: int = 64
-    """Maximum number of meshes, and of matrices of each kind, that are cached; a sweep needs about ten."""
+    """Maximum number of cached meshes, and of cached matrices of each kind; a sweep needs about ten."""
     max_pencils: int = 16
-    """Maximum number of pencils that are cached; for 300 growing modes each takes 10 MB."""
+    """Maximum number of cached pencils; a pencil for 300 growing modes takes 10 MB."""
     max_mesh_pairs: int = 256
-    """Maximum number of pairs of meshes whose interpolation matrix is cached, and of cached lists of
-    edges."""
+    """Maximum number of cached interpolation matrices between two meshes, and of cached lists of edges."""
 
 
 ELEMENTS = ElementSettings()
@@ -36,8 +33,8 @@ ELEMENTS = ElementSettings()
 
 @dataclass(frozen=True)
 class Elements:
-    """Elements of equal order on the rod: element e reaches from edges[e] to edges[e + 1]; edges go from 0 to
-    1.
+    """Elements of equal order on the rod. Element e reaches from edges[e] to edges[e + 1]; edges[0] is 0 and
+    edges[-1] is 1.
     """
 
     edges: tuple[float, ...]
@@ -50,7 +47,7 @@ class Elements:
 
     @property
     def nodes(self) -> int:
-        """Number of nodes without one end of the rod; which end is left out depends on the equations."""
+        """Number of nodes, one end of the rod excluded. The equations determine which end is excluded."""
         return self.elements * self.order
 
     @cached_property
@@ -64,28 +61,29 @@ class Elements:
         inner = (gauss_lobatto(self.order)[0][1:] + 1) / 2
         starts: Array = np.array(self.edges[:-1])
         positions: Array = np.append(0.0, (starts[:, None] + self.lengths[:, None] * inner).ravel())
-        # Edges to the last bit, since jumps of the material are looked up at them.
+        # Nodes at edges must equal the edges exactly, because jumps of the material are compared with these
+        # values.
         positions[self.order :: self.order] = self.edges[1:]
         return positions
 
     @cached_property
     def element_nodes(self) -> NDArray[np.int64]:
-        """Indices of the nodes of every element, (elements, order + 1)."""
+        """Indices of the nodes of every element, (elements, order + 1). Neighbours share a node."""
         return np.arange(self.elements)[:, None] * self.order + np.arange(self.order + 1)
 
     @cached_property
     def points_inside(self) -> Array:
-        """u of the nodes of every element, (elements, order + 1), with its end nodes moved just inside the
-        element.
+        """Coordinates u of the nodes of every element, (elements, order + 1), with the end nodes moved just
+        inside the element.
 
-        At a jump between two elements each element therefore evaluates the coefficient on its own side.
+        At a jump between two elements, each element therefore evaluates a coefficient on its own side.
         """
         edges: Array = np.array(self.edges)[:, None]
         points = edges[:-1] + self.lengths[:, None] * (gauss_lobatto(self.order)[0] + 1) / 2
         return np.clip(points, edges[:-1] + ELEMENTS.end_distance, edges[1:] - ELEMENTS.end_distance)
 
     def evaluation(self, points: Array) -> Array:
-        """Matrix from values at all nodes to values at `points` in [0, 1], (n,): shape (n, nodes + 1)."""
+        """Matrix (n, nodes + 1) from values at all nodes to values at `points`, (n,), in [0, 1]."""
         nodes = gauss_lobatto(self.order)[0]
         matrix = np.zeros((len(points), self.nodes + 1))
         for first, inside, local in self.by_element(points):
@@ -93,9 +91,10 @@ class Elements:
         return matrix
 
     def evaluation_by_element(self, points: Array) -> Array:
-        """Matrix from values at the nodes of every element to values at `points` in [0, 1], (n,).
+        """Matrix (n, elements (order + 1)) from values at the nodes of every element to values at `points`,
+        (n,), in [0, 1].
 
-        Shape (n, elements (order + 1)); a node between two elements has a value in each.
+        A node between two elements has one value for each of the two elements.
         """
         nodes = gauss_lobatto(self.order)[0]
         matrix = np.zeros((len(points), self.element_nodes.size))
@@ -105,10 +104,11 @@ class Elements:
         return matrix
 
     def by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
-        """Yields, for each element with points, (its first node, indices of its points, their coordinates in
-        [-1, 1]).
+        """Yields (first node, indices, coordinates) for each element that contains some of the `points`,
+        (n,).
 
-        points: (n,). A point between two elements belongs to the right element.
+        indices: of the points in the element. coordinates: of these points, from -1 to 1 along the element. A
+        point between two elements belongs to the right element.
         """
         element = np.clip(np.searchsorted(self.edges, points, side="right") - 1, 0, self.elements - 1)
         for e in np.unique(element):
@@ -123,6 +123,6 @@ def equal_edges(elements: int) -> tuple[float, ...]:
 
 
 def halve_elements(edges: tuple[float, ...]) -> tuple[float, ...]:
-    """The edges of the elements after halving every element."""
+    """Edges of the elements after every element between `edges` is halved."""
     middles = [(a + b) / 2 for a, b in zip(edges[:-1], edges[1:], strict=True)]
     return tuple(sorted([*edges, *middles]))

@@ -1,7 +1,7 @@
 """Meshes of the rod with their differentiation matrices, and the shape of a rod from its strains.
 
-Fields are continuous and in P_p on each element, with Lobatto nodes and lumped mass. The shape is theta(u) =
-int Pi, r(u) = int R(theta) (h1, h2).
+Fields are continuous and polynomials of degree p on each element, with Lobatto nodes and lumped mass. The
+shape is theta(u) = int Pi, r(u) = int R(theta) (h1, h2), where R(theta) is the rotation by theta.
 """
 
 from dataclasses import dataclass, field
@@ -18,21 +18,21 @@ from .quadrature import gauss, gauss_lobatto
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReconstructionSettings:
-    """Settings for the quadrature by which the shape of a rod is computed."""
+    """Settings for the quadrature that computes the shape of a rod."""
 
     extra_points: int = 10
-    """Number of Gauss points of an element, minus its order, for the integrals of the shape. Ten suffice if
-    theta turns by up to two radians within an element."""
+    """Number of Gauss points of an element, minus the order of the element, for the integrals of the shape.
+    Ten suffice if theta changes by up to two radians within an element."""
 
 
 RECONSTRUCTION = ReconstructionSettings()
 
 
 class NodeMatrices(NamedTuple):
-    """Matrices on all nodes of a mesh: D, D^T and -D^T W, (nodes + 1, nodes + 1), and the weights W,
-    (nodes + 1,).
+    """Matrices over all nodes of a mesh: D, D^T and -D^T W (`weak`), (nodes + 1, nodes + 1), and the weights
+    W, (nodes + 1,).
 
-    D differentiates, W is the lumped mass. All arrays are contiguous, for inner loops over the nodes.
+    D: differentiation. W: lumped mass. All arrays are contiguous, for inner loops over the nodes.
     """
 
     D: Array
@@ -43,21 +43,20 @@ class NodeMatrices(NamedTuple):
 
 @dataclass(frozen=True)
 class Mesh(Elements):
-    """Elements with differentiation and quadrature on all nodes; `nodes` is the number of nodes without the
-    tip.
+    """Elements with matrices over all nodes. `nodes` is the number of nodes without the tip.
 
-    Meshes with equal edges and order compare equal, across processes too.
+    Meshes with equal edges and order compare equal, also in different processes.
     """
 
     matrices: NodeMatrices = field(compare=False, repr=False)
 
     def __reduce__(self) -> tuple[Any, tuple[tuple[float, ...], int]]:
-        """Pickles only edges and order, also in messages to other ranks."""
+        """Pickles only edges and order; messages to other ranks are pickled too."""
         return mesh_on, (self.edges, self.order)
 
     @property
     def quadrature(self) -> Array:
-        """Quadrature weights of all nodes, the tip included, (nodes + 1,)."""
+        """Quadrature weights of all nodes, tip included, (nodes + 1,)."""
         return self.matrices.weights
 
 
@@ -68,7 +67,7 @@ def mesh(elements: int, order: int) -> Mesh:
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
-    """The mesh of elements between `edges`, all of order `order`, cached."""
+    """The mesh whose elements lie between neighbouring `edges` and have the order `order`; cached."""
     x, w = gauss_lobatto(order)
     slopes = differentiation(x)
     lengths = np.diff(edges)
@@ -79,8 +78,8 @@ def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
         element = slice(first, first + order + 1)
         weighted[element, element] += w[:, None] * slopes  # the length of the element cancels
         total[element] += length / 2 * w
-    # At a node shared by two elements D is the mean of both slopes, weighted by the quadrature, so that W D
-    # stays the assembled matrix.
+    # At a node shared by two elements, D gives the mean of both slopes with the quadrature weights, so that W
+    # D is the assembled matrix.
     D = weighted / total[:, None]
     # -D^T W: `weighted` is W D.
     parts = D, D.T, -weighted.T, total
@@ -89,7 +88,7 @@ def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
 
 @lru_cache(maxsize=ELEMENTS.max_mesh_pairs)
 def transfer(source: Mesh, target: Mesh) -> Array:
-    """Matrix from values at all nodes of `source` to values at all nodes of `target`, by interpolation.
+    """Interpolation matrix from values at all nodes of `source` to values at all nodes of `target`.
 
     Shape (target.nodes + 1, source.nodes + 1).
     """
@@ -97,10 +96,10 @@ def transfer(source: Mesh, target: Mesh) -> Array:
 
 
 def shape_from_strains(grid: Mesh, strains: Array, clamp: Array) -> Array:
-    """Shape (x, y, theta) of a rod at all nodes, (3, ..., nodes + 1), from strains (h1, h2, Pi).
+    """Shape (x, y, theta) of a rod at all nodes, (3, ..., nodes + 1), from its strains.
 
-    strains: at the nodes of every element, (3, ..., elements (order + 1)). clamp: (x, y, theta) at u = 0,
-    (3,).
+    strains: (h1, h2, Pi) at the nodes of every element, (3, ..., elements (order + 1)). clamp: (x, y, theta)
+    at u = 0, (3,).
     """
     values, angles, integrals, ends = reconstruction(grid.order)
     p = grid.order
@@ -117,7 +116,7 @@ def shape_from_strains(grid: Mesh, strains: Array, clamp: Array) -> Array:
         state[0][..., element] = start[0] + length * (slope_x @ integrals)
         state[1][..., element] = start[1] + length * (slope_y @ integrals)
         state[2][..., element] = start[2] + length * (Pi @ ends)
-        # Each element starts where the last one ends.
+        # The end of this element is the start of the next element.
         start = state[..., element][..., -1:]
     return state
 
@@ -125,10 +124,10 @@ def shape_from_strains(grid: Mesh, strains: Array, clamp: Array) -> Array:
 class Reconstruction(NamedTuple):
     """Matrices that integrate strains to a shape on one element [0, 1] with p + 1 nodes and m Gauss points.
 
-    All are applied from the right. values: interpolation from nodes to Gauss points, (p + 1, m). angles:
-    integrals of nodal polynomials from 0 to the Gauss points, (p + 1, m). integrals: integrals from 0 to the
-    nodes of functions given at the Gauss points, (m, p + 1). ends: integrals of nodal polynomials from 0 to
-    the nodes, (p + 1, p + 1).
+    All matrices are multiplied from the right. values: interpolation from nodes to Gauss points, (p + 1, m).
+    angles: integrals of nodal polynomials from 0 to the Gauss points, (p + 1, m). integrals: integrals from 0
+    to the nodes, of functions given at the Gauss points, (m, p + 1). ends: integrals of nodal polynomials
+    from 0 to the nodes, (p + 1, p + 1).
     """
 
     values: Array
@@ -146,10 +145,10 @@ def reconstruction(order: int) -> Reconstruction:
 
 
 def primitive(nodes: Array, ends: Array) -> Array:
-    """Matrix from values at `nodes` in [-1, 1] to half the integral of the interpolant from -1 to each of
-    `ends`.
+    """Matrix (m, n) from values at `nodes`, (n,), to half the integral of the interpolating polynomial from
+    -1 to each of `ends`, (m,).
 
-    nodes: (n,). ends: (m,). Shape (m, n).
+    All nodes and ends lie in [-1, 1].
     """
     points, weights = gauss(len(nodes))
     return np.array(

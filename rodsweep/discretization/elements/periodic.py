@@ -3,7 +3,7 @@
 Samples are at the times k/N, k = 0 ... N - 1, in periods. All functions have the spectral accuracy of the
 samples. For even N the highest harmonic is a cosine.
 
-Compiled kernels may sum in any order, and the order of their assignments changes the last bit of results.
+Compiled kernels may sum in any order; a changed order of their statements changes the last bit of results.
 """
 
 from dataclasses import dataclass
@@ -23,9 +23,9 @@ class MaximumSettings(CompiledSettings):
     max_steps: int = 8
     """Maximum number of Newton steps from the largest sample to the maximum."""
     converged_step: float = 1e-9
-    """Newton step, in periods, that ends the iteration; the error of the maximum is about its square."""
+    """Newton's method stops when |step| < converged_step, in periods; the error is about the squared step."""
     max_bisections: int = 50
-    """Number of bisections of the interval between two samples for a zero, down to rounding error."""
+    """Number of bisections of the interval between two samples around a zero, down to rounding error."""
 
 
 MAXIMA = MaximumSettings()
@@ -35,15 +35,15 @@ def fourier_coefficients(samples: Array) -> Complex:
     """Coefficients c, (N // 2 + 1, ...): Re sum_k c_k exp(2 pi i k t) interpolates samples, (N, ...)."""
     n = len(samples)
     c: Complex = np.fft.rfft(samples, axis=0) / n
-    c[1 : (n + 1) // 2] *= 2  # adds the conjugate harmonic; the mean and the last of an even N have none
+    c[1 : (n + 1) // 2] *= 2  # conjugate harmonic; none for the mean, and for the last harmonic of an even N
     return c
 
 
 def hermite_coefficients(values: Array, slopes: Array) -> Complex:
-    """Coefficients c, (m + 1, ...): Re sum_k c_k exp(2 pi i k t) interpolates values and slopes at k/m.
+    """Coefficients c, (m + 1, ...): Re sum_k c_k exp(2 pi i k t) interpolates values and slopes at t = k/m.
 
-    values, slopes: (m, ...); slopes are derivatives by time in periods. They distinguish harmonics k and m -
-    k, equal at the nodes, so twice as many harmonics are resolved as from values alone.
+    values, slopes: (m, ...); slopes are derivatives by the time in periods. The slopes distinguish the
+    harmonics k and m - k, so twice as many harmonics are resolved as from values alone.
     """
     flat = np.ascontiguousarray(values).reshape(len(values), -1)
     rates = np.ascontiguousarray(slopes).reshape(len(slopes), -1)
@@ -55,9 +55,9 @@ def hermite_coefficients(values: Array, slopes: Array) -> Complex:
 def hermite_columns(values: Array, slopes: Array, signs: Array) -> Complex:
     """`hermite_coefficients`, (m + 1, columns), of columns given over half a period or a whole period.
 
-    values, slopes: (nodes, columns). signs: factor of each column after half a period, (columns,), or 0 if
-    the nodes cover the whole period. With the sums S_k of values and D_k of slopes over the nodes, times
-    exp(-2 pi i k j/m), c_k = 2/m ((1 - k/m) S_k + D_k/(2 pi i m)).
+    values, slopes: (nodes, columns). signs: factor of each column after half a period, (columns,), or 0 for
+    nodes over a whole period. c_k = 2/m ((1 - k/m) S_k + D_k/(2 pi i m)) with the sums S_k of the values and
+    D_k of the slopes over the nodes j, times exp(-2 pi i k j/m).
     """
     nodes, columns = values.shape
     m = 2 * nodes if signs[0] != 0 else nodes
@@ -72,10 +72,10 @@ def hermite_columns(values: Array, slopes: Array, signs: Array) -> Complex:
         for j in range(nodes):
             cos[j] = turns[0, at]
             sin[j] = turns[1, at]
-            # Multiples of the basic angle by index, so that rounding does not add up over the harmonics.
+            # A table of angles by index keeps rounding errors from adding up over the harmonics.
             at += k if at + k < m else k - m
         for a in range(columns):
-            # The second half of the period doubles or cancels a harmonic.
+            # The second half of the period doubles or cancels the sum of a harmonic.
             factor = 2 * (1 + signs[a] * (1 - 2 * (k % 2))) / m
             if factor == 0:
                 continue
@@ -88,12 +88,12 @@ def hermite_columns(values: Array, slopes: Array, signs: Array) -> Complex:
                 iS -= sin[j] * f[a, j]
                 D += cos[j] * df[a, j]
                 iD -= sin[j] * df[a, j]
-            # Harmonics k and k - m have equal values at m times; the slopes tell them apart.
+            # Harmonics k and k - m have equal values at the m times but different slopes.
             share = 1 - k / m
             by_slope = 1 / (2 * np.pi * m)
             c[k, a] = complex(factor * (share * S + by_slope * iD), factor * (share * iS - by_slope * D))
     for a in range(columns):
-        # The last harmonic is a sine, which only the slopes contain.
+        # The last harmonic is a sine with value 0 at all nodes; only slopes determine it.
         c[0, a], c[m, a] = c[0, a].real / 2, c[m, a] / 2
     return c
 
@@ -119,11 +119,11 @@ def series_samples(c: Complex, count: int) -> Array:
 def series_samples_of_columns(c: Complex, count: int) -> Array:
     """`series_samples` of columns, (count, columns), from coefficients c, (harmonics, columns).
 
-    For an even count, samples of the second half of the period come from the first half: even harmonics are
-    equal, odd harmonics change their sign.
+    For an even count, sums of the first half of the period also give the second half: even harmonics are
+    equal, odd harmonics have the opposite sign.
     """
     harmonics, columns = c.shape
-    # Half a period later even harmonics are the same and odd ones reversed: half the sums suffice.
+    # Even harmonics come first, because odd harmonics change their sign after half a period.
     order = np.append(np.arange(0, harmonics, 2), np.arange(1, harmonics, 2))
     odd = (harmonics + 1) // 2
     steps = order % count
@@ -158,28 +158,28 @@ def series_samples_of_columns(c: Complex, count: int) -> Array:
 
 
 def interpolate_samples(samples: Array, at: NDArray[np.floating]) -> Array:
-    """The interpolant of samples, (N, ...), at the times `at` in periods, (m,): shape (m, ...)."""
+    """The interpolant of samples, (N, ...), at the times `at`, (m,), in periods; shape (m, ...)."""
     return series_at(fourier_coefficients(samples), at)
 
 
 def series_at(c: Complex, at: NDArray[np.floating]) -> Array:
-    """Re sum_k c_k exp(2 pi i k t), c: (harmonics, ...), at times `at` in periods, (m,): shape (m, ...)."""
+    """Re sum_k c_k exp(2 pi i k t), c: (harmonics, ...), at times `at`, (m,), in periods; shape (m, ...)."""
     waves = np.exp(2j * np.pi * np.outer(at, np.arange(len(c))))
     return (waves @ c.reshape(len(c), -1)).real.reshape(len(at), *c.shape[1:])
 
 
 def time_derivative(samples: Array) -> Array:
-    """Derivative of the interpolant of samples by time in periods, at the samples; both (N, ...)."""
+    """Derivative of the interpolant of samples by the time in periods, at the sample times; both (N, ...)."""
     n = len(samples)
     k = 2j * np.pi * np.arange(n // 2 + 1)
     if n % 2 == 0:
-        k[-1] = 0.0  # the samples of this cosine are its extrema, where the derivative is 0
+        k[-1] = 0.0  # the sample times of this cosine are its extrema, where the derivative is 0
     return np.fft.irfft(k.reshape(-1, *(1,) * (samples.ndim - 1)) * np.fft.rfft(samples, axis=0), n, axis=0)
 
 
 @compiled_for_vectors
 def maxima(c: Complex, samples: Array) -> Array:
-    """Maxima, (m,), of Re sum_k c_k exp(2 pi i k t), by Newton's method from the largest samples.
+    """Maxima, (m,), of m series Re sum_k c_k exp(2 pi i k t), by Newton's method from the largest samples.
 
     c: (harmonics, m). samples: equidistant over a period, (n, m).
     """
@@ -189,10 +189,10 @@ def maxima(c: Complex, samples: Array) -> Array:
         t = float(np.argmax(samples[:, column])) / n
         for _ in range(MAXIMA.max_steps):
             _, slope, curvature = _expansion(c[:, column], t)
-            # Newton's method would run to a minimum.
+            # Newton's method would converge to a minimum.
             if curvature >= 0:
                 break
-            # The extremum lies beside the largest sample, within one distance of samples.
+            # The distance of the maximum from the largest sample is at most the distance between samples.
             step = min(max(slope / curvature, -1 / n), 1 / n)
             t -= step
             if abs(step) < MAXIMA.converged_step:
@@ -203,13 +203,13 @@ def maxima(c: Complex, samples: Array) -> Array:
 
 @compiled_for_vectors
 def minima(c: Complex, samples: Array) -> Array:
-    """Minima, (m,), of Re sum_k c_k exp(2 pi i k t), as `maxima`; c: (harmonics, m), samples: (n, m)."""
+    """Minima, (m,), of Re sum_k c_k exp(2 pi i k t), like `maxima`; c: (harmonics, m), samples: (n, m)."""
     return -maxima(-c, -samples)
 
 
 @compiled_for_vectors
 def _expansion(c: Complex, t: float) -> tuple[float, float, float]:
-    """Value, slope and curvature of Re sum_k c_k exp(2 pi i k t) at t, c of shape (harmonics,)."""
+    """Returns (value, slope, curvature) of Re sum_k c_k exp(2 pi i k t) at the time t; c: (harmonics,)."""
     turn = 2 * np.pi * t
     step = complex(np.cos(turn), np.sin(turn))
     wave = complex(1.0, 0.0)
@@ -222,13 +222,15 @@ def _expansion(c: Complex, t: float) -> tuple[float, float, float]:
         value += term.real
         slope -= w * term.imag
         curvature -= w * w * term.real
-        # By recurrence: an evaluation has one sine and one cosine for all harmonics.
+        # The recurrence needs one sine and one cosine for all harmonics.
         wave *= step
     return value, slope, curvature
 
 
 def time_of_rise_through_mean(samples: Array) -> float:
-    """Time, in periods, at which the interpolant of samples, (N,), rises through its mean after a minimum."""
+    """Time, in periods, of the first rise of the interpolant of samples, (N,), through its mean after a
+    minimum.
+    """
     n = len(samples)
     deviation = samples - samples.mean()
     after = (int(np.argmin(deviation)) + np.arange(n + 1)) % n
@@ -238,7 +240,7 @@ def time_of_rise_through_mean(samples: Array) -> float:
 
 @compiled_for_vectors
 def _rise(c: Complex, low: float, high: float) -> float:
-    """The zero of Re sum_k c_k exp(2 pi i k t) between low and high, by bisection; c: (harmonics,)."""
+    """The zero of Re sum_k c_k exp(2 pi i k t) between low and high by bisection; c: (harmonics,)."""
     for _ in range(MAXIMA.max_bisections):
         middle = (low + high) / 2
         if _expansion(c, middle)[0] < 0:

@@ -14,10 +14,9 @@ class LobattoSettings:
     """Settings of Newton's method for the Lobatto nodes."""
 
     max_steps: int = 50
-    """Maximum number of Newton steps to the Lobatto nodes, in the rare case that rounding errors keep the
-    steps above the tolerance."""
+    """Maximum number of Newton steps, in case rounding errors keep |step| above the tolerance."""
     tolerance: float = 4e-16
-    """Newton step at which the Lobatto nodes have converged to rounding error."""
+    """Newton's method stops when the largest |step| of all nodes is smaller than this."""
 
 
 LOBATTO = LobattoSettings()
@@ -25,16 +24,19 @@ LOBATTO = LobattoSettings()
 
 @cache
 def gauss(n: int) -> tuple[Array, Array]:
-    """Nodes and weights, (n,) each, of the n-point Gauss-Legendre rule on [-1, 1], exact to degree 2n - 1."""
+    """Returns (nodes, weights), (n,) each, of the n-point Gauss-Legendre rule on [-1, 1], which is exact to
+    degree 2n - 1.
+    """
     nodes, weights = legendre.leggauss(n)
     return nodes, weights
 
 
 @cache
 def gauss_lobatto(p: int) -> tuple[Array, Array]:
-    """Nodes and weights, (p + 1,) each, of the (p + 1)-point Lobatto rule on [-1, 1], exact to degree 2p - 1.
+    """Returns (nodes, weights), (p + 1,) each, of the (p + 1)-point Lobatto rule on [-1, 1], exact to degree
+    2p - 1.
 
-    The inner nodes are the zeros of P_p', by Newton's method from Chebyshev points.
+    The inner nodes are the zeros of P_p', by Newton's method from Chebyshev points. P_p: Legendre polynomial.
     """
     x = -np.cos(np.pi * np.arange(p + 1) / p)
     for _ in range(LOBATTO.max_steps):
@@ -44,7 +46,7 @@ def gauss_lobatto(p: int) -> tuple[Array, Array]:
         x = x - step
         if np.abs(step).max() < LOBATTO.tolerance:
             break
-    # Nodes are symmetric exactly, so that mirror images stay mirror images.
+    # Nodes are exactly symmetric, so that mirror symmetry is preserved.
     x = (x - x[::-1]) / 2
     x[0] = -1.0
     x[-1] = 1.0
@@ -57,7 +59,7 @@ def lobatto_points(nodes: int) -> Array:
 
 
 def _legendre_pair(p: int, x: Array) -> tuple[Array, Array]:
-    """Legendre polynomials P_p(x) and P_{p-1}(x), in the shape of x, (n,), by the three-term recurrence."""
+    """Returns (P_p(x), P_{p-1}(x)), Legendre polynomials at points x, (n,), by the three-term recurrence."""
     previous = np.ones_like(x)
     current = x.copy()
     for n in range(1, p):

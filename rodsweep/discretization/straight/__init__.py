@@ -1,2 +1,2 @@
-"""The rod linearised about its straight state: the transverse and longitudinal eigenproblems, and
+"""The rod linearised about its straight state: eigenproblems of transverse and longitudinal modes, and
 expansions."""

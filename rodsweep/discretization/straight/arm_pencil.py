@@ -1,9 +1,9 @@
-"""The transverse eigenproblem of an arm with any profiles and law, as a sparse matrix pencil.
+"""The transverse eigenproblem of an arm with any profile and constitutive law, as a sparse matrix pencil.
 
-The weak form is that of `rodsweep.discretization.straight.pencil`, with coefficients c2(u), c3(u), nu(u),
-g(u) at the Gauss points and gamma2(u), gamma3(u) at the Lobatto nodes. Elements end where a coefficient
-jumps, so the solution is smooth within each element. The matrix is not affine in any parameter, and is filled
-anew for every arm.
+The weak form is given in `rodsweep.discretization.straight.pencil`; here the coefficients c2(u), c3(u), nu(u)
+and g(u) are evaluated at the Gauss points, gamma2(u) and gamma3(u) at the Lobatto nodes. Elements end where a
+coefficient jumps, so the solution is smooth within each element. The matrices are not affine in any parameter
+and are computed anew for every arm.
 """
 
 import math
@@ -25,11 +25,12 @@ class _Pieces(NamedTuple):
     """Matrices and weights of a mesh of elements of order p, from which `_filled` computes the pencil of an
     arm.
 
-    value, slope: matrices from nodes to Gauss points, (p, p + 1). both: slope^T weights value,
-    (p + 1, p + 1). constant: entries of the first two blocks, which are the same for every arm, (n,).
-    bending, weight: Gauss weights over and times half the length of each element, (elements, p). lumped: mass
-    of the nodes, (elements, p + 1). where: index in the pattern of each entry of all blocks, (m,). rows,
-    columns: (nnz,).
+    value, slope: matrices from nodal values to values and derivatives at the Gauss points, (p, p + 1). both:
+    slope^T diag(Gauss weights) value, (p + 1, p + 1). constant: entries of the first two blocks, which are
+    the same for every arm, (n,). bending: Gauss weights divided by half the length of each element,
+    (elements, p). weight: Gauss weights times half the length, (elements, p). lumped: mass of the nodes,
+    (elements, p + 1). where: index in the sparsity pattern of each entry of all blocks, (m,). rows, columns:
+    row and column of each entry of the pattern, (nnz,).
     """
 
     value: Array
@@ -45,10 +46,11 @@ class _Pieces(NamedTuple):
 
 
 class ArmPencil:
-    """Sparsity pattern of the transverse eigenproblem on a mesh, and the matrices of any arm.
+    """Sparsity pattern of the transverse eigenproblem on a mesh; `matrices` computes the matrices of any arm.
 
-    Every break of the arm must be an edge of the mesh. rows, columns: indices of the pattern, (nnz,), sorted
-    by row, then column, with the diagonal. The unknowns are (y, theta, s), `mesh.nodes` of each.
+    Every break of the arm must be an edge of the mesh. rows, columns: row and column of each entry of the
+    pattern, (nnz,), sorted by row, then column, with the full diagonal. The unknowns are y, theta and s,
+    `mesh.nodes` of each.
     """
 
     def __init__(self, mesh: ArmMesh):
@@ -89,17 +91,18 @@ class ArmPencil:
         return self.mesh.positions
 
     def matrices(self, rod: Rod) -> PencilMatrices:
-        """The matrices of the pencil of an arm."""
+        """The matrices of the pencil of the arm `rod`."""
         return PencilMatrices(*_filled(float(rod.F), np.array(rod.local(self._points)), self._pieces))
 
     def evaluation(self, points: Array) -> Array:
-        """Matrix from values at all nodes to values at `points` in [0, 1], (n,): shape (n, nodes + 1)."""
+        """Matrix (n, nodes + 1) from values at all nodes to values at `points`, (n,), in [0, 1]."""
         return self.mesh.evaluation(points)
 
     def _pattern(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
-        """(rows, columns, index in the pattern of each entry of all element blocks); (nnz,), (nnz,) and (m,).
+        """Returns (rows, columns, where). rows, columns: row and column of each entry of the pattern, (nnz,)
+        each. where: index in the pattern of each entry of all element blocks, (m,).
 
-        Entries of the clamp have an index beyond the pattern.
+        Entries in the row or column of the clamp have the index nnz.
         """
         n = self.nodes
         size = self.unknowns
@@ -118,9 +121,9 @@ class ArmPencil:
 
 
 def _keys(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> NDArray[np.int64]:
-    """row * size + column of each entry of all element blocks; -1 if the row or column is the clamp.
+    """row * size + column of each entry of element blocks, flat; -1 if the row or column is the clamp.
 
-    rows, columns: (elements, n) and (elements, m).
+    rows: (elements, n). columns: (elements, m). size: number of unknowns.
     """
     keys = rows[:, :, None] * size + columns[:, None, :]
     clamped = (rows < 0)[:, :, None] | (columns < 0)[:, None, :]
@@ -129,8 +132,8 @@ def _keys(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> NDA
 
 @compiled
 def _filled(F: float, local: Array, pieces: _Pieces) -> tuple[Array, Array, Array]:
-    """A, B and scale of the `PencilMatrices` of an arm; local: its coefficients, (6, elements, 2 order +
-    1)."""
+    """Returns (A, B, scale), the fields of the `PencilMatrices` of an arm. F: follower force. local:
+    coefficients of the arm, (6, elements, 2 order + 1)."""
     elements, order = pieces.weight.shape
     nodes = elements * order
     push = np.zeros(nodes + 1)
@@ -145,7 +148,7 @@ def _filled(F: float, local: Array, pieces: _Pieces) -> tuple[Array, Array, Arra
     scale = np.empty(3 * nodes)
     B = np.zeros(3 * nodes)
     for k in range(nodes):
-        # Without rotational drag theta has no mass, and its scale would be infinite.
+        # Without rotational drag theta has no mass, so the scale of theta needs a lower limit of the mass.
         angle = max(turn[k + 1], least[k + 1])
         scale[k] = 1 / math.sqrt(push[k + 1])
         scale[nodes + k] = 1 / math.sqrt(angle)
@@ -153,7 +156,7 @@ def _filled(F: float, local: Array, pieces: _Pieces) -> tuple[Array, Array, Arra
         scale[2 * nodes + k] = 1 / math.sqrt(weight * PENCIL_NORM.shear_weight**2)
         B[k] = 1.0
         B[nodes + k] = turn[k + 1] / angle
-    # Entries of the clamp are summed behind the pattern and dropped.
+    # The last element of A collects the entries of the clamp, which are not used.
     A = np.zeros(len(pieces.rows) + 1)
     _add_entries(F, local, pieces, A)
     for k in range(len(pieces.rows)):
@@ -163,10 +166,10 @@ def _filled(F: float, local: Array, pieces: _Pieces) -> tuple[Array, Array, Arra
 
 @compiled
 def _add_entries(F: float, local: Array, pieces: _Pieces, A: Array) -> None:
-    """Adds the entries of all element blocks, in the order of `where`, to the entries A of the pattern,
-    (nnz + 1,).
+    """Adds the entries of all element blocks, in the order of `where`, to A.
 
-    local: coefficients of the arm, (6, elements, 2 order + 1).
+    local: coefficients of the arm, (6, elements, 2 order + 1). A: entries of the pattern, then one for the
+    clamp, (nnz + 1,).
     """
     elements, order = pieces.weight.shape
     value = pieces.value
@@ -188,7 +191,9 @@ def _add_entries(F: float, local: Array, pieces: _Pieces, A: Array) -> None:
 
 @compiled
 def _bending(slope: Array, factors: Array) -> Array:
-    """The block -slope^T diag(factors) slope, (p + 1, p + 1); factors: at the Gauss points, (p,)."""
+    """The block -slope^T diag(factors) slope, (p + 1, p + 1). slope: (p, p + 1). factors: at the Gauss
+    points, (p,).
+    """
     block = np.zeros((slope.shape[1], slope.shape[1]))
     for q in range(len(factors)):
         for i in range(len(block)):
@@ -200,9 +205,10 @@ def _bending(slope: Array, factors: Array) -> Array:
 
 @compiled
 def _added(block: Array, at: int, where: NDArray[np.int64], A: Array) -> int:
-    """Adds the entries of a block, of any shape (...,), to A; its first entry has the index `at` in `where`.
+    """Adds the entries of `block`, (...,), to A, (nnz + 1,). Returns the index in `where` of the entry after
+    the block.
 
-    A: entries of the pattern, (nnz + 1,). Returns the index of the entry after the block.
+    at: index in `where` of the first entry of the block.
     """
     for entry in block.flat:
         A[where[at]] += entry

@@ -17,26 +17,28 @@ class ArmResolutionSettings:
     """Settings for the mesh of an arm that varies along its length."""
 
     max_radius_ratio: float = 2.2
-    """Largest ratio of the radii of a cone at both ends of an element; order 12 then gives eigenvalues to
-    1e-4."""
+    """Maximum ratio of the radii at both ends of an element of a cone; at this ratio order 12 gives
+    eigenvalues to 1e-4."""
     profile_order_increase: int = 2
-    """Increase of the order for coefficients that vary within an element."""
+    """Increase of the order if coefficients vary within an element."""
 
 
 ARM_RESOLUTION = ArmResolutionSettings()
 
 
 class ArmMesh(Elements):
-    """Elements for an `ArmPencil`; elements must end wherever a coefficient of the arm jumps."""
+    """Elements for an `ArmPencil`; an edge must lie at every jump of a coefficient of the arm."""
 
     @property
     def unknowns(self) -> int:
-        """Number of unknowns y, theta and s together."""
+        """Total number of unknowns y, theta and s."""
         return 3 * self.nodes
 
 
 def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
-    """The mesh expected to give `modes` leading eigenvalues of an arm to a relative accuracy."""
+    """The mesh that is expected to give `modes` leading eigenvalues of the arm `rod` to the relative accuracy
+    `accuracy`.
+    """
     weights = sampled(rod).weights
     _, amplified = local_growth(rod)
     at_rest = (modes - RESOLUTION.mode_offset) * pi * _local_share(rod)
@@ -46,18 +48,18 @@ def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
 
 
 def arm_elements(rod: Rod, wave_number: float, accuracy: float, largest_order: int | None = None) -> Elements:
-    """Elements that resolve a field along an arm with the mean wave number `wave_number`, in 1/L, to an
-    accuracy.
+    """Elements that resolve a field along an arm with the mean wave number `wave_number`, in 1/L, to a
+    relative accuracy.
 
-    largest_order: maximum order, `RESOLUTION.max_order` by default.
+    largest_order: maximum order of an element, `RESOLUTION.max_order` by default.
     """
     waves = wave_number * _local_share(rod)
     return _resolving(rod, waves * sampled(rod).weights, accuracy, largest_order or RESOLUTION.max_order)
 
 
 def _local_share(rod: Rod) -> Array:
-    """Wave number at the samples of an arm, over its mean, of a wave with the same frequency everywhere,
-    (points,).
+    """Wave number at each sample of an arm, divided by the mean wave number, (points,), for a bending wave of
+    the same frequency along the arm.
     """
     _, weights, local = sampled(rod)
     at_rest: Array = (local.gamma2 * local.c3) ** 0.25
@@ -65,8 +67,10 @@ def _local_share(rod: Rod) -> Array:
 
 
 def _resolving(rod: Rod, turns: Array, accuracy: float, largest_order: int) -> Elements:
-    """Elements that resolve a wave along an arm; turns: |q| times length of each sample interval, its phase,
-    (n,).
+    """Elements that resolve a wave along an arm to a relative accuracy.
+
+    turns: phase of the wave over each sample interval, |q| times length, (n,). largest_order: maximum order
+    of an element.
     """
     breaks = rod.build.breaks
     shares = turns.reshape(len(breaks) - 1, -1).sum(axis=1)
@@ -83,8 +87,8 @@ def _resolving(rod: Rod, turns: Array, accuracy: float, largest_order: int) -> E
 
 
 def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
-    """The next finer mesh of an arm: 4/3 of the order or, beyond the largest order, twice the elements of 2/3
-    of it.
+    """The next finer mesh of an arm: elements of 4/3 of the order or, if this exceeds the maximum order,
+    twice as many elements of 2/3 of the order.
     """
     order = ceil(mesh.order * RESOLUTION.refinement_ratio)
     if order <= RESOLUTION.max_order:
@@ -96,8 +100,8 @@ def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
 
 
 def _elements_for(share: float, accuracy: float, largest_order: int) -> int:
-    """Number of elements of the largest order that resolve an interval over which the phase grows by
-    `share`."""
+    """Number of elements of the order `largest_order` that resolve an interval in which the phase of the wave
+    grows by `share`."""
     count = 1
     while required_order(share / count, accuracy) > largest_order:
         count += 1
@@ -109,8 +113,8 @@ def _radius(rod: Rod, u: float) -> float:
 
 
 def _edges(rod: Rod, start: float, stop: float, count: int) -> list[float]:
-    """Edges of `count` elements from start to stop, without start; the radii at their ends have equal
-    ratios."""
+    """Edges of `count` elements from start to stop, without start. All elements have equal ratios of the
+    radii at both ends."""
     if count == 1:
         return [float(stop)]
     if rod.taper == 1:

@@ -1,6 +1,6 @@
 """The transverse eigenproblem of one rod on one mesh as dense matrices, and strains of its eigenvectors.
 
-Unknowns (y, theta, s) and their scales are those of `pencil` and `arm_pencil`.
+The unknowns (y, theta, s) and their scales are defined in `pencil` and `arm_pencil`.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from .arm_pencil import ArmPencil
 from .pencil import Pencil, derivatives_at, fields_of_vectors, shear_force
 
 AnyPencil = Pencil | ArmPencil
-"""The pencil of a uniform rod of linear material, or of any arm."""
+"""The pencil of a uniform rod of linear material, or of an arm."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +23,7 @@ class DenseForm:
     """The transverse eigenproblem A x = w B x of one rod, with dense A and diagonal B.
 
     A: (unknowns, unknowns). B: diagonal, (unknowns,). scale: factors from unknowns to y and theta at the
-    nodes, (2, nodes).
+    nodes without the clamp, (2, nodes).
     """
 
     rod: Rod
@@ -33,23 +33,25 @@ class DenseForm:
     scale: Array
 
     def fields(self, vectors: Complex) -> tuple[NDArray, NDArray]:
-        """(y, theta) at all nodes, clamp included, (nodes + 1, k) each, of k eigenvectors, (unknowns, k)."""
+        """Returns (y, theta) of k eigenvectors, (unknowns, k), at all nodes, clamp included, (nodes + 1, k)
+        each.
+        """
         return fields_of_vectors(vectors, self.scale)
 
     def strains(self, vectors: Complex, points: Array) -> Complex:
-        """Strains (h2, Pi) = (Y' - nu Theta, Theta') of k eigenvectors, (unknowns, k), at points,
+        """Strains (h2, Pi) = (Y' - nu Theta, Theta') of k eigenvectors, (unknowns, k), at points, (points,):
         (2, k, points).
 
-        h2 = c2 s is exactly 0 in an unshearable rod. At a jump of a coefficient, both are limits from the
-        right.
+        h2 = c2 s is exactly 0 in an unshearable rod. At a jump of a coefficient both strains are limits from
+        the right.
         """
         c2 = self.rod.local(_inside(self.mesh, points)).c2
         shear = c2[:, None] * shear_force(self.mesh, vectors, points)
         return np.stack([shear.T, derivatives_at(self.mesh, self.fields(vectors)[1], points).T])
 
     def with_tip_terms(self, pair: float, tip: float) -> Array:
-        """A plus the matrix of pair (a theta - b y) - tip a y at u = 1, with test functions (a, b):
-        (unknowns, unknowns).
+        """A plus the matrix of the tip term pair (a theta - b y) - tip a y at u = 1, (unknowns, unknowns); a,
+        b: test functions of y and theta.
         """
         A = self.A.copy()
         n = self.mesh.nodes
@@ -61,7 +63,7 @@ class DenseForm:
 
 
 def dense_form(rod: Rod, pencil: AnyPencil) -> DenseForm:
-    """The dense eigenproblem of a rod on the mesh of `pencil`."""
+    """The dense eigenproblem of the rod `rod` on the mesh of `pencil`."""
     found = pencil.matrices(rod)
     A = np.zeros((pencil.unknowns, pencil.unknowns))
     A[pencil.rows, pencil.columns] = found.A
@@ -69,8 +71,8 @@ def dense_form(rod: Rod, pencil: AnyPencil) -> DenseForm:
 
 
 def _inside(mesh: Elements, points: Array) -> Array:
-    """Points, (n,), moved just inside the element that `Elements.by_element` gives them, away from its
-    ends."""
+    """The points, (n,), each moved just inside the element to which `Elements.by_element` assigns the
+    point."""
     moved = np.array(points, dtype=float)
     for first, inside, local in mesh.by_element(points):
         e = first // mesh.order

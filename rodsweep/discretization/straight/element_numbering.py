@@ -1,5 +1,5 @@
-"""Indices of the unknowns of equal elements of a straight rod: those inside an element and those at its
-ends."""
+"""Indices of the unknowns of equal elements of a straight rod, inside elements and at the ends of
+elements."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -17,11 +17,11 @@ Indices = NDArray[np.int_]
 class ElementNumbering:
     """Indices of the unknowns of every element, for static condensation.
 
-    An element has `local` unknowns. state_indices: in the state, (elements, local); stresses at the tip are
-    not unknowns, and have the index behind the state. interior, interface: local indices of interior unknowns
-    and of unknowns at both ends, the left end first. interface_indices: indices of an element's end unknowns
-    among those of all elements, (elements, ends). is_unknown: False for stresses at the tip, one entry for
-    each of the end unknowns of all elements.
+    An element has `local` unknowns. state_indices: index of each unknown in a state, (elements, local);
+    stresses at the tip are not unknowns and have an index one beyond the state. interior, interface: local
+    indices of interior unknowns, and of unknowns at both ends, the left end first. interface_indices: indices
+    of an element's end unknowns in the list of the end unknowns of all elements, (elements, ends).
+    is_unknown: one entry for each end unknown of all elements, False for stresses at the tip.
     """
 
     state_indices: Indices
@@ -33,8 +33,8 @@ class ElementNumbering:
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def element_numbering(elements: int, order: int, components: tuple[int, ...]) -> ElementNumbering:
-    """Numbering of `elements` equal elements of an order, for the given components of stresses and
-    velocities.
+    """Numbering of `elements` equal elements of the order `order`. components: indices of the components of
+    stresses and velocities that are unknowns.
     """
     last = elements * order
     nodes = np.arange(elements)[:, None] * order + np.arange(order + 1)

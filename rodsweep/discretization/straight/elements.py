@@ -4,10 +4,11 @@ The equal elements of a uniform rod have equal matrices. A system with the matri
 condensation: the interior nodes of the elements are eliminated, with one factorisation for all elements; then
 a system for the nodes between elements is solved. The cost hardly grows with the number of elements.
 
-About the straight rod longitudinal and transverse components are decoupled, and have separate matrices.
+About the straight rod longitudinal and transverse components are decoupled and have separate matrices.
 
-On an element of even order p the interior block is singular, or nearly so: P_p - 1 vanishes at both ends, and
-its derivative vanishes at all interior nodes. Several elements therefore need an odd order.
+If the order p of elements is even, the interior block is singular or nearly singular: P_p - 1 vanishes at
+both ends of an element, and its derivative vanishes at all interior nodes (P_p: Legendre polynomial). Several
+elements therefore need an odd order.
 """
 
 from dataclasses import dataclass
@@ -28,17 +29,20 @@ from .element_numbering import ElementNumbering, element_numbering
 from .mixed_form import MixedForm
 
 LONGITUDINAL = (0,)
-"""Components of stresses and velocities in se(2) that keep their sign under reflection in the rod's axis."""
+"""Indices of the components of stresses and velocities in se(2) that keep their sign under reflection in the
+rod's axis."""
 TRANSVERSE = (1, 2)
-"""Components of stresses and velocities in se(2) that change their sign under reflection in the rod's
-axis."""
+"""Indices of the components of stresses and velocities in se(2) that change their sign under reflection in
+the rod's axis."""
 
 
 @dataclass(frozen=True, eq=False)
 class StraightElements:
-    """A and M of a `MixedForm` about its straight rod, for the given components, as matrices of one element.
+    """A and M of a `MixedForm` about its straight rod, restricted to some components, as matrices of one
+    element.
 
-    Vectors are states of the form, (unknowns,); other components are ignored.
+    components: indices of these components of stresses and velocities. Vectors are states of the form,
+    (unknowns,); all other components are ignored, and are 0 in results.
     """
 
     form: MixedForm
@@ -55,7 +59,7 @@ class StraightElements:
 
     @cached_property
     def A(self) -> Array:
-        """Contribution of every element to A, (local, local)."""
+        """Contribution of one element to the matrix A, (local, local)."""
         each = np.eye(PLANE_COMPONENTS)
         block = np.ix_(self.components, self.components)
         material = self.form.rod.material
@@ -77,14 +81,14 @@ class StraightElements:
 
     @cached_property
     def M(self) -> Array:
-        """Contribution of every element to the diagonal of M, (local,)."""
+        """Contribution of one element to the diagonal of M, (local,)."""
         stresses = np.outer(self.form.rod.material.compliance[list(self.components)], self._reference[1])
         return np.concatenate([stresses, 0 * stresses]).ravel()
 
     @property
     def _reference(self) -> tuple[Array, Array]:
-        """Returns (W D, W) of one element: quadrature weights W, (nodes,), and their product with the
-        differentiation matrix D, (nodes, nodes), for the length of the element."""
+        """Returns (W D, W) of one element. W: quadrature weights, scaled to the length of the element,
+        (nodes,). W D: diag(W) times the differentiation matrix D of the element, (nodes, nodes)."""
         WD, w = _weighted_derivative(self.form.mesh.order)
         return WD, w / (2 * self.form.mesh.elements)
 
@@ -97,15 +101,17 @@ class StraightElements:
         return self.assemble(self.gather(x) * self.M)
 
     def size_of_product(self, p: Values, q: Values) -> float:
-        """|p| |A| |q|, with the moduli of all entries: p A q has a rounding error relative to this number."""
+        """The number |p| |A| |q|, with the modulus of every entry. The rounding error of p A q is about
+        machine epsilon times this number. p, q: (unknowns,).
+        """
         return float(np.sum(np.abs(self.gather(p)) * (np.abs(self.gather(q)) @ np.abs(self.A).T)))
 
     def gather(self, x: Values) -> Values:
-        """Entries of a vector x, (unknowns,), for each element, (elements, local)."""
+        """Entries of a vector x, (unknowns,), by element, (elements, local)."""
         return np.append(x, 0)[self.numbering.state_indices]
 
     def assemble(self, parts: Values) -> Values:
-        """Sum of the contributions of all elements, (elements, local), as a vector (unknowns,)."""
+        """Sum of element contributions, (elements, local), as a vector (unknowns,)."""
         x = np.zeros(self.form.unknowns + 1, parts.dtype)
         np.add.at(x, self.numbering.state_indices, parts)
         return x[:-1]
@@ -133,7 +139,8 @@ LU = tuple[Complex, NDArray[np.int32]]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _InteriorElimination:
-    """Elimination of the interior unknowns i of an element from its matrix K, with unknowns e at its ends.
+    """Elimination of the interior unknowns (index i) of an element with matrix K; unknowns at both ends have
+    the index e.
 
     factors: LU factorisation of K_ii. leaving: K_ie, (inside, ends). entering: K_ei, (ends, inside). right:
     K_ii^-1 K_ie, (inside, ends). left: K_ii^-H K_ei^H, (inside, ends).
@@ -158,7 +165,7 @@ class _InteriorElimination:
         return cls(factors=factors, leaving=leaving, entering=entering, right=right, left=left)
 
     def coupling(self, adjoint: bool) -> tuple[Complex, Complex]:
-        """(K_ei, K_ii^-1 K_ie), the coupling of interior and ends; for `adjoint`, the two matrices of K^H."""
+        """Returns (K_ei, K_ii^-1 K_ie); if `adjoint`, the same two matrices of K^H."""
         return (self.leaving.conj().T, self.left) if adjoint else (self.entering, self.right)
 
 
@@ -166,8 +173,8 @@ class _InteriorElimination:
 class ElementFactors:
     """Factorisation of A - shift M by static condensation.
 
-    K: matrix of one element. interior: elimination of its interior, None for a single element. interface: LU
-    factorisation of the matrix of the nodes between elements.
+    K: matrix of one element. interior: elimination of the interior unknowns of an element, None for a single
+    element. interface: LU factorisation of the matrix of the nodes between elements.
     """
 
     elements: StraightElements
@@ -176,7 +183,8 @@ class ElementFactors:
     interface: LU
 
     def solve(self, b: Values, adjoint: bool = False) -> Complex:
-        """The solution x of (A - shift M) x = b, or of its adjoint system if `adjoint`; both (unknowns,).
+        """The solution x, (unknowns,), of (A - shift M) x = b or, if `adjoint`, of (A - shift M)^H x = b; b:
+        (unknowns,).
 
         The elimination of the interior chooses no pivots at the ends of elements, so one step of iterative
         refinement follows.
@@ -210,14 +218,14 @@ class ElementFactors:
 
 
 def lu_factorisation(K: Complex) -> LU:
-    """LU factorisation of K, (n, n), with partial pivoting; solutions with a singular K are inf or nan."""
+    """LU factorisation of K, (n, n), with partial pivoting. If K is singular, solutions are inf or nan."""
     factors, pivots, _ = zgetrf(K)
     return factors, pivots
 
 
 def solve_factorised(factors: LU, right: Values, adjoint: bool = False) -> Complex:
-    """The solution x of K x = right, or of K^H x = right if `adjoint`, from the factors of K; right: (n,) or
-    (n, m).
+    """The solution x of K x = right, or of K^H x = right if `adjoint`. factors: LU factorisation of K,
+    (n, n). right: (n,) or (n, m).
     """
     x, _ = zgetrs(*factors, right, trans=2 if adjoint else 0)
     return x
@@ -225,8 +233,8 @@ def solve_factorised(factors: LU, right: Values, adjoint: bool = False) -> Compl
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def _weighted_derivative(order: int) -> tuple[Array, Array]:
-    """(W D, W) on the element [-1, 1], (order + 1, order + 1) and (order + 1,); W D is the same for every
-    length.
+    """Returns (W D, W) on the element [-1, 1]. W: quadrature weights, (order + 1,). W D: diag(W) times the
+    differentiation matrix, (order + 1, order + 1), which is the same for elements of every length.
     """
     x, w = gauss_lobatto(order)
     return w[:, None] * differentiation(x), w

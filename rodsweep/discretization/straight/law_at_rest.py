@@ -1,7 +1,7 @@
 """Derivatives of the constitutive law s(S) at S = 0, the straight rod, at the nodes of a mesh.
 
 s1 = N(S1, S3) and s3 = M(S1, S3) of `rodsweep.model.material.response`; s2 = S2. At a node where the material
-jumps, N and M are those of `rodsweep.model.material.jump`.
+jumps, N and M are the functions of the mean unknowns in `rodsweep.model.material.jump`.
 """
 
 from dataclasses import dataclass
@@ -17,8 +17,8 @@ from ..nodal_rod import NodalRod
 
 @dataclass(frozen=True)
 class ForceDerivatives:
-    """Derivatives by the force F of the stretch nu of the straight rod, (nodes + 1,), and of the tangent,
-    (3, nodes + 1).
+    """Derivatives with respect to the force F at all nodes: of the stretch nu of the straight rod,
+    (nodes + 1,), and of `LawAtRest.tangent`, (3, nodes + 1).
     """
 
     nu: Array
@@ -30,8 +30,8 @@ class LawAtRest:
     """Derivatives of the law s(S) at S = 0, at all nodes of a mesh.
 
     nonlinear: False for the linear law, s(S) = S. tangent: diagonal of ds/dS, (3, nodes + 1). change:
-    derivatives by F. N11, N33, M13: second derivatives of N and M by S1 and S3; N111, N133, M113, M333: third
-    derivatives; (nodes + 1,) each.
+    derivatives with respect to F. N11, N33, M13: second derivatives of N and M with respect to S1 and S3,
+    (nodes + 1,). N111, N133, M113, M333: third derivatives, (nodes + 1,).
     """
 
     nonlinear: bool
@@ -63,7 +63,9 @@ class LawAtRest:
 
 
 def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
-    """The derivatives of a rod's constitutive law at rest, at the nodes of a mesh."""
+    """The derivatives of a rod's constitutive law at rest, at the nodes of a mesh. nodal: the same rod at
+    these nodes.
+    """
     law: Law = rod.build.constitutive_law
     nu = nodal.rest[0]
     c1, _, c3 = nodal.compliance
@@ -72,7 +74,7 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
     bending = law.bending(nu)
     bending_slope = law.bending_slope(nu)
     bending_curvature = law.bending_curvature(nu)
-    # The force compresses the arm at rest: d nu/dF = -c1/(dN/dS1).
+    # The force compresses the straight arm: d nu/dF = -c1/(dN/dS1).
     moved = -c1 / stiffness
     ones = np.ones_like(nu)
     change = ForceDerivatives(moved, np.array([slope * moved, 0 * ones, bending_slope * moved]))
@@ -94,7 +96,7 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
 
 
 def _fill_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> None:
-    """Fills in the derivatives of the law at the nodes at which the material jumps."""
+    """Writes the derivatives of the law at the nodes where the material jumps into `found`."""
     at = nodal.jumps
     sides = nodal.sides
     nu = sides[..., 0]
@@ -123,14 +125,15 @@ def _fill_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> None:
 
 LawDerivatives = tuple[Array, Array, Array]
 """First, second and third derivatives of two functions of two variables: (..., 2, 2), (..., 2, 2, 2),
-(..., 2, 2, 2, 2). The index after the leading axes is the function; the others are the variables."""
+(..., 2, 2, 2, 2). The first of the listed indices is the function; all further indices are variables."""
 
 
 def stress_at_rest(law: Law, sides: Array) -> LawDerivatives:
-    """Derivatives of N and M at rest by the mean unknowns q1 and q3, at k jumps; sides: (k, 2, 7).
+    """Derivatives of N and M at rest with respect to the mean unknowns q1 and q3, at k jumps; sides:
+    (k, 2, 7).
 
-    On each side the unknowns are functions of N and M, and so is their mean. N and M are the inverse
-    function.
+    The unknowns of each side are functions of N and M, so their means q1 and q3 are too. N(q1, q3) and
+    M(q1, q3) are the inverse of this function.
     """
     shares = sides[..., 3:5]
     unknowns = inverse_derivatives(_on_sides(law, *np.moveaxis(sides[..., :3], -1, 0)))
@@ -139,7 +142,9 @@ def stress_at_rest(law: Law, sides: Array) -> LawDerivatives:
 
 
 def _on_sides(law: Law, nu: Array, c1: Array, c3: Array) -> LawDerivatives:
-    """Derivatives of N and M by q1 and q3 at rest, on each side of a jump; nu, c1, c3: of any equal shape."""
+    """Derivatives of N and M at rest with respect to q1 and q3 on each side of a jump; nu, c1, c3: arrays of
+    equal shape.
+    """
     first, second, third = (np.zeros((*nu.shape, *(2,) * order)) for order in (2, 3, 4))
     first[..., 0, 0] = law.stiffness(nu)
     first[..., 1, 1] = law.bending(nu)
@@ -156,13 +161,12 @@ def _on_sides(law: Law, nu: Array, c1: Array, c3: Array) -> LawDerivatives:
 
 
 def inverse_derivatives(of: LawDerivatives) -> LawDerivatives:
-    """Derivatives of the inverse function g of f, from those of f: f(g(y)) = y is differentiated three
-    times."""
+    """Derivatives of g = f^-1 from the derivatives `of` f, by differentiating f(g(y)) = y three times."""
     f1, f2, f3 = of
     g1 = np.linalg.inv(f1)
     g2 = -np.einsum("...ai,...ijk,...jb,...kc->...abc", g1, f2, g1, g1)
     inner = np.einsum("...ijkl,...jb,...kc,...ld->...ibcd", f3, g1, g1, g1)
-    # The inner second derivative takes each pair of the three directions once.
+    # The second derivative of g is needed for each pair of the three directions.
     for places in ("bcd", "bdc", "cdb"):
         pair = places[:2]
         last = places[2]

@@ -1,17 +1,18 @@
-"""Longitudinal eigenvalues of a rod, for an arm that varies along its length or a nonlinear law.
+"""Longitudinal eigenvalues of an arm that varies along its length or has a nonlinear law.
 
-In the linearised rod longitudinal and transverse modes are decoupled (Sec. VI). With the axial drag gamma1(u)
-and the tangent stiffness K(u) = k1(u) W''(nu(u)) a displacement x obeys
+In the linearised rod longitudinal and transverse modes are decoupled (Sec. VI). With the axial drag
+gamma1(u), the stretch energy W of the law and the tangent stiffness K(u) = k1(u) W''(nu(u)), a displacement x
+obeys
 
     gamma1 w x = (K x')',   x(0) = 0,   K x'(1) = 0.
 
 This is a Sturm-Liouville problem: all w are real, negative and simple. The unknowns are the strains e = x' at
-the Gauss points of spectral elements that end where the material jumps, each times the square root of K and
-of the Gauss weight. Let the matrix A map these unknowns to the displacements x = int e, times the square root
-of gamma1 and of the weight. Then w = -1/sigma^2 for the singular values sigma of A. All integrals are sums of
-positive numbers, and the largest singular values have nearly all digits, however much the material varies. By
-the Rayleigh quotient the n-th computed eigenvalue is not right of the true n-th one. No eigenvalue is
-therefore missing among those on which two orders agree.
+the Gauss points of spectral elements, each multiplied by the square root of K and of the Gauss weight. The
+elements end where the material jumps. The matrix A maps these unknowns to the displacements x = int e,
+multiplied by the square root of gamma1 and of the quadrature weight. Then w = -1/sigma^2 for the singular
+values sigma of A. All integrals are sums of positive numbers, so the largest singular values are accurate to
+nearly all digits for every profile. By the Rayleigh quotient the n-th computed eigenvalue is not larger than
+the n-th exact eigenvalue. Therefore no eigenvalue is missing among the eigenvalues on which two orders agree.
 """
 
 from dataclasses import dataclass
@@ -29,27 +30,30 @@ from .arm_resolution import arm_elements
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LongitudinalSettings:
-    """Settings for the mesh of longitudinal modes, and for errors from two orders of its elements."""
+    """Settings for the mesh of longitudinal modes, and for error estimates from two orders."""
 
     mesh_accuracy: float = 1e-12
-    """Relative accuracy for which the first mesh is chosen."""
+    """Relative accuracy of the eigenvalues for which the first mesh is chosen."""
     order_increase: int = 4
-    """Increase of the order of the elements whose eigenvalues are compared with those of the order before."""
+    """Increase of the order of the elements in each refinement; eigenvalues of successive orders are
+    compared."""
     max_order: int = 60
     """Maximum order of an element; the error at this order is returned even if it is large."""
     converged_difference: float = 1e-13
-    """Relative difference between the eigenvalues of two orders at which the order is no longer increased."""
+    """The order is no longer increased if the relative difference between the eigenvalues of two orders is at
+    most this."""
     rounding: float = 5e-14
-    """Relative rounding error of an eigenvalue, added to the difference between two orders."""
+    """Relative rounding error of an eigenvalue; the error estimate is the difference between two orders plus
+    this number."""
     extra_points: int = 6
-    """Number of quadrature points of an element for displacements, minus the number for strains."""
+    """Number of quadrature points per element for displacements, minus the number for strains."""
 
 
 LONGITUDINAL_MODES = LongitudinalSettings()
 
 
 def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
-    """(w in 1/tau2, relative error) of the leading longitudinal eigenvalues, (modes,) each.
+    """Returns (w, relative errors) of the leading longitudinal eigenvalues w, in 1/tau2, (modes,) each.
 
     Raises ValueError for an inextensible rod.
     """
@@ -60,7 +64,8 @@ def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
     found = _rates(rod, mesh, order, modes)
     while True:
         order += LONGITUDINAL_MODES.order_increase
-        # No a-priori bound of the error holds for every profile, so a second order shows it.
+        # No a-priori bound of the error holds for every profile, so the error is estimated from a second
+        # order.
         finer = _rates(rod, mesh, order, modes)
         error = np.abs(finer / found - 1)
         if error.max() <= LONGITUDINAL_MODES.converged_difference or order >= LONGITUDINAL_MODES.max_order:
@@ -69,15 +74,16 @@ def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
 
 
 def _rates(rod: Rod, mesh: Elements, order: int, modes: int) -> Array:
-    """The leading eigenvalues w on elements with `order` strains each, (modes,)."""
+    """The leading eigenvalues w, (modes,), from elements with `order` strains each."""
     sizes = np.linalg.svd(_displacements(rod, np.asarray(mesh.edges), order), compute_uv=False)
     rates: Array = -1 / sizes[:modes] ** 2
     return rates
 
 
 def _displacements(rod: Rod, edges: Array, order: int) -> Array:
-    """The matrix A of the module, (elements (order + more_points), elements order); edges: of elements,
-    (elements + 1,).
+    """The matrix A of the module docstring, (elements (order + extra_points), elements order).
+
+    edges: edges of the elements, (elements + 1,). order: number of strains per element.
     """
     strains, of_strains = gauss(order)
     points, weights = gauss(order + LONGITUDINAL_MODES.extra_points)
@@ -91,7 +97,8 @@ def _displacements(rod: Rod, edges: Array, order: int) -> Array:
     before = np.tril(np.ones((count, count)), -1)[:, None, :, None] * (halves * of_strains)
     integral = np.broadcast_to(before, (count, len(points), count, order)).copy()
     own = np.arange(count)
-    # Inside its own element an integral ends at the point: whole weights would overshoot there.
+    # Within the element of the point, the integral ends at the point, so Gauss weights of the full element do
+    # not apply.
     integral[own, :, own, :] = halves[:, :, None] * _integrals(order, points)
     matrix: Array = root[:, None] * integral.reshape(len(root), len(scale)) / scale
     return matrix
@@ -106,7 +113,7 @@ def _weighted_legendre(order: int) -> Array:
 
 
 def _integrals(order: int, points: Array) -> Array:
-    """Integrals from -1 to each of `points` of the Lagrange polynomials through the Gauss points,
+    """Integrals from -1 to each of `points`, (points,), of the Lagrange polynomials through the Gauss points,
     (points, order).
     """
     series = legendre.legint(_weighted_legendre(order), lbnd=-1)

@@ -1,9 +1,9 @@
-"""The nonlinear rod in the plane in mixed form: stresses and velocities in the body frame are unknowns on a
-mesh.
+"""The nonlinear rod in the plane in mixed form on a mesh: stresses and velocities in the body frame are
+unknowns.
 
-The balance is that of `rodsweep.model.balance`. S is the stress of a linear rod minus the stress of the
-straight rod, (n1 + F, n2, m3), and V = (v1, v2, Omega3). W are the weights of the quadrature, D is the
-derivative, and s(S) is the constitutive law, s(S) = S for a linear rod:
+The balance is given in `rodsweep.model.balance`. S is the stress of a linear rod with the same strain minus
+the stress of the straight rod, (n1 + F, n2, m3), and V = (v1, v2, Omega3). W are the quadrature weights, D is
+the differentiation matrix, and s(S) is the constitutive law, s(S) = S for a linear rod:
 
     W C dS/dt = -D^T W V + W ad_E V          at all nodes but the tip; the clamp V(0) = 0 is natural
     0         = W (D*_E Sigma - Gamma V)     at all nodes; Sigma = (-F, 0, 0) + s(S); S(1) = 0 is essential
@@ -12,11 +12,11 @@ where E = (nu, 0, 0) + C S. With X = (S; v1, v2, Omega3) this is
 
     M dX/dt = A X + B(X, X)/2 + C(X, X, X)/6 + ...,
 
-where terms beyond the quadratic ones come from the law alone. No formula contains a stiffness or the inverse
-of a drag, so c1 = c2 = gamma3 = 0 are allowed. M is singular: components of X without a time derivative
-satisfy algebraic equations. On several elements the fields are continuous and D = W^-1 sum_e W_e D_e.
-Summation by parts, W D + D^T W = diag(-1, 0, ..., 0, 1), and therefore the energy law hold to rounding on
-every mesh.
+where only a nonlinear law has terms beyond the quadratic terms. No formula contains a stiffness or the
+inverse of a drag, so c1 = c2 = gamma3 = 0 are allowed. M is singular: components of X without a time
+derivative satisfy algebraic equations. On several elements e the fields are continuous, and D = W^-1 sum_e
+W_e D_e. Summation by parts, W D + D^T W = diag(-1, 0, ..., 0, 1), and therefore the energy law hold to
+rounding on every mesh.
 """
 
 from dataclasses import dataclass
@@ -41,9 +41,9 @@ MIRROR_SIGNS = np.array([1.0, -1.0, -1.0])
 class MixedForm:
     """One rod on one mesh in mixed form; k1, k2 may be inf and gamma3 may be 0.
 
-    A state X has the shape (..., unknowns), with N = mesh.nodes: N values of S1, of S2 (k3/L^2) and of S3
-    (k3/L) at all nodes except the tip, then N + 1 values of v1, of v2 (L/tau2) and of Omega3 (1/tau2) at all
-    nodes. X may be complex.
+    A state X has the shape (..., unknowns). With N = mesh.nodes, X contains N values of S1 and of S2 (k3/L^2)
+    and of S3 (k3/L) at all nodes except the tip, then N + 1 values of v1 and of v2 (L/tau2) and of Omega3
+    (1/tau2) at all nodes. X may be complex.
     """
 
     rod: Rod
@@ -65,7 +65,7 @@ class MixedForm:
 
     @cached_property
     def nodal(self) -> NodalRod:
-        """The rod at all nodes: compliance, drag, strain at rest, and stress of the tip."""
+        """The rod at all nodes of the mesh, with all components of V as unknowns."""
         unknown_velocities = tuple(range(PLANE_COMPONENTS))
         jumps = jumps_on(self.rod, self.mesh)
         return nodal_rod(material_on(self.rod, self.mesh), self.mesh, unknown_velocities, jumps=jumps)
@@ -77,15 +77,15 @@ class MixedForm:
 
     @cached_property
     def parity(self) -> Array:
-        """Diagonal of the reflection R, +-1, (unknowns,). If X solves the equations, so does its mirror image
-        R X.
+        """Diagonal of the reflection R, +1 or -1, (unknowns,). If X solves the equations, then so does its
+        mirror image R X.
         """
         signs = np.repeat(MIRROR_SIGNS[:, None], self.mesh.nodes + 1, axis=1)
         return self.layout.state(signs, signs)
 
     @cached_property
     def M(self) -> Array:
-        """Diagonal (W C, 0) of the matrix M, (unknowns,)."""
+        """Diagonal of the matrix M, (unknowns,): W C for stresses, 0 for velocities."""
         weighted = self.nodal.compliance * self.mesh.quadrature
         return self.layout.state(weighted, np.zeros(weighted.shape))
 
@@ -104,7 +104,9 @@ class MixedForm:
         return A
 
     def times_A_F(self, X: Values) -> Values:
-        """Product (dA/dF) X of the derivative of A by the force F with states X; both (..., unknowns)."""
+        """Product (dA/dF) X for states X, (..., unknowns): dA/dF is the derivative of A with respect to the
+        force F.
+        """
         S, V = self.fields(X)
         W = self.mesh.quadrature
         change = self.law.change
@@ -112,14 +114,14 @@ class MixedForm:
         moved = self._along(change.tangent, S) * S
         Sigma = axial_field(-np.ones(len(W)))
         at_rest = self._along(self.nodal.rest, S)
-        # F enters by the strain and the tangent at rest and by Sigma1 = -F.
+        # F enters through the strain at rest, the tangent at rest, and Sigma1 = -F.
         forces = coad(self._along(E, S), self._stressed(S)) + coad(at_rest, moved)
         forces = forces + coad(self._strain(S), self._along(Sigma, S))
         return self.state(W * ad(self._along(E, V), V), W * forces + self._slope(moved))
 
     @cached_property
     def tip_y(self) -> Array:
-        """Row, (unknowns,), whose product with X is the deflection y of the tip in L, to first order.
+        """Vector, (unknowns,), whose product with X is the deflection y of the tip in L, to first order.
 
         y = int c2 S2 + c3 S3(u) (int_u^1 nu) du.
         """
@@ -130,17 +132,21 @@ class MixedForm:
         )
 
     def fields(self, X: Values) -> tuple[Values, Values]:
-        """Stresses S and velocities V of states X at all nodes, tip included, (3, ..., nodes + 1) each."""
+        """Returns (S, V), stresses and velocities of states X at all nodes, tip included, (3, ..., nodes + 1)
+        each.
+        """
         return self.layout.stresses(X), self.layout.velocities(X)
 
     def state(self, S: Values, V: Values) -> Values:
-        """States X from stresses S and velocities V at all nodes, (3, ..., nodes + 1) each; S at the tip is
-        ignored.
+        """States X, (..., unknowns), from stresses S and velocities V at all nodes, (3, ..., nodes + 1) each.
+        S at the tip is ignored.
         """
         return self.layout.state(S, V)
 
     def bilinear(self, X: Values, Y: Values) -> Values:
-        """The symmetric bilinear form B(X, Y) of the quadratic terms, (..., unknowns)."""
+        """The symmetric bilinear form B(X, Y) of the quadratic terms; X, Y and the result:
+        (..., unknowns).
+        """
         S, U = self.fields(X)
         T, V = self.fields(Y)
         CS = self._strain(S)
@@ -153,7 +159,9 @@ class MixedForm:
         return self.state(W * (ad(CS, V) + ad(CT, U)), forces)
 
     def trilinear(self, X: Values, Y: Values, Z: Values) -> Values:
-        """The symmetric trilinear form C(X, Y, Z) of the cubic terms, (..., unknowns); 0 for a linear law."""
+        """The symmetric trilinear form C(X, Y, Z) of the cubic terms, (..., unknowns), for states X, Y, Z; 0
+        for a linear law.
+        """
         S, T, R = (self.fields(each)[0] for each in (X, Y, Z))
         W = self.mesh.quadrature
         law = self.law
@@ -164,7 +172,7 @@ class MixedForm:
         return self.state(np.zeros_like(forces), forces)
 
     def _strain(self, S: Values) -> Values:
-        """Strains C S minus the strain of the straight rod, at all nodes, (3, ..., nodes + 1)."""
+        """The strain C S, relative to the straight rod, at all nodes, (3, ..., nodes + 1)."""
         return self._along(self.nodal.compliance, S) * S
 
     def _stressed(self, S: Values) -> Values:
@@ -183,8 +191,8 @@ class MixedForm:
     def _coupling(self) -> Array:
         """Matrix of the terms of A without D and without drag, (unknowns, unknowns).
 
-        These are W ad_E V in the equations of S, and W (ad*_E T S + ad*_{C S} Sigma) in those of V; T:
-        tangent.
+        These terms are W ad_E V in the equations of S, and W (ad*_E T S + ad*_{C S} Sigma) in the equations
+        of V; T: tangent of the law.
         """
         N = self.mesh.nodes
         W = self.mesh.quadrature[:-1]
@@ -212,7 +220,7 @@ def axial_field(values: Array) -> Array:
 
 
 def integral_to_tip(grid: Mesh, values: Array) -> Array:
-    """Integral of a field from each node to the tip, (nodes + 1,); values: the field at all nodes,
+    """Integral of a field from each node to the tip, (nodes + 1,). values: the field at all nodes,
     (nodes + 1,).
     """
     ends = reconstruction(grid.order).ends

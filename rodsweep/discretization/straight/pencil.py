@@ -1,19 +1,20 @@
 """The transverse eigenproblem as a matrix pencil that is affine in the parameters.
 
-Unknowns: y and theta in continuous P_p (Gauss-Lobatto nodes, lumped mass) without the clamped node,
-the shear force s in discontinuous P_{p-1} (Gauss nodes). With test functions (a, b, c),
+Unknowns: y and theta in continuous P_p (Gauss-Lobatto nodes, lumped mass) without the clamped node, the shear
+force s in discontinuous P_{p-1} (Gauss nodes); P_p: polynomials of degree p on each element. With test
+functions (a, b, c),
 
     w <a, y>         = -<a', s> + F <a', theta> - F a(1) theta(1)
     w gamma3 <b, th> = -<b', theta'> + g <b, s>
     0                =  <c, y' - nu theta> - c2 <c, s>
 
-which is Sec. VI with the shear force kept as an unknown. Only compliances appear, no stiffness, so
-k1, k2 = inf and gamma3 = 0 are allowed.
+These are the equations of Sec. VI with the shear force as an additional unknown (th: theta). Only compliances
+appear, no stiffnesses, so k1, k2 = inf and gamma3 = 0 are allowed.
 
-Every unknown is scaled by the square root of its mass; theta is also scaled by sqrt(gamma3), s by a
-small weight. Krylov methods orthogonalise in the Euclidean norm, which is then the norm of the Gamma
-inner product (Sec. VI): the problem at F = 0 is symmetric, and s, which has no time derivative, has
-almost no weight. Without the scaling the fourth eigenvalue loses four digits.
+Every unknown is scaled by the square root of its mass; theta is also scaled by sqrt(gamma3), s by a small
+weight. Krylov methods orthogonalise in the Euclidean norm, which is then the norm of the Gamma inner product
+(Sec. VI): the problem at F = 0 is symmetric, and s, which has no time derivative, has almost no weight.
+Without the scaling the fourth eigenvalue loses four digits.
 """
 
 from dataclasses import dataclass
@@ -34,18 +35,16 @@ from ..elements.quadrature import gauss, gauss_lobatto
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PencilNormSettings(CompiledSettings):
-    """Settings of the norm of a pencil: weights of the unknowns; and the limit for normalising a mode at the
-    tip.
-    """
+    """Settings of the norm of a pencil (weights of the unknowns), and of the normalisation of modes."""
 
     shear_weight: float = 1e-9
-    """Weight of s in the norm. Eigenvalues of nearly crushed rods lose seven digits at a weight of 1e-3, none
-    below 1e-8."""
+    """Weight of s in the norm. Eigenvalues of nearly crushed rods lose seven digits at a weight of 1e-3, and
+    no digits below 1e-8."""
     min_angle_weight: float = 1e-4
-    """Least weight of theta in the norm, for gamma3 -> 0, where theta has no time derivative."""
+    """Minimum weight of theta in the norm. The weight sqrt(gamma3) would tend to 0 for gamma3 -> 0."""
     min_tip_displacement: float = 1e-10
-    """Smallest |y(1)|, in units of the largest |y| or |theta| of a mode, at which the mode is normalised to
-    y(1) = 1."""
+    """A mode is normalised to y(1) = 1 if |y(1)| > min_tip_displacement * max(|y|, |theta|) over all
+    nodes."""
 
 
 PENCIL_NORM = PencilNormSettings()
@@ -54,8 +53,8 @@ PENCIL_NORM = PencilNormSettings()
 class PencilMatrices(NamedTuple):
     """The matrices of the pencil A x = w B x of one rod or arm.
 
-    A: entries in the order of the pattern, (nnz,). B: diagonal of B, (unknowns,). scale: factors from
-    unknowns to y and theta at the nodes, (2, nodes).
+    A: entries of A in the order of the sparsity pattern, (nnz,). B: diagonal of B, (unknowns,). scale:
+    factors from unknowns to y and theta at the nodes without the clamp, (2, nodes).
     """
 
     A: Array
@@ -68,9 +67,10 @@ class Pencil(Elements):
     """The pencil A x = w B x of uniform rods on equal elements, as six constant matrices.
 
     The matrix of one rod is A = sum_i coefficients(rod)[i] term_entries[i]. term_entries: entries of the
-    constant matrices, (6, nnz). rows, columns: of the entries, (nnz,), sorted by row, then column, with the
-    diagonal. B is diagonal: 1 for y, gamma3 over the squared angle weight for theta, 0 for s. mass: lumped
-    mass of the nodes, (nodes,). The unknowns are (y, theta, s), `nodes` of each, without the clamp.
+    constant matrices, (6, nnz). rows, columns: row and column of each entry, (nnz,), sorted by row, then
+    column, with the full diagonal. mass: lumped mass of the nodes, (nodes,). B is diagonal: 1 for y, gamma3
+    divided by the squared angle weight for theta, 0 for s. The unknowns are y, theta and s, `nodes` of each,
+    without the clamp.
     """
 
     rows: NDArray[np.int32]
@@ -83,51 +83,53 @@ class Pencil(Elements):
         return 3 * self.nodes
 
     def coefficients(self, rod: Rod) -> Array:
-        """Factors of the six constant matrices for a rod, (6,)."""
+        """Factors of the six constant matrices for the rod `rod`, (6,)."""
         t = angle_weight(rod.rotational_drag)
         return np.array([1.0, 1 / t**2, rod.F / t, rod.g / t, rod.nu / t, rod.c2])
 
     def stiffness(self, rod: Rod) -> Array:
-        """Entries of the matrix A of a rod, (nnz,)."""
+        """Entries of the matrix A of the rod `rod`, (nnz,)."""
         return self.coefficients(rod) @ self.term_entries
 
     def dense_terms(self) -> Array:
-        """The six constant matrices as dense matrices in column-major order, as LAPACK expects,
-        (6, unknowns^2).
+        """The six constant matrices as dense flat matrices in column-major order, as LAPACK expects, (6,
+        unknowns^2).
         """
         whole = np.zeros((6, self.unknowns**2))
         whole[:, self.columns.astype(int) * self.unknowns + self.rows] = self.term_entries
         return whole
 
     def matrices(self, rod: Rod) -> PencilMatrices:
-        """The matrices of the pencil of one rod."""
+        """The matrices of the pencil of the rod `rod`."""
         return PencilMatrices(self.stiffness(rod), self.inertia(rod), self.scale(rod))
 
     def inertia(self, rod: Rod) -> Array:
-        """Diagonal of the matrix B of a rod, (unknowns,)."""
+        """Diagonal of the matrix B of the rod `rod`, (unknowns,)."""
         B = np.zeros(self.unknowns)
         B[: self.nodes] = 1.0
         B[self.nodes : 2 * self.nodes] = rod.rotational_drag / angle_weight(rod.rotational_drag) ** 2
         return B
 
     def scale(self, rod: Rod) -> Array:
-        """Factors from the unknowns of a rod to y and theta at the nodes, (2, nodes)."""
+        """Factors from the unknowns to y and theta at the nodes without the clamp for the rod `rod`,
+        (2, nodes).
+        """
         push = 1 / np.sqrt(self.mass)
         return np.stack([push, push / angle_weight(rod.rotational_drag)])
 
 
 def finite_eigenvalues(rod: Rod, nodes: int) -> int:
-    """Number of finite eigenvalues on a mesh with `nodes` nodes, without the clamp.
+    """Number of finite eigenvalues of a rod on a mesh with `nodes` nodes, without the clamp.
 
-    theta contributes none in a rod without shear or without rotational drag.
+    Every node contributes one eigenvalue for y, and one for theta if the rod has shear and rotational drag.
     """
     return nodes if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * nodes
 
 
 def fields_of_vectors(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
-    """(y, theta) at all nodes, clamp included, (nodes + 1, k) each, of k eigenvectors, (unknowns, k).
+    """Returns (y, theta) of k eigenvectors, (unknowns, k), at all nodes, clamp included, (nodes + 1, k) each.
 
-    scale: factors from unknowns to y and theta at the nodes, (2, nodes).
+    scale: factors from unknowns to y and theta at the nodes without the clamp, (2, nodes).
     """
     n = scale.shape[1]
     clamp = np.zeros((1, vectors.shape[1]))
@@ -136,19 +138,22 @@ def fields_of_vectors(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]
 
 
 def angle_weight(gamma3: float) -> float:
-    """Weight of theta in the norm: sqrt(gamma3), at least `PENCIL_NORM.min_angle_weight`."""
+    """Weight of theta in the norm, sqrt(gamma3), but at least `PENCIL_NORM.min_angle_weight`."""
     return max(sqrt(gamma3), PENCIL_NORM.min_angle_weight)
 
 
 def tip_scale(y: Complex, theta: Complex) -> Complex:
-    """Factors, (k,), that normalise k modes, (nodes + 1, k), to y(1) = 1; NaN for a mode whose y(1) is 0."""
+    """Factors, (k,), that normalise k modes to y(1) = 1; NaN for a mode whose y(1) is 0 to rounding.
+
+    y, theta: the modes at all nodes, (nodes + 1, k).
+    """
     size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
     return np.where(np.abs(y[-1]) > PENCIL_NORM.min_tip_displacement * size, 1 / y[-1], np.nan + 0j)
 
 
 def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
-    """Shear force s of k eigenvectors, (unknowns, k), interpolated from the Gauss nodes to points:
-    (points, k).
+    """Shear force s of k eigenvectors, (unknowns, k), at points, (points,), interpolated from the Gauss
+    nodes: (points, k).
     """
     nodes, weights = gauss(mesh.order)
     mass = (weights * mesh.lengths[:, None] / 2).ravel() * PENCIL_NORM.shear_weight**2
@@ -160,7 +165,9 @@ def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
 
 
 def derivatives_at(mesh: Elements, values: Complex, points: Array) -> Complex:
-    """Derivatives d/du, at points, of k fields given at all nodes, (nodes + 1, k): shape (points, k)."""
+    """Derivatives d/du at points, (points,), of k fields, shape (points, k). values: the fields at all nodes,
+    (nodes + 1, k).
+    """
     nodes, _ = gauss_lobatto(mesh.order)
     derivative = 2 * differentiation(nodes)
     result = np.empty((len(points), values.shape[1]), complex)
@@ -207,10 +214,10 @@ def assemble_pencil(elements: int, order: int) -> Pencil:
 
 
 def _gather(elements: int, order: int, entries: list, mass: Array, scale: Array) -> Pencil:
-    """The `Pencil` from element blocks (index of constant matrix, rows, columns, block), summed into one
-    pattern.
+    """The `Pencil` in which the blocks `entries` of all elements are summed into one sparsity pattern.
 
-    mass: (nodes,). scale: scale of the unknowns, (unknowns,).
+    entries: (index of the constant matrix, rows, columns, block) of each block. mass: lumped mass, (nodes,).
+    scale: scale of the unknowns, (unknowns,).
     """
     size = 3 * elements * order
     diagonal = np.arange(size)

@@ -1,9 +1,9 @@
-"""The tip layer of an arm without rotational drag, whose angle theta follows y: T of
-`rodsweep.model.adjoint`.
+"""The tip layer of an arm without rotational drag, in which the angle theta follows y instantaneously.
 
-d = theta - theta+ solves d' = c3 m, m' = q d with q = g nu/c2 and d(0) = 0, and T = d(1)/m(1). The weak form
-is int b' d'/c3 + b q d = b(1) m(1). T is the energy of d for m(1) = 1, so the error of T is the square of the
-error of d.
+d = theta - theta+, the difference between the angle and the adjoint angle (`rodsweep.model.adjoint`), solves
+d' = c3 m, m' = q d with q = g nu/c2 and d(0) = 0; this module computes T = d(1)/m(1). With test functions b
+the weak form is int b' d'/c3 + b q d = b(1) m(1). T is the energy of d for m(1) = 1, so the error of T is the
+square of the error of d.
 """
 
 from dataclasses import dataclass
@@ -23,21 +23,21 @@ class TipLayerSettings:
     """Settings for the elements that resolve the tip layer."""
 
     max_length: float = 4.0
-    """Longest element next to the tip, in units of the layer's thickness; elements away from the tip may be
-    longer."""
+    """Maximum length of the element at the tip, divided by the thickness of the layer. Elements away from the
+    tip may be longer."""
     max_equal_elements: int = 64
-    """Maximum number of equal elements; a thinner layer also has elements that get shorter towards the
-    tip."""
+    """Maximum number of equal elements. For a thinner layer the elements near the tip are halved
+    repeatedly."""
     samples_per_piece: int = 33
-    """Number of samples of each interval between breaks of an arm, from which the thickness of the layer is
+    """Number of samples in each interval between breaks of an arm, from which the thickness of the layer is
     estimated."""
 
 
 TIP_LAYER = TipLayerSettings()
 TIP_LAYER_ORDER = 16
-"""Order of the elements of the tip layer. It resolves exp(kappa u) over `TIP_LAYER.max_length`/kappa to
-rounding, because T is returned without an error. Order 8 would cause an error of 4e-11 of a numerical
-abscissa."""
+"""Order of the elements of the tip layer. This order resolves exp(kappa u) over a length of
+`TIP_LAYER.max_length`/kappa to rounding, because T is returned without an error estimate. Order 8 would cause
+an error of 4e-11 in a numerical abscissa."""
 
 
 def tip_layer_ratio(rod: Rod) -> float:
@@ -63,11 +63,12 @@ def tip_layer_ratio(rod: Rod) -> float:
 
 
 def _at_right_end(K: Array, before: float) -> float:
-    """The ratio d/m at the right end of an element, from the ratio `before` at its left end.
+    """The ratio d/m at the right end of an element. before: the ratio d/m at the left end.
 
     K: stiffness matrix of the element, (nodes, nodes).
     """
-    # 0 is the clamp, whose node is no unknown; else all elements before act as a stiffness 1/before.
+    # At the clamp (before = 0) d is not an unknown; otherwise all previous elements act as a spring of
+    # stiffness 1/before.
     if before == 0:
         K = K[1:, 1:]
     else:
@@ -79,8 +80,8 @@ def _at_right_end(K: Array, before: float) -> float:
 
 
 def _edges(rod: Rod) -> Array:
-    """Edges of elements: breaks, equal elements and, for a thin layer, shorter elements towards the tip;
-    increasing.
+    """Increasing edges of elements: breaks of the arm, edges of equal elements and, for a thin layer, edges
+    of shorter elements towards the tip.
     """
     breaks = rod.build.breaks
     pieces = zip(breaks, breaks[1:], strict=False)

@@ -1,7 +1,7 @@
-"""Meshes of the transverse eigenproblem: equal elements of a uniform rod, or elements of an arm.
+"""Meshes of the transverse eigenproblem: equal elements for a uniform rod, an `ArmMesh` for any other arm.
 
 A uniform rod of linear material has a `Resolution`. Every other arm has an `ArmMesh`, whose elements end at
-the jumps of its material.
+the jumps of the material.
 """
 
 from functools import lru_cache
@@ -19,7 +19,9 @@ AnyMesh = Resolution | ArmMesh
 
 
 def mesh_for(rod: Rod, wave_number: float, accuracy: float) -> AnyMesh:
-    """The mesh that resolves fields of a wave number, in 1/L, to a relative accuracy."""
+    """The mesh that resolves fields of the wave number `wave_number`, in 1/L, on a rod to the relative
+    accuracy `accuracy`.
+    """
     if rod.standard:
         return resolution_for(wave_number, accuracy)
     elements = arm_elements(rod, wave_number, accuracy)
@@ -27,12 +29,12 @@ def mesh_for(rod: Rod, wave_number: float, accuracy: float) -> AnyMesh:
 
 
 def finer_mesh(rod: Rod, mesh: AnyMesh) -> AnyMesh:
-    """The mesh with about a third more unknowns that follows `mesh` in a refinement."""
+    """The next mesh after `mesh` in a refinement, with about a third more unknowns."""
     return finer_resolution(mesh) if isinstance(mesh, Resolution) else finer_arm_mesh(rod, mesh)
 
 
 def pencil_on(mesh: AnyMesh) -> AnyPencil:
-    """The pencil of the transverse eigenproblem on a mesh, cached for later rods on equal meshes."""
+    """The pencil of the transverse eigenproblem on a mesh, cached for other rods on an equal mesh."""
     return assemble_pencil(mesh.elements, mesh.order) if isinstance(mesh, Resolution) else _arm_pencil(mesh)
 
 

@@ -1,7 +1,7 @@
-"""Dense matrices of the mixed form about a straight arm, whose elements differ from each other.
+"""Dense matrices of the mixed form about a straight arm whose elements differ from each other.
 
-The interface is that of `rodsweep.discretization.straight.elements`, which uses the equal elements of a
-uniform rod.
+The class has the same methods as `StraightElements` of `rodsweep.discretization.straight.elements`, which
+uses the equal elements of a uniform rod.
 """
 
 from dataclasses import dataclass
@@ -19,9 +19,11 @@ from .mixed_form import MixedForm
 
 @dataclass(frozen=True, eq=False)
 class WholeMatrices:
-    """A and M of a `MixedForm` about its straight arm, for the given components of stresses and velocities.
+    """A and M of a `MixedForm` about its straight arm, restricted to some components of stresses and
+    velocities.
 
-    Vectors are states of the form, (unknowns,); other components are ignored, and 0 in results.
+    components: indices of these components. Vectors are states of the form, (unknowns,); all other components
+    are ignored, and are 0 in results.
     """
 
     form: MixedForm
@@ -29,19 +31,19 @@ class WholeMatrices:
 
     @cached_property
     def state_indices(self) -> NDArray[np.int_]:
-        """Indices in a state of the unknowns of the given components, (n,)."""
+        """Indices in a state of the unknowns of `components`, (n,)."""
         size = self.form.mesh.nodes + 1
         marks = np.isin(np.arange(PLANE_COMPONENTS), self.components)[:, None] * np.ones(size)
         return np.flatnonzero(self.form.layout.state(marks, marks))
 
     @cached_property
     def A(self) -> Array:
-        """Rows and columns of A that belong to the given components, (n, n)."""
+        """Rows and columns of the matrix A for the n unknowns of `components`, (n, n)."""
         return self.form.A[np.ix_(self.state_indices, self.state_indices)]
 
     @cached_property
     def M(self) -> Array:
-        """Diagonal of M for the given components, (n,)."""
+        """Diagonal of M for the unknowns of `components`, (n,)."""
         return self.form.M[self.state_indices]
 
     def apply_A(self, x: Values) -> Values:
@@ -53,7 +55,9 @@ class WholeMatrices:
         return self._spread(self.M * x[self.state_indices])
 
     def size_of_product(self, p: Values, q: Values) -> float:
-        """|p| |A| |q|, with the moduli of all entries: p A q has a rounding error relative to this number."""
+        """The number |p| |A| |q|, with the modulus of every entry. The rounding error of p A q is about
+        machine epsilon times this number. p, q: (unknowns,).
+        """
         return float(np.abs(p[self.state_indices]) @ (np.abs(self.A) @ np.abs(q[self.state_indices])))
 
     def factors(self, shift: complex) -> "WholeFactors":
@@ -61,7 +65,9 @@ class WholeMatrices:
         return WholeFactors(self, lu_factorisation(self.A - np.diag(shift * self.M).astype(complex)))
 
     def _spread(self, values: Values) -> Values:
-        """A state, (unknowns,), with `values`, (n,), in the given components and 0 in all others."""
+        """A state, (unknowns,), with `values`, (n,), in the unknowns of `components`, and 0 in all other
+        entries.
+        """
         x = np.zeros(self.form.unknowns, values.dtype)
         x[self.state_indices] = values
         return x
@@ -75,12 +81,14 @@ class WholeFactors:
     factors: LU
 
     def solve(self, b: Values, adjoint: bool = False) -> Complex:
-        """The solution x of K x = b, or of K^H x = b if `adjoint`; both (unknowns,)."""
+        """The solution x, (unknowns,), of K x = b or, if `adjoint`, of K^H x = b; b: (unknowns,)."""
         matrices = self.matrices
         x: Complex = matrices._spread(solve_factorised(self.factors, b[matrices.state_indices], adjoint))
         return x
 
 
 def straight_matrices(form: MixedForm, components: tuple[int, ...]) -> StraightElements | WholeMatrices:
-    """A and M of a form about its straight rod, for the given components of stresses and velocities."""
+    """A and M of the form `form` about its straight rod. components: indices of the components of stresses
+    and velocities to which A and M are restricted.
+    """
     return (StraightElements if form.rod.standard else WholeMatrices)(form, components)

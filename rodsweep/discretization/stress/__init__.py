@@ -1,2 +1,1 @@
-"""The nonlinear rod on a mesh with its stresses as unknowns: balance, rates, Jacobian, and motion of the
-tip."""
+"""The nonlinear rod on a mesh with stresses as unknowns: balance, rates, Jacobian, and motion of the tip."""

@@ -1,30 +1,31 @@
-"""The nonlinear rod on a mesh with its stresses as unknowns: its balance, compiled.
+"""The compiled balance of the nonlinear rod on a mesh with stresses as unknowns.
 
-Sec. III, second formulation, in the plane and in space; the argument `g`, an algebra of `model.algebra`,
-makes the difference. The unknowns S are the stresses of a linear rod with the same strain, minus the stresses
-of the straight rod, at every node except the tip, where S = 0. With the compliances C and the drags Gamma of
+Sec. III, second formulation, in the plane or in space, according to the argument `g`, an algebra of
+`model.algebra`. The unknowns S are the stresses of a linear rod with the same strain, minus the stresses of
+the straight rod, at every node except the tip, where S = 0. With the compliances C and the drags Gamma of
 each node, the assembled differentiation matrix D, the weights W of the nodes, and the strain E0 of the
 straight rod under its force,
 
     E = E0 + C S,    Sigma = Sigma(1) + s(S),    Gamma V = D*_E Sigma = D s(S) + ad*_E Sigma,
     W C dS/dt = G(S) = -D^T W V + W ad_E V.
 
-The constitutive law is s(S), local at each node (`rodsweep.model.material.response`); s(S) = S for a linear
+The constitutive law s(S) is local at each node (`rodsweep.model.material.response`); s(S) = S for a linear
 rod. The strain is affine in S for every law, so the matrix W C of dS/dt is constant and diagonal. At a node
-where the material jumps E is the mean of both sides, and s(S) the stress that both have
-(`rodsweep.model.material.jump`).
+where the material jumps, E is the mean strain of both sides, and s(S) is the stress, which is equal on both
+sides (`rodsweep.model.material.jump`).
 
-A compliance of 0 is allowed, since no formula divides by it; the stress then has no time derivative. At the
-tip G is the reaction r, and -r is the velocity of the tip: -r converges twice as fast as V(1), and
-dU/dt = -Sigma(1) r - <Gamma V, V> holds to rounding. The condition for the tip's stress is essential, the
-clamp V(0) = 0 is natural.
+A compliance may be 0, since no formula divides by a compliance; the corresponding stress then has no time
+derivative. At the tip G is the reaction r, and -r is the velocity of the tip: -r converges twice as fast as
+V(1), and dU/dt = -Sigma(1) r - <Gamma V, V> holds to rounding. The condition for the stress of the tip is
+essential, the clamp V(0) = 0 is natural.
 
-V is eliminated, except components whose drag is so small that division by the drag costs digits. These
-components are further unknowns at all nodes, tip included, with the equations W (D*_E Sigma - Gamma V) = 0.
-A state is flat: S1 at every node, S2 at every node, and so on, then the unknown components of V.
+V is eliminated, except components with a drag so small that division by the drag costs digits. They become
+unknowns at all nodes, tip included, with the equations W (D*_E Sigma - Gamma V) = 0. A state is flat: S1 at
+every node, S2 at every node, and so on, then the unknown components of V.
 
-`rodsweep.model.balance` has the balance without mesh, `mixed_form` has all of V as unknowns, `jacobian` has
-the exact Jacobian.
+Notation of all functions: x: state, (unknowns,). c: the rod at the nodes. m: matrices of the mesh. d:
+dimension of g. See also `rodsweep.model.balance` (without a mesh), `mixed_form` (all of V as unknowns) and
+`jacobian`.
 """
 
 import numpy as np
@@ -42,7 +43,7 @@ from ..state_layout import stress_index, velocity_index
 
 @UnrolledOverAlgebra
 def write_fields(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
-    """Writes the strains E and stresses s(S) of a state x, (unknowns,), at all nodes into E and S,
+    """Writes the strains E and the stresses s(S) of a state x, (unknowns,), at all nodes into E and S,
     (d, nodes + 1) each.
     """
     size = E.shape[1]
@@ -57,7 +58,7 @@ def write_fields(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
 
 @compiled
 def apply_law(S: Array, c: NodalRod) -> None:
-    """Replaces the unknown stresses S by s(S) at all nodes, (3, nodes + 1), for a rod in the plane."""
+    """Replaces the unknown stresses S at all nodes, (3, nodes + 1), by s(S), for a rod in the plane."""
     k = 0
     for i in range(S.shape[1]):
         if k < len(c.jumps) and c.jumps[k] == i:
@@ -70,24 +71,24 @@ def apply_law(S: Array, c: NodalRod) -> None:
 
 @UnrolledOverAlgebra
 def write_forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes the forces per length D*_E Sigma at all nodes into out, (d, nodes + 1), from E and s(S) of
-    `write_fields`.
+    """Writes the forces per length D*_E Sigma at all nodes into out, (d, nodes + 1).
+
+    E, S: strains and stresses from `write_fields`, (d, nodes + 1) each.
     """
     size = len(m.weights)
     out[:, :] = 0.0
     for j in range(size - 1):
         s = [S[a, j] for a in g.components]
         for i in range(size):
-            # Nodes outermost and components innermost: the loops over components are unrolled, and D is read
-            # along rows.
+            # Loops over components are innermost because they are unrolled; D is read along rows.
             slope = m.D_transposed[j, i]
             for a in g.components:
                 out[a, i] += slope * s[a]
     for i in range(size):
         force = [out[a, i] for a in g.components]
         for a, b, o, sign in g.terms:
-            # Minus: the co-adjoint term is the transpose of (ad_E V)_a = sum a_abo E_b V_o. S is the
-            # deviation from the tip stress, which the derivative does not see.
+            # Minus: ad*_E is minus the transpose of (ad_E V)_a = sum s_abo E_b V_o. The tip stress is
+            # constant along the rod, so it enters only here.
             force[o] -= sign * E[b, i] * (c.tip_stress[a] + S[a, i])
         for a in g.components:
             out[a, i] = force[a]
@@ -95,9 +96,9 @@ def write_forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: Nod
 
 @UnrolledOverAlgebra
 def write_strain_rates(g: Algebra, E: Array, V: Array, G: Array, m: NodeMatrices) -> None:
-    """Writes the strain rates W D_E V at all nodes, in weak form, into G, from strains E and velocities V.
+    """Writes the strain rates W (V' + ad_E V) at all nodes, in weak form, into G.
 
-    E, V, G: (d, nodes + 1).
+    E: strains. V: velocities. E, V, G: (d, nodes + 1).
     """
     size = len(m.weights)
     for i in range(size):
@@ -124,7 +125,7 @@ def add_weak_slope(g: Algebra, V: Array, G: Array, m: NodeMatrices) -> None:
 @UnrolledOverAlgebra
 def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the velocities V and the strain rates G = W C dS/dt of a state x, (unknowns,), at all nodes into
-    V and G, both (d, nodes + 1).
+    V and G, (d, nodes + 1) each.
 
     Unknown components of V are copied from x.
     """
@@ -138,7 +139,7 @@ def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatric
             V[a, i] *= c.mobility[a, i]
     for k in range(len(c.unknown_velocities)):
         for i in range(size):
-            # Components that are unknowns have mobility 0, so the line above has set them to 0.
+            # The loop above has set these components to 0, because their mobility is 0.
             V[c.unknown_velocities[k], i] = x[velocity_index(k, i, g.dimension, size - 1)]
     write_strain_rates(g, E, V, G, m)
 
@@ -147,7 +148,7 @@ def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatric
 def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the residuals W (D*_E Sigma - Gamma V) of the unknown components of V into out, (unknowns,).
 
-    x: state, (unknowns,). Entries of out for stresses are not written.
+    x: state, (unknowns,). Entries of out for stresses are not changed.
     """
     size = len(m.weights)
     E = np.empty((g.dimension, size))
@@ -164,14 +165,14 @@ def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatri
 
 @compiled
 def law_change(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
-    """Writes the derivative of s(S) by a parameter, at fixed S, into dS, (3, nodes + 1).
+    """Writes the derivative of s(S) with respect to a parameter, at fixed S, into dS, (3, nodes + 1).
 
-    x: a state in the plane, (unknowns,). change: derivative of the rod `c` by this parameter.
+    x: a state in the plane, (unknowns,). change: derivative of the rod `c` with respect to the parameter.
     """
     n = dS.shape[1] - 1
     k = 0
     for i in range(n + 1):
-        # The tip's stress is no unknown; its deviation is 0.
+        # At the tip S = 0.
         q1, q3 = (x[stress_index(0, i, n)], x[stress_index(2, i, n)]) if i < n else (0.0, 0.0)
         if k < len(c.jumps) and c.jumps[k] == i:
             dS[0, i], dS[2, i] = stress_change_at_jump(c.law, c.sides[k], change.sides[k], q1, q3)
@@ -186,11 +187,12 @@ def law_change(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
 def balance_change(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
     g: Algebra, x: Array, V: Array, out: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
 ) -> None:
-    """Writes the derivatives of the equations by a parameter, at a fixed state x, (unknowns,), into out.
+    """Writes the derivatives of the equations with respect to a parameter, at a fixed state x, (unknowns,),
+    into out.
 
-    out: (3, d, nodes + 1). out[0]: derivative of D*_E Sigma - Gamma V at fixed V; out[1]: of V; out[2]: of G.
-    V: velocity at x, (d, nodes + 1). change: derivative of the rod `c` by the parameter. Unknown components
-    of V are fixed.
+    out: (3, d, nodes + 1). out[0]: derivative of D*_E Sigma - Gamma V at fixed V; out[1]: derivative of V;
+    out[2]: derivative of G. V: velocity at x, (d, nodes + 1). change: derivative of the rod `c` with respect
+    to the parameter. Unknown components of V are fixed.
     """
     size = len(m.weights)
     E = np.empty((g.dimension, size))
@@ -202,7 +204,7 @@ def balance_change(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count re
     for i in range(size):
         s = [x[stress_index(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
         dE = [change.rest[a, i] + change.compliance[a, i] * s[a] for a in g.components]
-        # Gamma V = D* Sigma at fixed state, so d(force) - dGamma V = Gamma dV.
+        # The derivative of Gamma V = D* Sigma at a fixed state: Gamma dV = d(force) - dGamma V.
         force = [-change.drag[a, i] * V[a, i] for a in g.components]
         if c.law != LINEAR_LAW:
             for j in range(size):

@@ -1,4 +1,4 @@
-"""One nonlinear rod on one mesh with stresses as unknowns, for all limits: k1 = inf, k2 = inf, gamma3 = 0.
+"""One nonlinear rod on one mesh with stresses as unknowns; k1 = inf, k2 = inf and gamma3 = 0 are allowed.
 
 Equations and unknowns are defined in `rodsweep.discretization.stress.balance`.
 """
@@ -21,9 +21,10 @@ class StressFormSettings:
     """Settings for the choice of the unknowns of a `StressForm`."""
 
     min_eliminated_drag: float = 1e-5
-    """Rotational drag from which on the angular velocity Omega is eliminated; with a smaller drag Omega is an
-    unknown. Division by a smaller drag costs Floquet multipliers their digits (errors of 2e-9 at 1e-6, of
-    2e-7 at 1e-8), and cycles of soft rods are not found. Omega as an unknown takes 2.4 times as long."""
+    """Omega is eliminated if the rotational drag is at least this; with a smaller drag Omega is an unknown.
+    Division by a smaller drag costs digits of Floquet multipliers (errors of 2e-9 at a drag of 1e-6, of 2e-7
+    at 1e-8), and cycles of soft rods are not found. A form with Omega as an unknown takes 2.4 times as long.
+    """
 
 
 STRESS_FORM = StressFormSettings()
@@ -36,14 +37,14 @@ OMEGA_COMPONENT = (2,)
 class StressForm(RodOnMesh):
     """One nonlinear rod on one mesh with stresses as unknowns.
 
-    A state x has the shape (..., unknowns): n1 + F and n2 in k3/L^2, and m3 in k3/L, of a linear rod with the
-    same strain, at every node except the tip, where all three are 0; then, for small gamma3, Omega in 1/tau2
-    at all nodes.
+    A state x has the shape (..., unknowns). It contains n1 + F and n2 in k3/L^2, and m3 in k3/L, of a linear
+    rod with the same strain, at every node except the tip, where all three stresses are 0; then, for small
+    gamma3, the angular velocity Omega in 1/tau2 at all nodes.
     """
 
     @property
     def omega_unknown(self) -> bool:
-        """Whether the angular velocity Omega is among the unknowns."""
+        """Whether the angular velocity Omega is an unknown."""
         return self.rod.least_rotational_drag < STRESS_FORM.min_eliminated_drag
 
     @property
@@ -54,35 +55,39 @@ class StressForm(RodOnMesh):
         return self.layout.stresses(x)
 
     def states_on(self, grid: Mesh, x: Array) -> Array:
-        """States x interpolated to the mesh `grid`, (..., unknowns on grid)."""
+        """States x, (..., unknowns), interpolated to the mesh `grid`, (..., unknowns on grid)."""
         E = transfer(self.mesh, grid)
         if self.smooth_stresses:
             return self.layout.interpolate(x, E)
         layout = plane_layout(grid.nodes, self.unknown_velocities)
-        # Velocities are continuous also where stresses jump, so they are interpolated as they are.
+        # Velocities are continuous where stresses jump, so their interpolation needs no correction.
         V = np.zeros((PLANE_COMPONENTS, *x.shape[:-1], grid.nodes + 1))
         V[list(self.unknown_velocities)] = self.layout.velocities(x) @ E.T
         return layout.state(self.stresses_on(grid, x), V)
 
     def parameter_derivative(self, name: str) -> NodalChange:
-        """Derivative of `nodal` by the path variable of a parameter: 1/k for a stiffness k, else the
-        parameter.
+        """Derivative of `nodal` with respect to the coordinate of the parameter `name`: 1/k for a stiffness
+        k, else the parameter itself.
         """
         change = material_change_on(self.rod, name, self.mesh)
         return nodal_change(change, self.mesh, jump_change_on(self.rod, name, self.mesh))
 
     @cached_property
     def mass(self) -> Array:
-        """Diagonal W C of the mass matrix, 0 for Omega, (unknowns,)."""
+        """Diagonal of the mass matrix, (unknowns,): W C for stresses, 0 for Omega."""
         return self.mass_of(self.nodal)
 
     def mass_of(self, rod: NodalRod | NodalChange) -> Array:
-        """`mass` with the compliances of another rod, or of a derivative of the rod, (unknowns,)."""
+        """The diagonal `mass` with the compliances of `rod`, (unknowns,). rod: another rod, or a derivative
+        of a rod.
+        """
         weighted = rod.compliance * self.mesh.quadrature
         return self.layout.state(weighted, np.zeros(weighted.shape))
 
     def amplitude(self, x: Array) -> Array:
-        """Amplitude sqrt(x M x) of states x, with the mass matrix M; 0 for the straight rod; (...)."""
-        # x M x is twice the elastic energy of a linear rod; Omega has mass 0 and does not count.
+        """Amplitude sqrt(x M x), (...), of states x, (..., unknowns), with the mass matrix M; 0 for the
+        straight rod.
+        """
+        # x M x is twice the elastic energy of a linear rod; Omega has mass 0.
         amplitude: Array = np.sqrt(x**2 @ self.mass)
         return amplitude

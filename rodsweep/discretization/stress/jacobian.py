@@ -1,4 +1,4 @@
-"""The exact Jacobian of the rod on a mesh with its stresses as unknowns, compiled.
+"""The compiled exact Jacobian of the rod on a mesh with stresses as unknowns.
 
 With A_ac = sum_b s_abc E_b and B_cb = d(ad*_E Sigma)_c/dS_b at each node, the derivative of G (see `balance`)
 for a linear law is
@@ -6,10 +6,10 @@ for a linear law is
     J_ab(i, j) = [a = b] (-D^T W Gamma_a^-1 D)_ij + (-D^T W)_ij (B_ab/Gamma_a)_j + w_i (A_ab/Gamma_b)_i D_ij
                  + [i = j] w_i (sum_c A_ac B_cb/Gamma_c + d(ad_E V)_a/dS_b at fixed V).
 
-The patterns of the algebra, the first argument `g`, show which blocks are 0 for every E.
+The sparsity patterns of the algebra, the first argument `g`, show which blocks are 0 for every E.
 
-Another law replaces S by s(S) in Sigma alone. The derivative above is the sum of a part P with respect to
-stresses and a part with respect to strains. With the tangent T = ds/dS of the law, local at each node, J
+For another law, s(S) replaces S in Sigma, but not in E. The derivative above is the sum of a part P with
+respect to Sigma and a part with respect to E. With the tangent T = ds/dS of the law, local at each node, J
 becomes J - P + P T.
 """
 
@@ -31,11 +31,11 @@ from .balance import write_fields
 def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
     g: Algebra, x: Array, V: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
-    """Writes the Jacobian of the equations at x, (unknowns,), into J, (unknowns, unknowns).
+    """Writes the Jacobian of the equations at the state x, (unknowns,), into J, (unknowns, unknowns).
 
-    V: velocity at x, (d, nodes + 1). Rows are equations, in the order of the unknowns: G at all nodes except
-    the tip, then the balance of each unknown component of V. tip, (d, unknowns): derivative of the reaction
-    at the tip.
+    V: velocity at x, (d, nodes + 1). Rows of J are equations in the order of the unknowns: G at all nodes
+    except the tip, then the balance of each unknown component of V. tip: output, derivative of the reaction
+    at the tip, (d, unknowns).
     """
     size = len(m.weights)
     E = np.empty((g.dimension, size))
@@ -45,7 +45,7 @@ def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count referenc
     if c.law != LINEAR_LAW:
         P = np.empty(J.shape)
         tip_P = np.empty(tip.shape)
-        # With compliances of 0 the derivative is that by s(S) at fixed strain, on which the law acts.
+        # With compliances of 0 the strain is fixed, so the derivative is P.
         _derivative(g, (E, S, V), P, tip_P, np.zeros(c.compliance.shape), c, m)
         # Unknown velocities do not depend on the law, so their columns of P are not used.
         _by_law(x, J, P, c)
@@ -54,7 +54,9 @@ def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count referenc
 
 @compiled
 def _by_law(x: Array, J: Array, P: Array, c: NodalRod) -> None:
-    """Adds P (T - 1) to J; both (rows, unknowns). T: tangent of the law of a rod in the plane, at state x."""
+    """Adds P (T - 1) to J; both (rows, unknowns). T: tangent of the law of the planar rod `c` at the state
+    x.
+    """
     n = c.compliance.shape[1] - 1
     k = 0
     for i in range(n):
@@ -84,9 +86,10 @@ def _derivative(  # noqa: PLR0913, PLR0917 - as above
     c: NodalRod,
     m: NodeMatrices,
 ) -> None:
-    """Writes the derivative with respect to S of the equations for a linear law into J and tip.
+    """Writes the derivative of the equations with respect to S, for a linear law, into J and tip.
 
-    at: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1); 0 for the part P.
+    at: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1); arrays of 0 give
+    the part P. J: (unknowns, unknowns). tip: (d, unknowns).
     """
     slopes = np.empty((g.dimension, g.dimension, len(m.weights)))
     _velocity_slopes(g, at, slopes, compliance, c)
@@ -100,9 +103,11 @@ def _derivative(  # noqa: PLR0913, PLR0917 - as above
 def _velocity_slopes(
     g: Algebra, at: tuple[Array, Array, Array], slopes: Array, compliance: Array, c: NodalRod
 ) -> None:
-    """Writes the velocities' derivatives by the stresses at each node into the nonzero blocks of slopes.
+    """Writes the derivatives of the velocities with respect to the stresses of the same node into the nonzero
+    blocks of slopes.
 
-    slopes: (d, d, nodes + 1), mobility times the derivative B of ad*_E Sigma, without the term of D.
+    slopes: (d, d, nodes + 1), mobility times the derivative B of ad*_E Sigma; the term with D is not
+    included. at, compliance: as in `_derivative`.
     """
     E, S, _ = at
     for i in range(slopes.shape[2]):
@@ -130,7 +135,7 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
 ) -> None:
     """Writes the derivative of G with respect to S into J, (unknowns, unknowns), and tip, (d, unknowns).
 
-    at, compliance: as for `_derivative`. slopes: result of `_velocity_slopes`.
+    at, compliance: as in `_derivative`. slopes: result of `_velocity_slopes`.
     """
     n = len(m.weights) - 1
     E, _, V = at
@@ -142,8 +147,7 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
         rows = [J[stress_index(a, i, n)] if i < n else tip[a] for a in g.components]
         for a in g.components:
             for j in range(n):
-                # The second derivative -D^T W Gamma^-1 D depends on the rod alone, so it is made once per
-                # rod.
+                # -D^T W Gamma^-1 D does not depend on the state and is computed once per rod.
                 rows[a][stress_index(a, j, n)] = c.second[a, i, j]
         for j in range(n):
             weak = m.weak[i, j]
@@ -151,14 +155,14 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
             for a, b in g.pairs:
                 back = weak * slopes[a, b, j] if g.backward[a][b] else 0.0
                 rows[a][stress_index(b, j, n)] = back + (ahead[a][b] * slope if g.forward[a][b] else 0.0)
-        # The tip's own stress is prescribed: no column belongs to it.
+        # The stress of the tip is prescribed and has no column.
         if i < n:
             same = [[0.0 for _ in g.components] for _ in g.components]
             for a, b, o, sign in g.terms:
                 same[a][b] += sign * m.weights[i] * compliance[b, i] * V[o, i]
             for a, o in g.pairs:
                 for b in g.components:
-                    # Pairs that vanish for every strain are left out when the loops are unrolled.
+                    # Unrolling leaves out pairs that are 0 for every strain.
                     if g.forward[a][o] and g.backward[o][b]:
                         same[a][b] += A[a][o] * slopes[o, b, i]
             for a in g.components:
@@ -170,7 +174,8 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
 def _kept_columns(  # noqa: PLR0913, PLR0917 - as above
     g: Algebra, k: int, E: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
-    """Writes the derivative of the strain rates G by the k-th unknown velocity into J and tip.
+    """Writes the derivative of the strain rates G with respect to the k-th unknown velocity component into J
+    and tip.
 
     E: strains, (d, nodes + 1). J: (unknowns, unknowns). tip: (d, unknowns).
     """
@@ -198,7 +203,10 @@ def _kept_rows(  # noqa: PLR0913, PLR0917 - as above
     c: NodalRod,
     m: NodeMatrices,
 ) -> None:
-    """Writes the rows of the balance of the k-th unknown velocity into J, (unknowns, unknowns)."""
+    """Writes the rows of the balance of the k-th unknown velocity component into J, (unknowns, unknowns).
+
+    at, compliance: as in `_derivative`.
+    """
     size = len(m.weights)
     n = len(m.weights) - 1
     of = c.unknown_velocities[k]

@@ -1,6 +1,7 @@
-"""The rod on a mesh as an explicit differential equation dz/dt = f(z), for finite stiffnesses, compiled.
+"""The compiled rod on a mesh as an explicit differential equation dz/dt = f(z), for finite stiffnesses.
 
-The unknown is z = C^(1/2) S, with the stresses S of `balance`; z^2 is an energy density.
+The unknown is z = C^(1/2) S, with the stresses S of `balance` and the nodal compliances C; z^2 is an energy
+density.
 """
 
 import numpy as np
@@ -15,7 +16,7 @@ from ..state_layout import stress_index
 
 @compiled_for_vectors
 def write_rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes dz/dt into `out`. z, out: scaled states, (unknowns,), with time in tau2.
+    """Writes dz/dt, with time in tau2, of the state z into out; z, out: (unknowns,).
 
     roots: positive square roots of the compliances C at the nodes, (d, nodes + 1).
     """
@@ -33,7 +34,7 @@ def write_rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices)
 
 @compiled_for_vectors
 def _unscale(z: Array, x: Array, roots: Array) -> None:
-    """Writes the stresses S = C^(-1/2) z into x; x, z: (unknowns,)."""
+    """Writes the stresses S = C^(-1/2) z into x; x, z: (unknowns,). roots: as in `write_rate`."""
     d = roots.shape[0]
     n = roots.shape[1] - 1
     for a in range(d):
@@ -44,10 +45,9 @@ def _unscale(z: Array, x: Array, roots: Array) -> None:
 
 @compiled_for_vectors
 def write_rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes the Jacobian d(dz/dt)/dz into out, (unknowns, unknowns), column-major as in LAPACK: out[column,
-    row].
+    """Writes the Jacobian d(dz/dt)/dz at the state z, (unknowns,), into out, (unknowns, unknowns).
 
-    z: (unknowns,). roots: square roots of C, positive, (d, nodes + 1).
+    out is column-major as in LAPACK: out[column, row]. roots: as in `write_rate`.
     """
     d, size = c.drag.shape
     unknowns = len(z)
@@ -73,13 +73,15 @@ def write_rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: Node
 
 @compiled_for_vectors
 def write_rates(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes dz/dt of n states z into out; states, out: (n, unknowns)."""
+    """Writes dz/dt of n states z into out; states, out: (n, unknowns). roots: as in `write_rate`."""
     for i in range(len(states)):
         write_rate(states[i], out[i], roots, c, m)
 
 
 @compiled_for_vectors
 def write_rate_jacobians(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes the Jacobians of n states z, (n, unknowns), into out, (n, unknowns, unknowns)."""
+    """Writes the Jacobians of `write_rate_jacobian` at n states z, (n, unknowns), into out,
+    (n, unknowns, unknowns).
+    """
     for i in range(len(states)):
         write_rate_jacobian(states[i], out[i], roots, c, m)

@@ -1,7 +1,7 @@
-"""Position and velocity of the tip from strains and strain rates, compiled.
+"""Compiled position and velocity of the tip from strains and strain rates.
 
-theta(1) = int Pi, r(1) = int R(theta) (h1, h2), and time derivatives. `mesh.shape_from_strains` computes
-positions of all nodes.
+theta(1) = int Pi, r(1) = int R(theta) (h1, h2), where R(theta) is the rotation by theta, and the time
+derivatives of both integrals. Positions of all nodes are computed in `elements.mesh`.
 """
 
 from functools import lru_cache
@@ -16,11 +16,11 @@ from ..elements.mesh import reconstruction
 
 
 class TipMatrices(NamedTuple):
-    """Matrices that integrate strains to the position of the tip, on an element [0, 1] with p + 1 nodes.
+    """Matrices that integrate strains to the position of the tip, on one element [0, 1] with p + 1 nodes.
 
     values: interpolation from nodes to g Gauss points, (p + 1, g). angles: integrals of nodal polynomials
     from 0 to the Gauss points, (p + 1, g). weights: Gauss weights, (g,). ends: integrals of nodal polynomials
-    over the element, (p + 1,). lengths: of all elements, (elements,).
+    over the element, (p + 1,). lengths: lengths of all elements, (elements,).
     """
 
     values: Array
@@ -40,11 +40,12 @@ def tip_matrices(grid: Elements) -> TipMatrices:
 
 @compiled_for_vectors
 def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocity: Array) -> None:
-    """Writes (x, y, theta) of the tip, in L and rad, into tip, and its time derivative into velocity.
+    """Writes (x, y, theta) of the tip, in L and rad, into tip, and the time derivative of (x, y, theta) into
+    velocity.
 
     strains: (h1, h2, Pi) at the nodes of every element, (3, states, elements (p + 1)). rates: time
-    derivatives of strains, same shape. tip, velocity: (states, 3). The rod is clamped at the origin along
-    e_x.
+    derivatives of the strains, of the same shape. tip, velocity: (states, 3). The rod is clamped at the
+    origin along e_x.
     """
     size = len(m.ends)
     points = len(m.weights)
@@ -70,8 +71,8 @@ def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocit
                 v = w * (sin * fields[0, g] + cos * fields[1, g])
                 x = x + u
                 y = y + v
-                # d/dt of R(theta) h: the rate of h, turned, plus the rotation of the contribution (u, v) by
-                # dtheta/dt.
+                # d/dt of R(theta) h: R(theta) times the rate of h, plus the rotation of (u, v) with the
+                # angular velocity dtheta/dt.
                 dx += w * (cos * fields[3, g] - sin * fields[4, g]) - v * fields[5, g]
                 dy += w * (sin * fields[3, g] + cos * fields[4, g]) + u * fields[5, g]
             for j in range(size):
@@ -89,7 +90,8 @@ def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocit
 def _to_points(nodal: Array, m: TipMatrices, length: float, start: float, fields: Array) -> None:
     """Writes h1, h2 and theta at the Gauss points of one element into fields, (3, g).
 
-    nodal: (h1, h2, Pi) at the nodes of the element, (3, p + 1). start: theta at its start.
+    nodal: (h1, h2, Pi) at the nodes of the element, (3, p + 1). length: length of the element. start: theta
+    at the left end of the element.
     """
     fields[:2] = 0.0
     fields[2] = start

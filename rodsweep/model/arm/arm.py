@@ -1,8 +1,8 @@
-"""An arm in SI units as the rod of the paper: stiffness, drag and force without dimension.
+"""An arm in SI units as the rod of the paper: dimensionless stiffness, drag and force.
 
-Stiffness follows the paper's Sec. III, the force Sec. IV, scales and dimensionless parameters Sec. VI.
-Stiffnesses and drags are values at the base; `build` and `taper` give the variation along the arm.
-Quantities are given as text with a unit, or as numbers in SI. The module knows no mesh and no solver.
+Stiffness follows Sec. III of the paper, the force Sec. IV, scales and dimensionless parameters Sec. VI.
+Stiffnesses and drags are values at the base; `build` and `taper` give the variation along the arm. Quantities
+are given as text with a unit, or as numbers in SI. The module uses no mesh and no solver.
 """
 
 from collections.abc import Mapping, Sequence
@@ -29,12 +29,12 @@ class SlenderArm:
 
     Cross-section: a radius, or width and height (the height lies in the plane of motion), or segments from
     the base to the tip, each like "4 cm: radius 6 mm, young 80 kPa". `young` is the modulus of the arm and of
-    segments that state no modulus. tip_radius: tip radius of a solid cone. inner_radius: radius of a tube's
-    bore; the bore is closed at the tip and filled with the surrounding fluid at ambient pressure.
-    (law, section): a key of `rodsweep.model.material.laws.LAWS`. Load: pressure, force, or neither; positive
-    loads push towards the base; "1.2 of flutter" is a multiple of the flutter threshold. density_difference:
-    density of the arm's material minus density of the fluid. drag: name in DRAGS of the drag estimate that
-    the rod uses. Raises InputError, naming the quantity.
+    segments without a modulus. tip_radius: tip radius of a solid cone. inner_radius: radius of a tube's bore;
+    the bore is closed at the tip and filled with the surrounding fluid at ambient pressure. (law, section): a
+    key of `rodsweep.model.material.laws.LAWS`. Load: pressure, force, or no load; positive loads push towards
+    the base; "1.2 of flutter" is a multiple of the flutter threshold. density_difference: density of the
+    arm's material minus density of the fluid. drag: name in DRAGS of the drag estimate that the rod uses.
+    Raises InputError, naming the quantity.
     """
 
     length: Given | None = None
@@ -74,11 +74,11 @@ class SlenderArm:
         refuse_crushed(self)
 
     def parameter(self, name: str) -> float:
-        """Value of the rod parameter `name`; its neutral value if an arm does not determine the parameter."""
+        """Value of the rod parameter `name`; the neutral value if an arm does not determine the parameter."""
         return float(getattr(self, name, PARAMETERS[name].neutral))
 
     def quoted(self, name: str) -> str:
-        """Name and value of a quantity as the user wrote it, like "length = '10 cm'", for messages."""
+        """Name and value of a quantity as the user wrote them, like "length = '10 cm'", for messages."""
         return quoted(name, getattr(self, name))
 
     @cached_property
@@ -130,7 +130,7 @@ class SlenderArm:
 
     @property
     def crushing_force(self) -> float:
-        """Follower force that crushes the weakest cross-section, in k3/L^2; inf if no force crushes it."""
+        """Follower force that crushes the weakest section, in k3/L^2; inf if no force crushes the arm."""
         return self.build.relative_crushing_force(self.taper) * self.k1
 
     @property
@@ -146,7 +146,7 @@ class SlenderArm:
     def mass_at(self, station: Station) -> float:
         """Mass per length at the cross-section `station`, in kg/m: material plus fluid in the bore.
 
-        Without a `density_difference` the material is as dense as the fluid.
+        Without a `density_difference` the material has the density of the fluid.
         """
         fluid = self.si.fluid_density
         difference = self.si.density_difference
@@ -167,17 +167,17 @@ class SlenderArm:
 
     @property
     def _loaded_area(self) -> float:
-        """Tip force divided by load: face area of the tip, in m^2, for a pressure; 1 for a force."""
+        """Tip force divided by the load: face area of the tip, in m^2, for a pressure; 1 for a force."""
         return 1.0 if self.load == "force" else self.shape.tip.section.face_area
 
     @property
     def pressure_scale(self) -> float:
-        """Pressure on the tip's face that makes F = 1, in Pa."""
+        """Pressure on the face of the tip at which F = 1, in Pa."""
         return self.force_scale / self.shape.tip.section.face_area
 
     @property
     def load_scale(self) -> float:
-        """The load at which F = 1: a force in N if the arm's load is a force, otherwise a pressure in Pa."""
+        """The load at which F = 1: a force in N for an arm with a force, otherwise a pressure in Pa."""
         return self.force_scale if self.load == "force" else self.pressure_scale
 
     @property
@@ -202,7 +202,7 @@ class SlenderArm:
 
     @property
     def F(self) -> float:
-        """Force F = p A L^2/k3 (Sec. IV, VI); InputError without load or for a load relative to flutter."""
+        """Force F = p A L^2/k3 (Sec. IV, VI). InputError without load, and for a load relative to flutter."""
         return self.tip_force / self.force_scale
 
     @cached_property
@@ -211,13 +211,13 @@ class SlenderArm:
         return self.shape.drags(self.shape.base, self.si.viscosity)
 
     def drags_along(self, drag: Drag) -> tuple[Drag, ...]:
-        """Drag at every station of `shape`; `drag`, one of `drags`, is the estimate at the base."""
+        """Drag at every station of `shape`. drag: the estimate at the base, one of `drags`."""
         place = self.drags.index(drag)
         return tuple(self.shape.drags(each, self.si.viscosity)[place] for each in self.shape.stations)
 
     @property
     def own_drag(self) -> Drag:
-        """Drag at the base that the arm has as a rod: the estimate named by the field `drag`."""
+        """The drag estimate at the base that the rod uses: its name is the field `drag`."""
         return self.drags[DRAGS.index(self.drag)]
 
     def gamma3_with(self, drag: Drag) -> float:

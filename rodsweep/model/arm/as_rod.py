@@ -11,7 +11,7 @@ from .arm import SlenderArm
 def parameters_of(arm: SlenderArm) -> dict[str, float]:
     """Dimensionless parameters of the rod that represents `arm`, by name; without F for an arm without load.
 
-    Raises InputError for a load relative to flutter, which needs a solve.
+    Raises InputError for a load relative to flutter, because the flutter threshold must be solved first.
     """
     names = [name for name in NONLINEAR_PARAMETERS if name != "F" or arm.load is not None]
     names += ["taper"] if arm.taper != 1 else []
@@ -19,7 +19,7 @@ def parameters_of(arm: SlenderArm) -> dict[str, float]:
 
 
 def material_of(arm: SlenderArm) -> dict[str, Any]:
-    """Keys and values of the config section `material` for `arm`, without keys at their defaults.
+    """Keys and values of the config section `material` for `arm`; keys with default values are left out.
 
     Possible keys are law, section and profile.
     """

@@ -1,22 +1,23 @@
 """Drag of a slender arm per length: estimates of gamma1, gamma2, gamma3 from the literature, and their range.
 
-The paper takes the local friction tensor as given (Sec. III). Drag of translation is from resistive-force
-theory; the argument of its logarithm is known only up to a factor. Symbols: viscosity eta, radius a,
-length L, in SI units.
+The paper takes the local friction tensor as given (Sec. III). Drag of translation is computed by
+resistive-force theory; the argument of its logarithm is known only up to a factor. Symbols: viscosity eta,
+radius a, length L, in SI units.
 """
 
 from dataclasses import dataclass
 from math import log, pi
 
 LEAST_SLENDERNESS = 10.0
-"""Smallest length of an arm divided by its radius. A less slender arm is refused, since the logarithms of
-slender-body theory are meaningless for it."""
+"""Smallest length of an arm divided by its radius. Less slender arms are refused, because the logarithms of
+slender-body theory are then meaningless."""
 
 
 DRAGS = ("likeliest", "least", "most_rotational", "most_translational", "most")
-"""Names of the drag estimates in the order of `range_of_drag`: the likeliest, then the corners of the range.
-`least` has the smallest translational and rotational drag, `most` the largest; `most_rotational` combines the
-largest rotational with the smallest translational drag, `most_translational` the reverse."""
+"""Names of the drag estimates in the order of `range_of_drag`: the likeliest estimate, then the corners of
+the range. `least` has the smallest translational and rotational drag, `most` the largest; `most_rotational`
+has the largest rotational and the smallest translational drag, `most_translational` the smallest rotational
+and the largest translational drag."""
 RANGE_OF_DRAG = "range"
 """Value of the config key `drag` that stands for all estimates in DRAGS."""
 
@@ -25,8 +26,9 @@ RANGE_OF_DRAG = "range"
 class Drag:
     """Drag coefficients of an arm per length, stored as viscosity times geometric factors.
 
-    viscosity: in Pa s. axial, across: dimensionless factors of the drag along and across the arm's axis.
-    rotational: factor in m^2. A rod depends only on ratios of drags, in which the viscosity cancels exactly.
+    viscosity: in Pa s. axial, across: dimensionless factors of the drag along and across the axis of the arm.
+    rotational: factor of the rotational drag, in m^2. A rod depends only on ratios of drags, so the viscosity
+    cancels exactly.
     """
 
     viscosity: float
@@ -51,7 +53,7 @@ class Drag:
 
 
 def cox(viscosity: float, slenderness: float) -> tuple[float, float]:
-    """(gamma1, gamma2), in Pa s, of a straight rigid cylinder (Cox 1970; Batchelor 1970).
+    """Returns (gamma1, gamma2), in Pa s, of a straight rigid cylinder (Cox 1970; Batchelor 1970).
 
     viscosity: in Pa s. slenderness: L/a.
     """
@@ -60,7 +62,7 @@ def cox(viscosity: float, slenderness: float) -> tuple[float, float]:
 
 
 def gray_hancock(viscosity: float, slenderness: float) -> tuple[float, float]:
-    """(gamma1, gamma2), in Pa s, for waves of length 4 L, the longest of a clamped rod.
+    """Returns (gamma1, gamma2), in Pa s, for waves of length 4 L, the longest waves of a clamped rod.
 
     Gray and Hancock (1955). viscosity: in Pa s. slenderness: L/a.
     """
@@ -69,7 +71,8 @@ def gray_hancock(viscosity: float, slenderness: float) -> tuple[float, float]:
 
 
 def lighthill(viscosity: float, slenderness: float) -> tuple[float, float]:
-    """(gamma1, gamma2), in Pa s, for helical waves of length L, near the wavelength of flutter.
+    """Returns (gamma1, gamma2), in Pa s, for helical waves of length L, which is near the wavelength of
+    flutter.
 
     Lighthill (1976). viscosity: in Pa s. slenderness: L/a.
     """
@@ -78,18 +81,20 @@ def lighthill(viscosity: float, slenderness: float) -> tuple[float, float]:
 
 
 def min_rotational_drag(viscosity: float, half_height: float) -> float:
-    """Smallest estimate of rotational drag, gamma3 = pi eta a^2: each section turns about its diameter.
+    """Smallest estimate of rotational drag, gamma3 = pi eta a^2, in Pa s m^2, for sections that turn about a
+    diameter.
 
     The surface velocity -Omega x2 of a long cylinder is axial. The flow outside is harmonic and decays like
-    1/r; its traction eta Omega cos(phi) has the torque gamma3 Omega. For an ellipse, a is half the height.
+    1/r; its traction eta Omega cos(phi) has the torque gamma3 Omega. a = half_height, in m, also for an
+    ellipse.
     """
     return pi * viscosity * half_height**2
 
 
 def most_rotational(viscosity: float, half_height: float) -> float:
-    """Largest estimate of rotational drag, gamma3 = 4 pi eta a^2, in Pa s m^2.
+    """Largest estimate of rotational drag, gamma3 = 4 pi eta a^2, in Pa s m^2, with a = half_height, in m.
 
-    The value for rotation about the cylinder's axis (Powers 2010) is used for rotation about a diameter.
+    The value for rotation about the axis of the cylinder (Powers 2010) is used for rotation about a diameter.
     """
     return 4 * pi * viscosity * half_height**2
 
@@ -97,14 +102,14 @@ def most_rotational(viscosity: float, half_height: float) -> float:
 def range_of_drag(viscosity: float, length: float, radius: float, half_height: float) -> tuple[Drag, ...]:
     """Drag estimates of one arm, in the order of DRAGS.
 
-    The likeliest estimate has the geometric mean of the smallest and largest gamma3. viscosity: in Pa s; all
-    lengths in m.
+    The likeliest estimate has the geometric mean of the smallest and largest gamma3. viscosity: in Pa s.
+    length, radius, half_height: in m.
     """
     slenderness = length / radius
     least = min_rotational_drag(1.0, half_height)
     most = most_rotational(1.0, half_height)
     translations = (gray_hancock(1.0, slenderness), lighthill(1.0, slenderness))
-    # All estimates are for viscosity 1: drag is proportional to it.
+    # All estimates are for viscosity 1, because drag is proportional to the viscosity.
     members = [(*cox(1.0, slenderness), (least * most) ** 0.5)]
     members += [(*translation, rotational) for translation in translations for rotational in (least, most)]
     return tuple(

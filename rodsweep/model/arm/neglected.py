@@ -1,10 +1,10 @@
-"""Effects on an arm that the model neglects, each as a ratio to an effect that the model keeps.
+"""Effects on an arm that the model neglects, each as a ratio to an effect that the model contains.
 
-An effect on an arm that varies along its length is evaluated at the section where the effect is largest.
+For an arm that varies along its length, an effect is evaluated at the section where the effect is largest.
 
-The model does not apply beyond the limit of an effect, and is doubtful from a tenth of the limit on.
-Quantities are in SI units. Rates, forces and amplitudes are numbers or NumPy arrays that broadcast.
-Sentences about the effects belong to `rodsweep.verdict`.
+The model does not apply if an effect exceeds its limit, and is doubtful above a tenth of the limit.
+Quantities are in SI units. Rates, forces and amplitudes are numbers or NumPy arrays that broadcast. Sentences
+about the effects are in `rodsweep.verdict`.
 """
 
 from collections.abc import Iterable
@@ -24,35 +24,36 @@ from .unsteady_drag import frequency_of_phase, unsteady_phase
 GRAVITY = 9.81
 """Acceleration of gravity, in m/s^2."""
 DOUBTFUL_FROM = 0.1
-"""Ratio of a neglected effect's `value` to its `limit` above which results are doubtful."""
+"""Results are doubtful if `value`/`limit` of a neglected effect is larger than this."""
 INERTIA_LIMIT = 0.1
-"""Limit of the phase lag of the drag caused by inertia, in radians. Inertia lowers the flutter threshold of a
-filament by 6.5 % at a phase of 0.1, as much as the uncertainty of drag; by 0.7 % at 0.01; by 36 % at 1."""
+"""Limit of the phase lag of the drag caused by inertia, in radians. The lag lowers the flutter threshold of a
+filament by 6.5 % at 0.1, as much as the uncertainty of drag; by 0.7 % at 0.01; by 36 % at 1."""
 COMPRESSION_LIMIT = 0.1
-"""Limit of the relative axial compression. Rubber stiffens by a quarter at 0.1, by 2 % at 0.01."""
+"""Limit of the relative axial compression. Rubber stiffens by a quarter at a compression of 0.1, by 2 % at
+0.01."""
 WEIGHT_LIMIT = 0.1
-"""Limit of the ratio of weight minus buoyancy to the weight that buckles the upright arm. A horizontal arm
-sags by a tenth of its length at 0.1, by a hundredth at 0.01."""
+"""Limit of the ratio of weight minus buoyancy to the weight that buckles the upright arm. At a ratio of 0.1 a
+horizontal arm sags by a tenth of its length, at 0.01 by a hundredth."""
 WALL_LIMIT = 0.1
 """Limit of the fraction of bending stiffness that a tube loses as its section flattens in a large-amplitude
-cycle. A tube of infinite length buckles after losing a third of its stiffness."""
+cycle. An infinitely long tube buckles when it has lost a third of its stiffness."""
 WIDE_CURVATURE = 6.0
-"""Largest curvature of an arm in a limit cycle, times L, divided by the tip's amplitude in L. Cycles from 2 %
-to 50 % above the flutter force have ratios from 5.8 to 6.7."""
+"""Largest curvature of an arm in a limit cycle, in 1/L, divided by the amplitude of the tip, in L. For cycles
+from 2 % to 50 % above the flutter force the ratio is 5.8 to 6.7."""
 REYNOLDS_LIMIT = 1.0
-"""Limit of the Reynolds number of a large-amplitude cycle, at which inertia of the flow past the section
-equals viscous drag."""
+"""Limit of the Reynolds number of a large-amplitude cycle: inertia of the flow past the section then equals
+viscous drag."""
 SELF_BUCKLING = 7.837
 """Weight in k3/L^2 at which an upright rod buckles under its own weight (Greenhill 1881)."""
 FLUTTER_WAVENUMBER = 4.694
-"""Wavenumber of the second bending mode of a clamped rod, times L; the mode approximates the shape of
+"""Wavenumber of the second bending mode of a clamped rod, in 1/L. The mode approximates the shape of
 flutter."""
 HALF_LENGTH = 0.5
-"""Amplitude of the tip in a large-amplitude cycle, divided by the length of the arm."""
+"""Amplitude of the tip in a large-amplitude cycle, in L."""
 
 
 class Validity(IntEnum):
-    """Whether the rod model applies although it neglects an effect. Result files store these integers."""
+    """Validity of the rod model in view of one neglected effect. Result files contain these integers."""
 
     applies = 0
     doubtful = 1
@@ -61,30 +62,29 @@ class Validity(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Effect:
-    """One effect that the model neglects; arrays have the common shape of rates, forces and amplitudes."""
+    """One effect that the model neglects. Arrays have the common shape (...,) of rates, forces and
+    amplitudes.
+    """
 
     name: str
     value: Array
-    """Ratio of the neglected effect to an effect of the model; nan for an arm at rest."""
+    """Ratio of the neglected effect to an effect in the model; nan for an arm at rest."""
     limit: float
-    """`value` above which the model does not apply."""
+    """The model does not apply if `value` is larger than this."""
     viscosity_factor: Array
-    """Ratio of the viscosity at which `value` equals `limit` to the viscosity of the fluid; inf if no
-    viscosity is high enough."""
+    """Factor on the viscosity of the fluid with which `value` would equal `limit`; inf if no viscosity is
+    high enough."""
     of_cycles_only: bool = False
-    """Whether the effect changes limit cycles but not the thresholds of the straight arm."""
+    """Whether the effect changes only limit cycles, not the thresholds of the straight arm."""
 
     @property
     def excess(self) -> Array:
-        """Ratio of `value` to `limit`, of the shape of `value`; the model does not apply above 1."""
+        """Ratio of `value` to `limit`, (...,). The model does not apply where the ratio is larger than 1."""
         return self.value / self.limit
 
     @property
     def validity(self) -> NDArray[np.int8]:
-        """`Validity` of the model under this effect alone, integers of the shape of `value`.
-
-        `applies` for an arm at rest.
-        """
+        """`Validity` of the model in view of this effect, integers, (...,); `applies` for an arm at rest."""
         return (self.excess > DOUBTFUL_FROM).astype(np.int8) + (self.excess > 1.0)
 
 
@@ -100,8 +100,8 @@ def effects_of(
 
     rate: angular frequency of the motion, in rad/s; nan for an arm at rest. F: `weakest_load` of the follower
     force, in k3/L^2; nan without load. drag: the drag estimate for which `rate` was computed; by default the
-    smallest, for which inertia is largest. amplitude: amplitude of the tip divided by L. Weight is included
-    if the arm has a density difference, flattening of the wall if the arm has a bore.
+    smallest estimate, for which inertia is largest. amplitude: amplitude of the tip divided by L. Weight is
+    included if the arm has a density difference, flattening of the wall if the arm has a bore.
     """
     drag = least_drag(arm) if drag is None else drag
     motion, force, wide = np.broadcast_arrays(*(np.asarray(x, float) for x in (rate, F, amplitude)))
@@ -122,36 +122,36 @@ def effects_of(
 
 
 def worst_validity(effects: Iterable[Effect], *, of_cycles: bool) -> NDArray[np.int8]:
-    """Worst `Validity` under all effects, integers of the effects' shape.
+    """Worst `Validity` under all effects, integers of the shape (...,) of the effects.
 
-    of_cycles: whether to include effects that change limit cycles only.
+    of_cycles: whether to include effects that change only limit cycles.
     """
     counted = (effect.validity for effect in effects if of_cycles or not effect.of_cycles_only)
     return np.maximum.reduce(list(counted))
 
 
 def least_drag(arm: SlenderArm) -> Drag:
-    """The drag estimate of the arm with the smallest gamma2, for which its motion is fastest."""
+    """The drag estimate with the smallest gamma2, for which the motion of the arm is fastest."""
     return min(arm.drags, key=lambda drag: drag.gamma2)
 
 
 def fastest_rate(arm: SlenderArm, frequency: ArrayLike) -> Array:
-    """Angular frequency in rad/s of a `frequency` in rad/tau2, of any shape, for the arm's smallest drag."""
+    """Angular frequency in rad/s for the smallest drag of the arm. frequency: in rad/tau2, (...,)."""
     return np.asarray(frequency, float) / arm.tau2_with(least_drag(arm))
 
 
 def inertia_of_arm(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
-    """Phase lag m omega/gamma2 of the drag, caused by the arm's mass, of the shape of `rate`."""
+    """Phase lag m omega/gamma2 of the drag, caused by the mass of the arm; `rate` and the effect: (...,)."""
     along = zip(arm.shape.stations, arm.drags_along(drag), strict=True)
-    # The section with the largest ratio of mass to drag decides.
+    # The value is taken at the section with the largest ratio of mass to drag.
     value = max(arm.mass_at(station) / own.gamma2 for station, own in along) * rate
-    # omega falls like 1/viscosity and gamma2 grows like it, so the value falls like 1/viscosity^2.
+    # omega ~ 1/viscosity and gamma2 ~ viscosity, so the value is proportional to 1/viscosity^2.
     factor = np.sqrt(value / INERTIA_LIMIT)
     return Effect(name="inertia of the arm", value=value, limit=INERTIA_LIMIT, viscosity_factor=factor)
 
 
 def inertia_of_fluid(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
-    """Phase lag of the drag, caused by inertia of the fluid, of the shape of `rate`."""
+    """Phase lag of the drag, caused by the inertia of the fluid; `rate` and the effect: (...,)."""
     logarithm = 4 * pi * arm.si.viscosity / max(own.gamma2 for own in arm.drags_along(drag))
     # Vorticity diffuses over a wavelength of the bending wave, not over the radius.
     k = FLUTTER_WAVENUMBER / arm.si.length
@@ -165,12 +165,14 @@ def inertia_of_fluid(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
 
 
 def compression(arm: SlenderArm, F: Array) -> Effect:
-    """Relative change of the arm's length by compression or tension, abs(F)/k1, of the shape of F."""
+    """Relative change of the length of the arm by compression or tension, abs(F)/k1, in the shape of F,
+    (...,).
+    """
     return _independent_of_viscosity("compression", abs(F) / arm.k1, COMPRESSION_LIMIT)
 
 
 def weakest_load(arm: SlenderArm, F: ArrayLike) -> Array:
-    """Force that compresses the base as much as F compresses the weakest section, of the shape of F.
+    """Force that compresses the base as much as F compresses the weakest section, in the shape of F, (...,).
 
     F: in k3/L^2. The result is nan for rubber, whose constitutive law includes large compression.
     """
@@ -179,7 +181,9 @@ def weakest_load(arm: SlenderArm, F: ArrayLike) -> Array:
 
 
 def weight(arm: SlenderArm, F: Array) -> Effect:
-    """Ratio of weight minus buoyancy to the weight that buckles the upright arm, of the shape of F."""
+    """Ratio of weight minus buoyancy to the weight that buckles the upright arm, in the shape of F,
+    (...,).
+    """
     heaviness = abs(arm.si.density_difference) * GRAVITY
     load = heaviness * arm.cross_section.area * arm.si.length
     uniform = load / (SELF_BUCKLING * arm.force_scale)
@@ -194,11 +198,13 @@ def wall_effect(
     poisson: ArrayLike,
     amplitude: ArrayLike = HALF_LENGTH,
 ) -> Effect:
-    """Fraction of the bending stiffness that a beating tube loses, of the common shape of the arguments.
+    """Fraction of the bending stiffness that a beating tube loses, in the common shape (...,) of the
+    arguments.
 
-    length, radius, bore: in m. amplitude: amplitude of the tip over the length.
-    A tube bent to the radius of curvature R flattens by zeta = (1 - nu^2) (r^2/(R t))^2, with the radius r of
-    the middle of the wall and the thickness t, and keeps 1 - 3 zeta/2 of its stiffness (Brazier 1927).
+    length, radius, bore: in m. poisson: Poisson's ratio nu. amplitude: amplitude of the tip divided by the
+    length. A tube bent to the radius of curvature R flattens by zeta = (1 - nu^2) (r^2/(R t))^2, where r is
+    the radius of the middle of the wall and t the thickness; the remaining fraction of its stiffness is 1 - 3
+    zeta/2 (Brazier 1927).
     """
     outer, inner, ratio = (np.asarray(x, float) for x in (radius, bore, poisson))
     curvature = WIDE_CURVATURE * np.asarray(amplitude, float) / np.asarray(length, float)
@@ -209,9 +215,9 @@ def wall_effect(
 
 
 def reynolds_number(arm: SlenderArm, rate: Array, amplitude: Array) -> Effect:
-    """Reynolds number rho U (2 a)/eta of the tip, whose speed U is rate * amplitude * L.
+    """Reynolds number rho U (2 a)/eta of the tip, which has the speed U = rate * amplitude * L.
 
-    rate: in rad/s; amplitude: in L. The effect has the shape of `rate`.
+    rate: in rad/s, (...,). amplitude: in L. The effect has the shape of `rate`.
     """
     # The tip is the fastest point of the arm.
     speed = rate * amplitude * arm.si.length
@@ -226,7 +232,9 @@ def reynolds_number(arm: SlenderArm, rate: Array, amplitude: Array) -> Effect:
 
 
 def _independent_of_viscosity(name: str, value: Array, limit: float, of_cycles_only: bool = False) -> Effect:
-    """An effect whose value does not depend on the viscosity of the fluid."""
-    # No viscosity reduces the effect below its limit, and none is needed where the effect is below.
+    """An effect that does not depend on the viscosity of the fluid; its viscosity factor is inf above the
+    limit, otherwise 0.
+    """
+    # No viscosity reduces the effect; below the limit a fluid of any viscosity is allowed.
     factor = np.where(value > limit, inf, 0.0)
     return Effect(name=name, value=value, limit=limit, viscosity_factor=factor, of_cycles_only=of_cycles_only)

@@ -1,6 +1,7 @@
-"""The quantities of an arm: one table of units, meanings and examples, and lists derived from the table.
+"""The quantities of an arm: one table of units, meanings and examples, and lists made from the table.
 
-Configs, files, figures and the command line read units and words here. Knows no arm and no formula.
+Configs, files, figures and the command line take units and meanings from this module, which uses no arm and
+no formula.
 """
 
 from typing import NamedTuple
@@ -13,7 +14,9 @@ LOADS = ("pressure", "force")
 
 
 class Quantity(NamedTuple):
-    """A quantity of an arm: SI unit, meaning, and an example with a unit; no example for a pure number."""
+    """A quantity of an arm: SI unit, meaning, and an example with a unit; the example of a pure number is
+    empty.
+    """
 
     unit: str
     meaning: str
@@ -52,8 +55,8 @@ QUANTITIES = {
 UNITS = {name: (each.unit, each.example) for name, each in QUANTITIES.items() if each.example}
 """(SI unit, example) of each quantity with a unit, by name."""
 RELATIVE = {f"{load}_over_flutter": load for load in LOADS}
-"""Name of the load, "pressure" or "force", by name of the relative load. A relative load is divided by the
-load at first flutter with the likeliest drag."""
+"""Name of the load, "pressure" or "force", by name of the relative load: the load divided by the load at
+first flutter with the likeliest drag."""
 SECTION_SIDES = ("radius", "inner_radius", "tip_radius"), ("width", "height")
 """(names of the quantities of a circular section, names of the quantities of a rectangular section)."""
 ARM_UNITS = {
@@ -63,13 +66,14 @@ ARM_UNITS = {
 }
 """Units of time, force and pressure that an arm defines, by name of the property of `SlenderArm`."""
 SCALE_OF = {load: f"{load}_scale" for load in LOADS}
-"""Name of the property of `SlenderArm` that holds the load at which F = 1, by name of the load."""
+"""Name of the property of `SlenderArm` that is the load at which F = 1, by name of the load."""
 ALL_QUANTITIES = QUANTITIES | ARM_UNITS
 """All variables of an arm in a result file, except the parameters of the arm as a rod."""
 
 
 def number_in_si(name: str, given: Given | None) -> float:
-    """Value in SI of the quantity `name` in UNITS; nan for a missing quantity or a load relative to flutter.
+    """Value in SI of the quantity `name` in UNITS; nan for a missing quantity and for a load relative to
+    flutter.
 
     Raises InputError, naming the quantity, for an invalid value.
     """
@@ -82,7 +86,7 @@ def number_in_si(name: str, given: Given | None) -> float:
 
 
 def quoted(name: str, given: Given) -> str:
-    """Name and value of a quantity in UNITS as the user wrote it, like "length = '10 cm'", for messages."""
+    """Name and value of a quantity in UNITS as the user wrote them, like "length = '10 cm'", for messages."""
     if isinstance(given, str):
         return f"{name} = '{given}'"
     return f"{name} = {in_si(name, given, *UNITS[name]):.6g} {UNITS[name][0]}"

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from .arm import SlenderArm
 
 CRUSHED_FROM = 1 - 1e-14
-"""Ratio of F to the crushing force from which an arm is refused as crushed; below 1 because unit conversion
-rounds."""
+"""An arm is refused as crushed if F divided by the crushing force is at least this; below 1 because unit
+conversion has rounding errors."""
 LENGTH_TOLERANCE = 1e-9
-"""Relative difference between a given length and the sum of the segment lengths up to which both are equal:
-the difference is rounding error."""
+"""A given length may differ from the sum of the segment lengths by this relative difference, which allows for
+rounding errors."""
 INCOMPRESSIBLE = 0.5
-"""Poisson's ratio of incompressible material. A swelling section requires this ratio."""
+"""Poisson's ratio of incompressible material, which a swelling section requires."""
 
 
 class NotSlender(InputError):
@@ -32,7 +32,7 @@ class NotSlender(InputError):
 def refuse_words(arm: "SlenderArm") -> None:
     """Raises InputError for an invalid Poisson's ratio, drag name, law or section of the arm.
 
-    A swelling section is invalid with a Poisson's ratio other than 0.5.
+    A swelling section requires a Poisson's ratio of 0.5.
     """
     ratio: Any = arm.poisson
     is_number = isinstance(ratio, Real) and not isinstance(ratio, bool)
@@ -65,7 +65,9 @@ def refuse_words(arm: "SlenderArm") -> None:
 
 
 def refuse_wrong_combinations(arm: "SlenderArm") -> None:
-    """Raises InputError unless the arm has a length, a modulus, a viscosity, one shape, at most one load."""
+    """Raises InputError unless the arm has a length, a modulus, a viscosity, one shape, and at most one
+    load.
+    """
     if arm.segments is not None:
         _refuse_beside_segments(arm)
     else:
@@ -84,7 +86,7 @@ def refuse_wrong_combinations(arm: "SlenderArm") -> None:
 
 
 def _refuse_sections(arm: "SlenderArm") -> None:
-    """Raises InputError unless an arm without segments has one cross-section, with valid radii."""
+    """Raises InputError unless an arm without segments has exactly one cross-section, with valid radii."""
     sides = (arm.width, arm.height)
     for name, why in (("inner_radius", "a rectangle has no bore here"), ("tip_radius", "only cones taper")):
         if getattr(arm, name) is not None and arm.radius is None:
@@ -112,9 +114,10 @@ def _refuse_sections(arm: "SlenderArm") -> None:
 
 
 def _refuse_beside_segments(arm: "SlenderArm") -> None:
-    """Raises InputError if an arm with segments also has a cross-section, or another length than their sum.
+    """Raises InputError if an arm with segments also has a cross-section, or a length that is not the sum of
+    the segment lengths.
 
-    Every segment needs a Young's modulus, its own or the arm's.
+    Also raises InputError if a segment has no Young's modulus and the arm has none either.
     """
     for name in (*SECTION_SIDES[0], *SECTION_SIDES[1]):
         if getattr(arm, name) is not None:
@@ -136,8 +139,8 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
 
 
 def refuse_out_of_range(arm: "SlenderArm") -> None:
-    """Raises InputError for an arm without mass, and for over- or underflow of its stiffnesses or force
-    scale.
+    """Raises InputError for an arm without mass, and if its stiffnesses or its force scale overflow or
+    underflow.
 
     Raises NotSlender for an arm that is too short.
     """

@@ -1,4 +1,4 @@
-"""Cross sections of an arm: area, second moment, shear coefficient, and radii for its drag. SI units."""
+"""Cross-sections of an arm in SI units: area, second moment, shear coefficient, and radii for the drag."""
 
 from dataclasses import dataclass
 from math import pi
@@ -22,22 +22,22 @@ class Circle:
 
     @property
     def area(self) -> float:
-        """A = pi a^2, in m^2."""
+        """Area A = pi a^2, in m^2."""
         return pi * self.radius**2
 
     @property
     def second_moment(self) -> float:
-        """I = pi a^4/4, in m^4."""
+        """Second moment of area I = pi a^4/4, in m^4."""
         return pi * self.radius**4 / 4
 
     @property
     def face_area(self) -> float:
-        """Area on which a pressure pushes, A, in m^2."""
+        """Area A on which a pressure acts, in m^2."""
         return self.area
 
     @property
     def bore_area(self) -> float:
-        """Area of the fluid inside, in m^2: the section is solid."""
+        """Area of the fluid in the bore, in m^2: 0, because the section is solid."""
         return 0.0
 
     @property
@@ -47,11 +47,11 @@ class Circle:
 
     @property
     def drag_radius(self) -> float:
-        """Radius of the circular cylinder of equal drag, in m."""
+        """Radius of the circular cylinder with the same drag, in m."""
         return self.radius
 
     def shear_coefficient(self, poisson: float) -> float:
-        """kappa = 6 (1 + nu)/(7 + 6 nu) (Cowper 1966)."""
+        """Shear coefficient kappa = 6 (1 + nu)/(7 + 6 nu), nu = poisson (Cowper 1966)."""
         return 6 * (1 + poisson) / (7 + 6 * poisson)
 
 
@@ -74,17 +74,17 @@ class Tube:
 
     @property
     def second_moment(self) -> float:
-        """I = pi (a^4 - b^4)/4, in m^4."""
+        """Second moment of area I = pi (a^4 - b^4)/4, in m^4."""
         return self.area * (self.radius**2 + self.inner_radius**2) / 4
 
     @property
     def face_area(self) -> float:
-        """Area on which a pressure pushes, pi a^2, in m^2: the tip is closed."""
+        """Area on which a pressure acts, pi a^2, in m^2, because the tip is closed."""
         return pi * self.radius**2
 
     @property
     def bore_area(self) -> float:
-        """Area of the fluid inside, pi b^2, in m^2."""
+        """Area of the fluid in the bore, pi b^2, in m^2."""
         return pi * self.inner_radius**2
 
     @property
@@ -94,11 +94,13 @@ class Tube:
 
     @property
     def drag_radius(self) -> float:
-        """Radius of the circular cylinder of equal drag, in m."""
+        """Radius of the circular cylinder with the same drag, in m."""
         return self.radius
 
     def shear_coefficient(self, poisson: float) -> float:
-        """kappa of a hollow circle, `shear_formula` (Cowper 1966); 2 (1 + nu)/(4 + 3 nu) for a thin wall."""
+        """Shear coefficient kappa of a hollow circle, see `shear_formula` (Cowper 1966); nu = poisson. For a
+        thin wall kappa = 2 (1 + nu)/(4 + 3 nu).
+        """
         squared = (self.inner_radius / self.radius) ** 2
         solid = (7 + 6 * poisson) * (1 + squared) ** 2
         return 6 * (1 + poisson) * (1 + squared) ** 2 / (solid + (20 + 12 * poisson) * squared)
@@ -116,22 +118,22 @@ class Rectangle:
 
     @property
     def area(self) -> float:
-        """A = w h, in m^2."""
+        """Area A = w h, in m^2."""
         return self.width * self.height
 
     @property
     def second_moment(self) -> float:
-        """I = w h^3/12, in m^4."""
+        """Second moment of area I = w h^3/12, in m^4."""
         return self.width * self.height**3 / 12
 
     @property
     def face_area(self) -> float:
-        """Area on which a pressure pushes, A, in m^2."""
+        """Area A on which a pressure acts, in m^2."""
         return self.area
 
     @property
     def bore_area(self) -> float:
-        """Area of the fluid inside, in m^2: the section is solid."""
+        """Area of the fluid in the bore, in m^2: 0, because the section is solid."""
         return 0.0
 
     @property
@@ -141,11 +143,13 @@ class Rectangle:
 
     @property
     def drag_radius(self) -> float:
-        """(w + h)/4, in m: drag radius of an ellipse with axes w and h in axial motion (Batchelor 1970)."""
+        """(w + h)/4, in m: drag radius of an ellipse with the axes w and h in axial motion (Batchelor
+        1970).
+        """
         return (self.width + self.height) / 4
 
     def shear_coefficient(self, poisson: float) -> float:
-        """kappa = 10 (1 + nu)/(12 + 11 nu) (Cowper 1966)."""
+        """Shear coefficient kappa = 10 (1 + nu)/(12 + 11 nu), nu = poisson (Cowper 1966)."""
         return 10 * (1 + poisson) / (12 + 11 * poisson)
 
 

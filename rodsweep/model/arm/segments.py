@@ -11,18 +11,18 @@ from .quantities import number_in_si, quoted
 from .section import Circle, NoWall, Tube
 
 SEGMENT_KEYS = ("length", "radius", "inner_radius", "young")
-"""Names of the quantities of a segment. `young` defaults to Young's modulus of the arm."""
+"""Names of the quantities of a segment. The default of `young` is Young's modulus of the arm."""
 EXAMPLE = "4 cm: radius 6 mm, young 80 kPa"
 """Text of a valid segment, for messages."""
 PART = re.compile(r"\s*([A-Za-z][A-Za-z_ -]*?)\s*=?\s*([+-]?[\d.].*?)\s*")
-"""Matches name and value of one quantity in the text of a segment, like "radius 6 mm"."""
+"""Pattern of name and value of one quantity in the text of a segment, like "radius 6 mm"."""
 MAX_SEGMENTS = 100
-"""Maximum number of segments of an arm; more are refused. Every segment needs at least one element of the
-mesh."""
+"""Maximum number of segments of an arm; more segments are refused. Every segment needs at least one element
+of the mesh."""
 
 
 class ArmSegment(NamedTuple):
-    """A uniform segment of an arm, in SI units; `young` is None if the arm's Young's modulus applies."""
+    """A uniform segment of an arm, in SI units. young: None if the segment has Young's modulus of the arm."""
 
     length: float
     section: Circle | Tube
@@ -36,14 +36,14 @@ class WrittenSegment:
     given: Mapping[str, Given]
 
     def __str__(self) -> str:
-        """The segment as text that `written_segment` can read."""
+        """The segment as a text that `written_segment` accepts."""
         texts = {name: _text(name, value) for name, value in self.given.items()}
         length = texts.pop("length")
         return f"{length}: {', '.join(f'{name} {text}' for name, text in texts.items())}"
 
 
 def segment_texts(given: Any) -> tuple[str, ...]:
-    """Texts of all segments of an arm, for `segments_of`, from the value of `segments` that the user gave.
+    """Texts of all segments of an arm, the input of `segments_of`. given: the user's value of `segments`.
 
     Raises InputError, beginning with "segments", for an invalid segment.
     """
@@ -62,14 +62,14 @@ def segment_texts(given: Any) -> tuple[str, ...]:
 
 
 def segments_of(texts: Sequence[str]) -> tuple[ArmSegment, ...]:
-    """Segments in SI units from the texts that `segment_texts` returns."""
+    """Segments in SI units. texts: result of `segment_texts`."""
     return tuple(_segment(number, written_segment(number, text)) for number, text in enumerate(texts, 1))
 
 
 def written_segment(number: int, given: Any) -> WrittenSegment:
-    """Quantities of a segment from a text or a mapping; InputError for an unknown or a missing key.
+    """Quantities of a segment. given: a text or a mapping. Raises InputError for an unknown or a missing key.
 
-    number: position of the segment counted from the base, from 1, for messages.
+    number: position of the segment, counted from 1 at the base, for messages.
     """
     where = f"segments, number {number}"
     found = dict(_mapping(where, given))
@@ -83,8 +83,8 @@ def written_segment(number: int, given: Any) -> WrittenSegment:
 
 
 def _mapping(where: str, given: Any) -> Mapping[str, Given]:
-    """Quantities of a segment by name from a mapping or a text; InputError, beginning with `where`, if
-    invalid.
+    """Quantities of a segment by name. given: a mapping or a text. Raises InputError, beginning with `where`,
+    if invalid.
     """
     if isinstance(given, Mapping):
         return {str(name): value for name, value in given.items()}
@@ -106,7 +106,9 @@ def _mapping(where: str, given: Any) -> Mapping[str, Given]:
 
 
 def _segment(number: int, written: WrittenSegment) -> ArmSegment:
-    """Segment `number` in SI units; InputError for a value out of range, NoWall for too wide a bore."""
+    """The segment `written` in SI units. number: its position, for messages. Raises InputError for a value
+    out of range, and NoWall if the bore is too wide.
+    """
     given = written.given
     where = f"segments, number {number}"
     try:
@@ -122,7 +124,7 @@ def _segment(number: int, written: WrittenSegment) -> ArmSegment:
 
 
 def _text(name: str, given: Given) -> str:
-    """Value of a quantity as text with its unit."""
+    """Value of the quantity `name` as text with its unit."""
     from .quantities import UNITS
 
     return given.strip() if isinstance(given, str) else f"{number_in_si(name, given)!r} {UNITS[name][0]}"

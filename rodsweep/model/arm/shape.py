@@ -1,7 +1,9 @@
-"""An arm along its length, in SI units: sections and moduli, taper, and factors of stiffness and drag.
+"""Variation of an arm along its length, in SI units: sections and moduli, taper, factors of stiffness and
+drag.
 
-Drags use the local radius and the length of the whole arm. The parameter `taper` of a cone implies all
-factors except the logarithms in the drags of translation; the profile of the cone adds these.
+Drags are computed from the local radius and the total length of the arm. The parameter `taper` of a cone
+implies all factors except the logarithms in the translational drags; the profile of the cone contains these
+logarithms.
 """
 
 from collections.abc import Sequence
@@ -17,22 +19,23 @@ from .drag import Drag, range_of_drag
 from .section import Circle, Section, Tube
 
 BUCKLING_NODE_COUNT = 400
-"""Number of midpoint-rule nodes in the integrals for the buckling weight, whose relative error is then 5e-5
-for a uniform arm."""
+"""Number of midpoint-rule nodes in the integrals for the buckling weight; the relative error for a uniform
+arm is then 5e-5."""
 BUCKLING_TOLERANCE = 1e-12
-"""Relative change of the largest eigenvalue in one step at which the power iteration ends."""
+"""The power iteration stops when the relative change of the largest eigenvalue in one step is at most
+this."""
 BUCKLING_MAX_ITERATIONS = 1000
-"""Maximum number of steps of the power iteration; twenty are usual."""
+"""Maximum number of steps of the power iteration, which usually takes twenty."""
 MAX_RADIUS_RATIO = 1.3
-"""Largest ratio of a cone's radii at neighbouring u of its profile. The cubics between them approximate the
-logarithms of the drag to 3e-4 for tapers from 0.01 to 100."""
+"""Maximum ratio of the radii of a cone at neighbouring u of its profile. The cubic polynomials of the profile
+then approximate the logarithms of the drag to 3e-4 for tapers from 0.01 to 100."""
 
 
 class Station(NamedTuple):
-    """A cross-section of an arm with its Young's modulus `young`, in Pa.
+    """A cross-section of an arm, with Young's modulus `young` in Pa.
 
-    end: material coordinate u up to which a segment has this cross-section, from 0 at the base to 1 at the
-    tip; for a cone, the u of the cross-section.
+    end: material coordinate u, from 0 at the base to 1 at the tip, of the end of the segment with this
+    cross-section; for a cone, the u of the cross-section.
     """
 
     end: float
@@ -42,10 +45,10 @@ class Station(NamedTuple):
 
 @dataclass(frozen=True)
 class Shape:
-    """Cross-sections along an arm of `length`, in m.
+    """Cross-sections along an arm of the length `length`, in m.
 
-    stations: one for each segment from the base to the tip, or base and tip of a cone, or the only one of a
-    uniform arm. taper: tip radius over base radius of a cone; 1 for other arms.
+    stations: one station per segment from the base to the tip, or base and tip of a cone, or one station of a
+    uniform arm. taper: tip radius divided by base radius of a cone; 1 for other arms.
     """
 
     length: float
@@ -54,17 +57,17 @@ class Shape:
 
     @property
     def base(self) -> Station:
-        """The station at the clamp, whose stiffness and drag define the dimensionless units."""
+        """The station at the clamp; its stiffness and drag define the dimensionless units."""
         return self.stations[0]
 
     @property
     def tip(self) -> Station:
-        """The station at the tip, on whose face a pressure pushes."""
+        """The station at the tip; a pressure acts on its face."""
         return self.stations[-1]
 
     @property
     def varies(self) -> bool:
-        """Whether cross-section or Young's modulus differ along the arm."""
+        """Whether the cross-section or Young's modulus varies along the arm."""
         return any(each[1:] != self.base[1:] for each in self.stations)
 
     @property
@@ -73,15 +76,16 @@ class Shape:
         return max(each.section.drag_radius for each in self.stations)
 
     def drags(self, station: Station, viscosity: float) -> tuple[Drag, ...]:
-        """Drag estimates at a station, in the order of DRAGS; viscosity in Pa s."""
+        """Drag estimates at a station, in the order of DRAGS. viscosity: in Pa s."""
         section = station.section
         return range_of_drag(viscosity, self.length, section.drag_radius, section.half_height)
 
     def profile(self, poisson: float, drag: int) -> Profile | None:
         """Factors of stiffness and drag along the arm, relative to the base; None for a uniform arm.
 
-        The profile of a cone contains only the factors that the parameter `taper` does not imply. drag: index
-        of the estimate in DRAGS. Raises ValueError for a factor that overflows or underflows.
+        The profile of a cone contains only the factors that the parameter `taper` does not imply. poisson:
+        Poisson's ratio. drag: index of the drag estimate in DRAGS. Raises ValueError for a factor that
+        overflows or underflows.
         """
         if not self.varies:
             return None
@@ -92,7 +96,7 @@ class Shape:
         rows = list[tuple[float, ...]]()
         for start, station in zip(ends, self.stations, strict=False):
             row = self._factors(station, poisson, drag)
-            # Equal neighbouring segments are merged: a jump of size 0 would still split elements.
+            # Equal neighbouring segments are merged, because every jump, even of size 0, splits elements.
             if rows and rows[-1] == row:
                 u[-1] = station.end
             else:
@@ -101,12 +105,13 @@ class Shape:
         return Profile(tuple(u), tuple(rows))
 
     def _logarithms(self, drag: int) -> Profile:
-        """Profile of a cone: factors of gamma1 and gamma2. The parameter `taper` implies all other factors.
+        """Profile of a cone: factors of gamma1 and gamma2. All other factors are 1, because the parameter
+        `taper` implies them.
 
-        drag: index of the estimate in DRAGS.
+        drag: index of the drag estimate in DRAGS.
         """
         pieces = max(2, ceil(abs(log(self.taper)) / log(MAX_RADIUS_RATIO)))
-        # Equal ratios of neighbouring radii, since the drag depends on the logarithm of the radius.
+        # Neighbouring radii have equal ratios, since the drag depends on the logarithm of the radius.
         radii = self.taper ** (np.arange(pieces + 1) / pieces)
         u = (1 - radii) / (1 - self.taper)
         base = self.drags(self.base, 1.0)[drag]
@@ -118,13 +123,20 @@ class Shape:
         return Profile((0.0, *u[1:-1].tolist(), 1.0), tuple(rows))
 
     def _factors(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
-        """k1, k2, k3, gamma1, gamma2, gamma3 at a station, each divided by its value at the base."""
+        """k1, k2, k3, gamma1, gamma2, gamma3 at a station, each divided by the value at the base.
+
+        poisson: Poisson's ratio. drag: index of the drag estimate in DRAGS.
+        """
         own, base = (np.array(self._of_station(each, poisson, drag)) for each in (station, self.base))
         with np.errstate(all="ignore"):
             return tuple((own / base).tolist())
 
     def _of_station(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
-        """E A, kappa E A, E I, and the axial, normal and rotational drag over viscosity, at a station."""
+        """E A, kappa E A, E I at a station, and the axial, normal and rotational drag divided by the
+        viscosity.
+
+        poisson: Poisson's ratio. drag: index of the drag estimate in DRAGS.
+        """
         section = station.section
         friction = self.drags(station, 1.0)[drag]
         stretch = station.young * section.area
@@ -138,15 +150,16 @@ class Shape:
         )
 
     def relative_weight(self, weight: float) -> float:
-        """Ratio of the weight of the upright arm to the weight at which it buckles.
+        """Ratio of the weight of the upright arm to the weight at which the arm buckles.
 
-        weight: weight per volume, in N/m^3. theta' = m/(E I) and m' = -W theta, with the weight W(u) beyond
-        u, have a solution with theta(0) = 0 and m(1) = 0 if 1 is an eigenvalue of the operator theta ->
-        int_0^u (1/(E I)) int_u^1 W theta. The ratio is the largest eigenvalue, by power iteration: the kernel
-        of the operator is positive, and the next eigenvalue of a uniform arm is a seventh of the largest.
+        weight: weight per volume, in N/m^3. The arm buckles if theta' = m/(E I), m' = -W theta, with theta(0)
+        = 0, m(1) = 0 and the weight W(u) of the part beyond u, have a nonzero solution: if 1 is an eigenvalue
+        of the operator theta -> int_0^u (1/(E I)) int_u^1 W theta. The ratio is the largest eigenvalue,
+        computed by power iteration: the kernel of the operator is positive, and the second eigenvalue of a
+        uniform arm is a seventh of the largest.
         """
         h, area, stiffness = self._at_midpoints()
-        # Integrals up to a midpoint include half of its own interval.
+        # Integrals up to a midpoint include half of the interval around the midpoint.
         own = area * h
         beyond = np.cumsum(own[::-1])[::-1] - own / 2
         theta = np.ones(len(h))
@@ -162,7 +175,9 @@ class Shape:
         return weight * ratio
 
     def _at_midpoints(self) -> tuple[Array, Array, Array]:
-        """(length, A, E I) of the subintervals of the quadrature, each (subintervals,), in m, m^2, N m^2."""
+        """Returns (length, A, E I) of the subintervals of the quadrature, (subintervals,) each, in m, m^2, N
+        m^2.
+        """
         if self.taper != 1:
             u = (np.arange(BUCKLING_NODE_COUNT) + 0.5) / BUCKLING_NODE_COUNT
             radius = 1 - (1 - self.taper) * u
@@ -178,14 +193,15 @@ class Shape:
 
 
 def cone(length: float, radius: float, tip_radius: float, young: float) -> Shape:
-    """Shape of a solid cone; all lengths in m, Young's modulus `young` in Pa."""
+    """Shape of a solid cone. length, radius, tip_radius: in m. young: Young's modulus, in Pa."""
     ends = (Station(0.0, Circle(radius), young), Station(1.0, Circle(tip_radius), young))
     return Shape(length, ends, tip_radius / radius)
 
 
 def in_segments(pieces: Sequence[tuple[float, Circle | Tube, float]]) -> Shape:
-    """Shape of an arm made of segments (length in m, section, Young's modulus in Pa) from the base to the
-    tip.
+    """Shape of an arm made of segments.
+
+    pieces: (length in m, section, Young's modulus in Pa) of each segment, from the base to the tip.
     """
     ends = np.cumsum([length for length, _, _ in pieces])
     shares = [*(ends[:-1] / ends[-1]).tolist(), 1.0]

@@ -8,13 +8,13 @@ from numpy.typing import ArrayLike
 from ...arrays import Array
 
 MIN_S = 1e-6
-"""Smallest frequency s of the flow, in eta k^2/rho. A smaller s is replaced by it, since rounding error would
-hide the phase lag, about 1e-6."""
+"""Smallest frequency s of the flow, in eta k^2/rho. Smaller frequencies are replaced by this value, since
+rounding errors would exceed the phase lag, about 1e-6."""
 SUBINTERVAL_COUNT = 64
-"""Number of subintervals into which `frequency_of_phase` divides its current interval of ln s."""
+"""Number of subintervals into which `frequency_of_phase` divides the current interval of ln s."""
 REFINEMENT_COUNT = 10
-"""Number of divisions in `frequency_of_phase`: 64^10 = 2^60 subintervals of an initial interval 20 to 30 wide
-reach rounding error with few calls on arrays."""
+"""Number of divisions in `frequency_of_phase`. 64^10 = 2^60 subintervals of an initial interval of width 20
+to 30 reach rounding error with few calls on arrays."""
 
 
 def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
@@ -36,12 +36,13 @@ def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
 
 
 def frequency_of_phase(phase: float, logarithm: float) -> float:
-    """Frequency s at which `unsteady_phase` equals `phase` < pi/2, by repeated subdivision of ln s.
+    """Frequency s at which `unsteady_phase` equals `phase` < pi/2, by repeated subdivision of the interval of
+    ln s.
 
     logarithm: Lambda = 4 pi eta/gamma2.
     """
-    low = log(MIN_S)  # there the real part of the mobility is -1/2
-    high = 2 * logarithm
+    low = log(MIN_S)
+    high = 2 * logarithm  # here the real part of the mobility is -1/2, so the phase is above pi/2
     for _ in range(REFINEMENT_COUNT):
         edges = np.linspace(low, high, SUBINTERVAL_COUNT + 1)
         below = np.count_nonzero(unsteady_phase(np.exp(edges[1:-1]), logarithm) < phase)  # the phase rises

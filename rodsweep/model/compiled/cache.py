@@ -1,10 +1,11 @@
-"""Compiled functions on disk: a file for each kernel and its argument types, named by a digest of the code.
+"""Compiled functions on disk: one file for each kernel and its argument types, named by a digest of the code.
 
-numba's own cache knows the source file of a function, but not the called functions. Here the digest covers
-the function and its callees (`rodsweep.model.compiled.digest`): editing a comment recompiles nothing, editing
-a formula recompiles its callers, and versions of the program can share a directory.
+numba's own cache detects changes of the source file of a function, but not changes of called functions. Here
+the digest covers the function and its callees (`rodsweep.model.compiled.digest`): a changed comment
+recompiles nothing, a changed formula recompiles all its callers, and versions of the program can share a
+directory.
 
-A damaged file counts as absent; a file that cannot be written is skipped.
+A damaged file is ignored; a file that cannot be written is skipped.
 """
 
 import os
@@ -33,12 +34,13 @@ from .digest import FunctionText, digest, kernel_of, type_text
 from .slice_assignment import shorten_message
 
 VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__)
-"""Versions of Python, numba, llvmlite and NumPy, which are part of a cache file's name: compiled code is
-valid for one combination of versions only."""
+"""Versions of Python, numba, llvmlite and NumPy. They are part of the name of a cache file, because compiled
+code is valid for one combination of versions only."""
 DIGEST_BYTES = 32
-"""Length, in bytes, of the SHA-256 checksum at the start of a cache file, which reveals a truncated file."""
+"""Length, in bytes, of the SHA-256 checksum at the start of a cache file. The checksum reveals a truncated
+file."""
 _first_parts: dict[FunctionType, FunctionText] = {}
-"""Text of each function at its first use in this process: the state of the code that numba compiled."""
+"""Text of each function at its first use in this process, which is the code that numba compiled."""
 
 
 class KernelCache(_Cache):
@@ -47,20 +49,21 @@ class KernelCache(_Cache):
     """
 
     def __init__(self, function: Any, options: Mapping[str, Any], directories: Sequence[Path]) -> None:
-        """options: numba's compiler options. directories: places of cache files. All are read; files are
-        written into the first writable directory."""
+        """options: numba's compiler options. directories: directories of cache files. All directories are
+        read; files are written into the first writable directory."""
         self._kernel = kernel_of(function, options)
         self._directories = tuple(directories)
 
     @property
     def cache_path(self) -> str | None:
-        """Preferred directory of cache files, which numba reports; None if the cache is disabled."""
+        """First directory of cache files, which numba reports; None if the cache is disabled."""
         return str(self._directories[0]) if self._directories else None
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The compiled function for the signature `sig`; None if the cache has no valid file."""
-        report()  # lets a stop request end the run between two compilations of some seconds each
-        # Symbols that loaded code may use; refresh(), as numba's own cache does, would import the compiler.
+        report()  # a stop request can end the run here, between two compilations of some seconds each
+        # Defines symbols that loaded code may use. numba's own cache calls refresh(), which would import the
+        # compiler.
         rtsys.initialize(target_context)
         name = self._name(sig, target_context.codegen(), _first_parts)
         for directory in self._directories:
@@ -74,7 +77,7 @@ class KernelCache(_Cache):
         """Writes the compiled function `data` for the signature `sig` to disk.
 
         Nothing is written if the code contains memory addresses, or if a global value that the code reads has
-        changed since the function's first use.
+        changed since the first use of the function.
         """
         name = self._name(sig, data.codegen, {})
         changed = name != self._name(sig, data.codegen, _first_parts)
@@ -103,21 +106,21 @@ class KernelCache(_Cache):
         return f"{name}-{sha256(content.encode()).hexdigest()[:32]}.kernel"
 
     def enable(self) -> None:
-        """Does nothing, because the cache is always enabled; numba requires the method."""
+        """Does nothing, because the cache is always enabled; numba requires this method."""
 
     def disable(self) -> None:
         """Stops reading and writing files."""
         self._directories = ()
 
     def flush(self) -> None:
-        """Does nothing, because files are written at once; numba requires the method."""
+        """Does nothing, because files are written at once; numba requires this method."""
 
 
 @cache
 def _warn_once(sentence: str) -> None:
     """Issues the warning `sentence` once per process.
 
-    Python's own filter does not suffice: numba resets the record of shown warnings at every compilation.
+    Python's own filter is not enough: numba resets the record of issued warnings at every compilation.
     """
     warnings.warn(sentence, stacklevel=1)
 

@@ -1,7 +1,7 @@
 """Compilation of formulas by numba, cached on disk if a directory is writable.
 
-Adaptive loops evaluate the formulas for one argument at a time, where the overhead of NumPy would dominate.
-Compiled functions take floats, complex numbers, arrays and NamedTuples, but no other objects.
+Adaptive loops evaluate the formulas for one argument at a time, for which the overhead of NumPy would
+dominate. Arguments of compiled functions are floats, complex numbers, arrays and NamedTuples.
 """
 
 import os
@@ -23,21 +23,21 @@ PACKAGE = Path(__file__).parents[2]
 
 
 def cache_directories() -> list[Path]:
-    """Directories for compiled code, in order of preference: under NUMBA_CACHE_DIR if set, otherwise in the
-    package and then under ~/.cache."""
+    """Directories for compiled code, in order of preference: a directory under NUMBA_CACHE_DIR if this is
+    set, otherwise in the package, then under XDG_CACHE_HOME or ~/.cache."""
     if place := os.environ.get("NUMBA_CACHE_DIR"):
         return [Path(place) / "rodsweep"]
     caches = [PACKAGE / "__pycache__"]
     if place := os.environ.get("XDG_CACHE_HOME"):
         caches.append(Path(place) / "rodsweep")
     else:
-        with suppress(RuntimeError):  # this user has no home
+        with suppress(RuntimeError):  # the user has no home directory
             caches.append(Path.home() / ".cache" / "rodsweep")
     return [cache / "compiled" for cache in caches]
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Compiles `function` by numba in nopython mode.
+    """The function `function`, compiled by numba in nopython mode at its first call.
 
     Real division by zero gives inf or nan; complex division by zero raises ZeroDivisionError.
     """
@@ -45,16 +45,17 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def compiled_for_vectors(function: Callable[P, R]) -> Callable[P, R]:
-    """Compiles `function` like `compiled`, but lets the compiler reorder sums, which is five times as fast.
+    """The function `function`, compiled like in `compiled`, but with reordered sums, which is five times as
+    fast.
 
-    Infinities and nan behave as usual. The function is always inlined in its callers: a shared copy would be
-    the copy that a process happens to load first, and copies differ in the order of their sums.
+    Infinities and nan behave as usual. The function is always inlined in its callers. A shared copy would
+    depend on which caller a process loads first, and copies differ in the order of their sums.
     """
     return _compiled(function, fastmath={"reassoc", "contract", "nsz"}, forceinline=True)
 
 
 def c_callback(function: Callable, signature: Any) -> Any:
-    """Compiles `function` at once, for numba's `signature`, to a callback for C code.
+    """A callback for C code: `function`, compiled at once for numba's signature `signature`.
 
     The attribute `address` of the callback is the C function pointer.
     """

@@ -1,8 +1,8 @@
 """Digest of a compiled function: its bytecode, the functions that it calls, the global values that it reads.
 
-numba copies called functions and global values into a compiled function. A change of them needs a
-compilation. Comments, docstrings and line numbers do not change the digest. `rodsweep.model.compiled.cache`
-names files of compiled code by the digest.
+numba copies called functions and global values into a compiled function, which must be compiled again when
+one of the copies is outdated. Comments, docstrings and line numbers do not change the digest.
+`rodsweep.model.compiled.cache` names files of compiled code by the digest.
 """
 
 import builtins
@@ -21,7 +21,7 @@ from numba.core.dispatcher import Dispatcher
 from .settings import CompiledSettings
 
 VARIADIC = inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
-"""Flags of a code object for *args and **kwargs, the only flags that change the compiled code."""
+"""Flags of a code object for *args and **kwargs; no other flags change the compiled code."""
 READS = ("LOAD_GLOBAL", "LOAD_NAME")
 """Names of the bytecode instructions that read a global value."""
 PLAIN = (bool, int, float, complex, str, bytes, type(None), type(Ellipsis))
@@ -29,30 +29,32 @@ PLAIN = (bool, int, float, complex, str, bytes, type(None), type(Ellipsis))
 
 
 class FunctionText(NamedTuple):
-    """A Python function for the digest: `text` of its code and constants, and the kernels that it calls."""
+    """A Python function in the digest. text: its code and constants. called: the kernels that it calls."""
 
     text: str
     called: list["Kernel"]
 
 
 class Kernel(NamedTuple):
-    """A Python function to compile, with numba's compiler options as text."""
+    """A Python function to compile. options: numba's compiler options, as text."""
 
     function: FunctionType
     options: str
 
 
 Parts = MutableMapping[FunctionType, FunctionText]
-"""Cache of the text of each function."""
+"""Cache of the text of every function."""
 
 
 def kernel_of(function: Any, options: Mapping[str, Any]) -> Kernel:
-    """The kernel of `function` compiled with numba's options `options`, by name."""
+    """The kernel of `function`. options: numba's compiler options, by name."""
     return Kernel(function, repr(sorted((name, _ordered(value)) for name, value in options.items())))
 
 
 def digest(kernel: Kernel, parts: Parts) -> str:
-    """SHA-256 of a kernel and of all functions that it calls, directly or not; `parts`: cache of texts."""
+    """SHA-256 of a kernel and of all functions that it calls, directly or indirectly. parts: cache of the
+    texts of functions, which is filled.
+    """
     texts: dict[FunctionType, str] = {}
     due = [kernel]
     while due:
@@ -68,8 +70,8 @@ def digest(kernel: Kernel, parts: Parts) -> str:
 def type_text(numba_type: Any) -> str:
     """Text of the numba type of an argument, with the field names that numba's own name of the type omits.
 
-    The text names the module of a NamedTuple too, because compiled code refers to the class by its module.
-    Raises TypeError for a function type: the type does not determine the function's code.
+    The text also contains the module of a NamedTuple, because compiled code refers to the class by its
+    module. Raises TypeError for a function type, which does not determine the code of the function.
     """
     if isinstance(numba_type, types.Callable):
         raise TypeError(f"kernels take no functions as arguments: {numba_type}")
@@ -95,9 +97,10 @@ def _described(function: FunctionType, options: str) -> FunctionText:
 
 
 def _values_read(function: FunctionType, instructions: Iterable[dis.Instruction]) -> dict[str, Any]:
-    """Global values of `function` that `instructions` read, by name; of `CompiledSettings` only fields read.
+    """Global values of `function` that `instructions` read, by name; of a `CompiledSettings` object only the
+    fields that are read.
 
-    Raises NameError for a name that is neither global nor a builtin.
+    Raises NameError for a name that is neither a global name nor a builtin.
     """
     read = {}
     for here, after in pairwise(instructions):
@@ -120,9 +123,9 @@ def _code_objects(code: CodeType) -> Iterator[CodeType]:
 
 
 def _code_lines(code: CodeType, instructions: Iterable[dis.Instruction]) -> list[str]:
-    """Lines of text of a code object's bytecode, with constants in place of their indices.
+    """Lines of text of the bytecode of a code object, with constants in place of their indices.
 
-    Indices would change with an added docstring.
+    The indices are left out because an added docstring changes them.
     """
     counts = code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags & VARIADIC
     lines = [code.co_name, repr((counts, code.co_varnames, code.co_freevars, code.co_cellvars))]
@@ -135,14 +138,14 @@ def _code_lines(code: CodeType, instructions: Iterable[dis.Instruction]) -> list
 
 
 def _ordered(value: Any) -> Any:
-    """The value, or a sorted list of a set's elements, whose order differs between processes."""
+    """The value itself, or a sorted list for a set, because the order of a set differs between processes."""
     return sorted(value, key=repr) if isinstance(value, set | frozenset) else value
 
 
 class _ValueTexts:
     """Converter of the values that one function refers to into text that is equal in every process.
 
-    called: kernels found among the converted values.
+    user: the function. called: kernels found among the converted values.
     """
 
     def __init__(self, user: FunctionType) -> None:
@@ -150,7 +153,7 @@ class _ValueTexts:
         self.called: list[Kernel] = []
 
     def text(self, value: Any) -> str:
-        """Text of a value; TypeError for a type without reproducible text."""
+        """Text of a value. Raises TypeError for a type without reproducible text."""
         if isinstance(value, PLAIN):
             return repr(value)
         if isinstance(value, Mapping):
@@ -188,7 +191,7 @@ class _ValueTexts:
 
 
 def _array_text(value: Any) -> str | None:
-    """Text of an array or a type of NumPy or numba; None for other values."""
+    """Text of an array, or of a type of NumPy or numba; None for other values."""
     if isinstance(value, np.ndarray | np.generic):
         return f"{_array_text(value.dtype)} {np.shape(value)} {value.tobytes().hex()}"
     if isinstance(value, np.dtype):

@@ -12,16 +12,17 @@ from numba.core.typing.typeof import typeof, typeof_impl
 
 
 class CompiledSettings:
-    """Base class of a frozen dataclass of numbers and tuples of numbers, for a global constant of a module.
+    """Base class of frozen dataclasses of numbers and tuples of numbers that are global constants of modules.
 
     A compiled function may read fields and properties of such a constant, but call no method. The machine
-    code contains the numbers, and is compiled again when the source changes a field that the function reads.
+    code contains the numbers; a function is compiled again when the source changes a field that the function
+    reads.
     """
 
     __slots__ = ()
     ranges: ClassVar[Mapping[str, tuple[float, float]]] = {}
-    """(lower, upper) exclusive bounds of a field's value by name of the field, for example for a proof to
-    hold."""
+    """Exclusive bounds (lower, upper) of the value of a field, by name of the field; for example bounds that
+    a proof requires."""
 
     def __post_init__(self) -> None:
         """Raises ValueError for a field outside its bounds in `ranges`."""
@@ -31,14 +32,16 @@ class CompiledSettings:
 
 
 class _SettingsType(types.Type):
-    """The numba type of one `CompiledSettings` object, with the object as attribute."""
+    """The numba type of one `CompiledSettings` object. settings: the object."""
 
     def __init__(self, settings: CompiledSettings) -> None:
         self.settings = settings
         super().__init__(name=repr(settings))
 
     def field(self, name: str) -> Any:
-        """(numba type, value) of the field `name`; an integer has a literal type, like a global integer."""
+        """Returns (numba type, value) of the field `name`. An integer has a literal type, like a global
+        integer.
+        """
         value = getattr(self.settings, name)
         return maybe_literal(value) or typeof(value), value
 

@@ -1,7 +1,8 @@
 """Compiled assignments of an array to a slice, `a[i] = b`, with a fixed message if the shapes differ.
 
-numba's own message states both shapes. Every compiled function with such an assignment would contain code
-that writes numbers as text. Compiling this code took a third of the time of the installation.
+numba's own message contains both shapes. Every compiled function with such an assignment would therefore
+contain code that converts numbers to text. The compilation of this code took a third of the installation
+time.
 """
 
 from collections.abc import Callable
@@ -21,9 +22,9 @@ def refuse_other_shape(source: tuple[int, ...], target: tuple[int, ...]) -> None
 
 @cache
 def shorten_message() -> None:
-    """Replaces the message in all functions that numba compiles from now on; it imports the compiler.
+    """Makes numba use the fixed message in all later compilations; this function imports the compiler.
 
-    Releases of numba whose message is fixed stay as they are.
+    Releases of numba with a fixed message are not changed.
     """
     from numba.np import arrayobj
 

@@ -1,11 +1,11 @@
-"""Functions of a Lie algebra, whose loops over structure constants are unrolled before compilation.
+"""Functions of a Lie algebra, with loops over structure constants that are unrolled before compilation.
 
 The nonlinear terms of the rod have the same formula on se(2) and se(3). Loops at run time would take two to
 three times as long as unrolled code: a loop over 4 terms costs more than the products. `UnrolledOverAlgebra`
 therefore unrolls the syntax tree of a function for each requested algebra g:
 
-- a loop over a value that g determines, `for a in g.components`, becomes a sequence of statements,
-- a condition that g determines becomes the chosen branch, and a number that g determines a constant,
+- a loop over a value that depends only on g, `for a in g.components`, becomes a sequence of statements,
+- a condition that depends only on g is replaced by the chosen branch, a number by a constant,
 - a list comprehension over g, `E = [... for a in g.components]`, becomes one variable per list element.
 
 A direct call, with the algebra as first argument, runs the function as ordinary Python.
@@ -25,11 +25,13 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 ALWAYS = {"range": range}
-"""Values that are known during unrolling besides the algebra, by name."""
+"""Names with known values during unrolling, in addition to the algebra."""
 
 
 class UnrolledOverAlgebra(Generic[P, R]):
-    """Decorator that unrolls the loops of a function over its first argument, a Lie algebra."""
+    """Decorator of a function whose first argument is a Lie algebra; `of` unrolls the loops over this
+    argument.
+    """
 
     def __init__(self, function: Callable[Concatenate[Algebra, P], R]) -> None:
         self.function: Any = function
@@ -48,7 +50,7 @@ class UnrolledOverAlgebra(Generic[P, R]):
     def written_out(self, g: Algebra) -> Callable[P, R]:
         """The function unrolled for the algebra `g`, not compiled.
 
-        Other unrolled functions that it calls are compiled.
+        All called functions that have this decorator too are unrolled and compiled.
         """
         tree = ast.parse(dedent(inspect.getsource(self.function)))
         ast.increment_lineno(tree, self.function.__code__.co_firstlineno - 1)
@@ -76,8 +78,8 @@ class UnrolledOverAlgebra(Generic[P, R]):
 class _WriterState(NamedTuple):
     """State shared by all `_Writer` objects that unroll one function.
 
-    lists: names of lists whose elements became variables. others: names of called functions that are unrolled
-    too. names: cache of the names that a syntax node reads. code: cache of compiled expressions.
+    lists: names of lists with elements that became variables. others: names of called functions that are also
+    unrolled. names: cache of the names that a syntax node reads. code: cache of compiled expressions.
     """
 
     lists: set[str]
@@ -87,7 +89,9 @@ class _WriterState(NamedTuple):
 
 
 class _Writer(ast.NodeVisitor):
-    """Copies a syntax tree, with names in `known` replaced by their values and loops over them unrolled."""
+    """Copies a syntax tree. Names in `known` are replaced by their values, and loops over such values are
+    unrolled.
+    """
 
     def __init__(self, known: Mapping[str, Any], shared: _WriterState) -> None:
         self.known = known
@@ -153,7 +157,9 @@ class _Writer(ast.NodeVisitor):
         return made
 
     def _with(self, target: ast.expr, item: Any) -> "_Writer":
-        """The writer for the body of one loop iteration, in which the loop variable `target` is `item`."""
+        """The writer for the body of one loop iteration, in which the loop variable `target` has the value
+        `item`.
+        """
         return _Writer({**self.known, **_bound(target, item)}, self.shared)
 
     def _all(self, parts: Iterable[Any]) -> list[Any]:
@@ -176,7 +182,7 @@ class _Writer(ast.NodeVisitor):
         return names
 
     def _value(self, node: Any) -> Any:
-        """Value of an expression; NameError if a name is not in `known`."""
+        """Value of an expression. Raises NameError if a name in the expression is not in `known`."""
         code = self.shared.code.get(node)
         if code is None:
             code = self.shared.code[node] = compile(ast.Expression(node), "<known>", "eval")
@@ -184,7 +190,9 @@ class _Writer(ast.NodeVisitor):
 
 
 def _bound(target: ast.expr, item: Any) -> dict[str, Any]:
-    """Values of the variables in the loop target `target`, by name, in the iteration for `item`."""
+    """Values of the variables in the loop target `target`, by name, in the iteration with the value
+    `item`.
+    """
     if isinstance(target, ast.Tuple):
         pairs = zip(target.elts, item, strict=True)
         return {name: value for part, inner in pairs for name, value in _bound(part, inner).items()}

@@ -1,4 +1,4 @@
-"""Build of an arm: constitutive law and profile, and the resulting coefficients along u."""
+"""Build of an arm: constitutive law and profile, and the resulting coefficients as functions of u."""
 
 import json
 from collections.abc import Mapping
@@ -13,14 +13,14 @@ from .laws import LAWS, LINEAR, Law, law_of
 from .profile import FACTORS, RADIUS_POWERS, Profile
 
 FACTOR_SAMPLE_COUNT = 256
-"""Number of points between neighbouring u of a profile at which the smallest factor is searched for."""
+"""Number of samples between neighbouring u of a profile in the search for the smallest factor."""
 
 
 class LocalCoefficients(NamedTuple):
     """Coefficients of the transverse operator at points of an arm; all arrays have the shape of the points.
 
-    nu: stretch of the straight state. c2, c3: compliances of shear and bending. gamma2, gamma3: normal and
-    rotational drag. g = nu + F c2.
+    nu: stretch of the straight arm under its force. c2, c3: compliances of shear and bending. gamma2, gamma3:
+    normal and rotational drag. g = nu + F c2.
     """
 
     nu: Array
@@ -32,10 +32,11 @@ class LocalCoefficients(NamedTuple):
 
 
 class Sections(NamedTuple):
-    """Properties of the cross-sections at points of an arm, for motion in the plane, or their derivatives.
+    """Properties of the cross-sections at points of an arm, for motion in the plane, or derivatives of these
+    properties.
 
-    compliance: of stretching, shear and bending, (3, points). drag: axial, normal and rotational,
-    (3, points). nu: stretch of the straight loaded arm, (points,).
+    compliance: of stretching, shear and bending, (3, points). drag: axial, normal and rotational drag,
+    (3, points). nu: stretch of the straight arm under its force, (points,).
     """
 
     compliance: Array
@@ -47,8 +48,8 @@ class Sections(NamedTuple):
 class Build:
     """Constitutive law and profile of an arm, together called its build; compared and hashed by value.
 
-    (law, section): a key of `LAWS`. profile: factors of stiffnesses and drags along the arm, None for an arm
-    without profile. Raises ValueError for an unknown law.
+    (law, section): a key of `LAWS`. profile: factors of stiffnesses and drags along the arm; None for
+    constant stiffnesses and drags. Raises ValueError for an unknown law.
     """
 
     law: str = LINEAR.law
@@ -60,23 +61,23 @@ class Build:
 
     @cached_property
     def standard(self) -> bool:
-        """Whether the material is linear and the same all along the arm."""
+        """Whether the material is linear and constant along the arm."""
         return self.profile is None and self.constitutive_law is LINEAR
 
     @property
     def constitutive_law(self) -> Law:
-        """The `Law` whose key in `LAWS` is (law, section)."""
+        """The `Law` with the key (law, section) in `LAWS`."""
         return law_of(self.law, self.section)
 
     @property
     def text(self) -> str:
-        """The build as JSON text, which `from_text` reads."""
+        """The build as JSON text, the input of `from_text`."""
         profile = None if self.profile is None else [self.profile.u, self.profile.rows]
         return json.dumps([self.law, self.section, profile])
 
     @classmethod
     def from_text(cls, text: str) -> "Build":
-        """The build from the JSON text that `text` returns."""
+        """The build from a JSON text of the property `text`."""
         law, section, profile = json.loads(text)
         if profile is None:
             return cls(law, section)
@@ -85,7 +86,7 @@ class Build:
 
     @property
     def law_number(self) -> int:
-        """Integer that stands for the law in compiled code, see `response`."""
+        """Number of the law in compiled code, see `response`."""
         return list(LAWS).index((self.law, self.section))
 
     @cached_property
@@ -95,7 +96,7 @@ class Build:
 
     @cached_property
     def jumps(self) -> tuple[float, ...]:
-        """The u at which the profile has two rows, where factors jump."""
+        """The u at which factors of the profile jump: the profile has two rows for such a u."""
         u = () if self.profile is None else self.profile.u
         return tuple(a for a, b in zip(u[:-1], u[1:], strict=True) if a == b)
 
@@ -105,30 +106,34 @@ class Build:
         return np.array([0.0, 1.0]) if self.profile is None else self.profile.breaks
 
     def relative_crushing_force(self, taper: float) -> float:
-        """Force that crushes the weakest section of an arm of the taper `taper`, divided by k1 at the base.
+        """Force that crushes the weakest section of an arm with the taper `taper`, divided by k1 at the base.
 
         inf if no force crushes the arm.
         """
         return self.constitutive_law.largest_load * _smallest_factor(self.profile, taper, "k1")
 
     def relative_least_drag(self, taper: float) -> float:
-        """Smallest rotational drag along an arm of the taper `taper`, divided by its value at the base."""
+        """Smallest rotational drag along an arm with the taper `taper`, divided by the rotational drag at the
+        base.
+        """
         return _smallest_factor(self.profile, taper, "gamma3")
 
     def relative_crushing_forces(self, tapers: Array) -> Array:
-        """`relative_crushing_force` for each value in `tapers`, of the shape of `tapers`, (...,)."""
+        """Result of `relative_crushing_force` for every value in `tapers`, (...,), as an array of the same
+        shape.
+        """
         shares = [self.relative_crushing_force(taper) for taper in tapers.ravel().tolist()]
         return np.array(shares).reshape(tapers.shape)
 
     def local(self, F: Any, at_base: Mapping[str, Any], u: Array) -> LocalCoefficients:
-        """Coefficients at points u, any shape (...,), under the force F.
+        """Coefficients at points u, (...,), under the force F. No point may be a break of the profile.
 
-        at_base: parameters at u = 0, by name. No point may be a break of the profile. Force and parameters
-        are numbers, or arrays for n arms, (n, 1, ...).
+        at_base: stiffnesses and drags at u = 0, and taper, by name. F and at_base contain numbers, or arrays
+        for n arms, (n, 1, ...).
         """
         factors = self._factors(at_base["taper"], u)
         law = self.constitutive_law
-        # No load acts along the arm, so every section carries the whole force F.
+        # No load acts along the arm, so the force in every section is F.
         nu = 1 - law.shortening(F / (at_base["k1"] * factors["k1"]))
         c2 = 1 / (at_base["k2"] * factors["k2"])
         c3 = 1 / (factors["k3"] * law.bending(nu))
@@ -136,9 +141,11 @@ class Build:
         return LocalCoefficients(nu, c2, c3, factors["gamma2"], gamma3, nu + F * c2)
 
     def sections(self, F: float, at_base: Mapping[str, float], u: Array) -> Sections:
-        """Properties of the cross-sections at points u, (points,), none of them a break of the profile.
+        """Properties of the cross-sections at points u, (points,), under the tip force F. No point may be a
+        break of the profile.
 
-        Compliances are those of the undeformed arm. F: tip force. at_base: parameters at u = 0, by name.
+        Compliances are those of the undeformed arm. at_base: stiffnesses and drags at u = 0, and taper, by
+        name.
         """
         factors = self._factors(at_base["taper"], u)
         stiffness = {name: at_base.get(name, 1.0) * factors[name] for name in ("k1", "k2", "k3")}
@@ -147,9 +154,10 @@ class Build:
         return Sections(np.array([1 / k for k in stiffness.values()]), np.array(drag), nu)
 
     def relative_compliances(self, taper: float, u: Array) -> Array:
-        """Compliances of stretching, shear and bending at points u, (points,), divided by those at the base.
+        """Compliances of stretching, shear and bending at points u, (points,), divided by the compliances at
+        the base.
 
-        Shape (3, points). The ratio is defined for a rigid rod too, whose compliances are 0.
+        Shape (3, points). The ratio is also defined for a rigid rod, which has compliances of 0.
         """
         factors = self._factors(taper, u)
         return np.array([1 / factors[name] for name in ("k1", "k2", "k3")])
@@ -157,10 +165,10 @@ class Build:
     def section_changes(
         self, at: Sections, F: float, taper: float, slopes: Mapping[str, float], u: Array
     ) -> Sections:
-        """Derivatives with respect to a parameter of the cross-sections `at` at points u, (points,).
+        """Derivatives of the cross-sections `at` at points u, (points,), with respect to a parameter.
 
-        slopes: derivatives of F, taper, and the compliances and drags at the base with respect to the
-        parameter, by name; missing names have derivative 0.
+        slopes: derivatives of F, of the taper, and of compliances and drags at the base with respect to the
+        parameter, by name; the derivative of a missing name is 0.
         """
         factors = self._factors(taper, u)
         # d log(radius)/d taper.
@@ -174,12 +182,13 @@ class Build:
             own = slopes.get(name, 0.0) * factors[name]
             drag[i] = own + at.drag[i] * RADIUS_POWERS.get(name, 0) * growth
         load = slopes.get("F", 0.0) * at.compliance[0] + F * compliance[0]
-        # n1(nu) = -F c1 in units of k1: the shortening changes by the change of the load over the tangent
-        # stiffness.
+        # W'(nu) = -F c1, so the change of nu is minus the change of F c1, divided by W''(nu).
         return Sections(compliance, drag, -load / self.constitutive_law.stiffness(at.nu))
 
     def _factors(self, taper: Any, u: Array) -> dict[str, Array]:
-        """Stiffnesses and drags at points u, divided by those at the base, by name; all of the shape of u."""
+        """Stiffnesses and drags at points u, divided by their values at the base, by name; arrays of the
+        shape of u.
+        """
         if self.profile is None:
             factors = dict.fromkeys(FACTORS, np.ones(u.shape))
         else:
@@ -195,9 +204,9 @@ class Build:
 
 @lru_cache(maxsize=1024)
 def _smallest_factor(profile: Profile | None, taper: float, name: str) -> float:
-    """Smallest k1 or gamma3, as `name` says, along an arm, divided by the value at the base."""
+    """Smallest k1 or gamma3 (`name`) along an arm, divided by the value at the base."""
     power = RADIUS_POWERS[name]
-    # Both radius and power are monotone, so a cone has its extreme at an end.
+    # The power of the radius of a cone is monotone, so its minimum is at an end.
     ends = min(1.0, taper**power)
     if profile is None:
         return ends

@@ -1,17 +1,18 @@
-"""Stress of a rod at a jump of its material, as a function of the mean strain there; compiled, for every law.
+"""Compiled stress of a rod at a jump of its material as a function of the mean strain, for every law.
 
 Stress is continuous at a jump, strain is not. Let a and b be the unknowns of `response` on the base side and
-on the tip side of the jump. Let w_a and w_b be the weights of both sides in the mean strain, with
-w_a + w_b = 1 for each component. Then
+on the tip side of the jump. Let w_a and w_b be the weights of both sides in the mean strain, with w_a + w_b =
+1 for each component. Then
 
     N(a) = N(b),    M(a) = M(b),    w_a a + w_b b = q,
 
-where q are the unknowns at which a linear rod with the mean compliances has the mean strain. The linear law
-has a = b = q. A weight is proportional to the side's compliance times its quadrature weight; the weights have
-a limit for vanishing compliances.
+where q are the unknowns of a linear rod that has the mean compliances and the mean strain. For the linear law
+a = b = q. The weight of a side is proportional to the compliance times the quadrature weight of the side; the
+weights have a limit if both compliances tend to 0.
 
-Both sides of a jump are an array, (2, 7), with the columns `COLUMNS`. Strains on both sides follow from a and
-b with the compliances of each side. The shear stress q2 is equal on both sides.
+The argument `sides` of all functions describes both sides of a jump, (2, 7), with the columns `COLUMNS`. The
+strains on both sides follow from a and b and the compliances of both sides. The shear stress q2 is equal on
+both sides.
 """
 
 from typing import NamedTuple
@@ -21,17 +22,18 @@ from ..compiled.compilation import compiled
 from .response import LINEAR_LAW, LocalSection, Stress, Tangent, stress, stress_change, tangent
 
 COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature", "c2")
-"""Columns of the array of both sides of a jump: fields of `LocalSection`, weights in the mean strain, and
-c2."""
+"""Columns of the array that describes both sides of a jump: fields of `LocalSection`, weights w of q1 and q3
+in the mean strain, weight of the quadrature, and c2."""
 SHEAR = COLUMNS.index("c2")
 """Index of the shear compliance c2 in `COLUMNS`."""
 MOST_ITERATIONS = 40
-"""Maximum number of Newton iterations; after this number the last iterate is used."""
+"""Maximum number of Newton iterations; without convergence the last iterate is used."""
 CONVERGED = 1e-9
-"""Relative length of a Newton step after which the next step would be below rounding error."""
+"""Newton's method stops when |step| <= CONVERGED * |unknown|, because the next step would be below rounding
+error."""
 LEAST_STRETCH_KEPT = 0.1
-"""Smallest ratio of the stretch h1 after a Newton step to h1 before; a longer step is shortened, because the
-law is defined for h1 > 0 only."""
+"""A Newton step is shortened so that the stretch h1 after the step is at least this times h1 before the step,
+because the law is defined for h1 > 0 only."""
 
 
 class Unknowns(NamedTuple):
@@ -48,14 +50,18 @@ def _section(side: Array) -> LocalSection:
 
 @compiled
 def _solved(T: Tangent, N: float, M: float) -> Unknowns:
-    """Solution x of the 2 x 2 linear system T x = (N, M)."""
+    """Solution x of the linear system T x = (N, M), with T as a 2 x 2 matrix."""
     determinant = T.N1 * T.M3 - T.N3 * T.M1
     return Unknowns((T.M3 * N - T.N3 * M) / determinant, (T.N1 * M - T.M1 * N) / determinant)
 
 
 @compiled
 def _allowed(at: LocalSection, q1: float, step: float) -> float:
-    """Largest fraction, up to 1, of a Newton step `step` of q1 that leaves h1 at LEAST_STRETCH_KEPT h1."""
+    """Largest fraction, up to 1, of a step of q1 after which h1 >= LEAST_STRETCH_KEPT times h1 before the
+    step.
+
+    at, q1: section and unknown before the step.
+    """
     h = at.nu + at.c1 * q1
     change = at.c1 * step
     if h + change >= LEAST_STRETCH_KEPT * h:
@@ -70,15 +76,15 @@ def _small(step: Unknowns, at: Unknowns) -> bool:
 
 @compiled
 def unknowns_before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
-    """The unknowns a on the base side of a jump, from the mean unknowns q, by Newton's method.
+    """The unknowns a on the base side of a jump, from the mean unknowns q; sides: (2, 7).
 
-    The equations are equal stresses on both sides. sides: (2, 7).
+    Newton's method solves the equations of equal stresses on both sides.
     """
     if law == LINEAR_LAW:
         return q
     one = _section(sides[0])
     other = _section(sides[1])
-    # The mean is prescribed, so b decreases by this ratio times an increase of a.
+    # The mean is prescribed, so db = -ratio da.
     ratio1 = sides[0, 3] / sides[1, 3]
     ratio3 = sides[0, 4] / sides[1, 4]
     a = q
@@ -88,10 +94,10 @@ def unknowns_before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
         t = stress(law, other, b.q1, b.q3)
         S = tangent(law, one, a.q1, a.q3)
         T = tangent(law, other, b.q1, b.q3)
-        # Newton's method for equal stresses on both sides: the derivative of their difference by a.
+        # J is the derivative of (stress on the base side - stress on the tip side) with respect to a.
         J = Tangent(S.N1 + T.N1 * ratio1, S.N3 + T.N3 * ratio3, S.M1 + T.M1 * ratio1, S.M3 + T.M3 * ratio3)
         step = _solved(J, t.N - s.N, t.M - s.M)
-        # Neither side may be crushed by a step, since the neo-Hookean stress is infinite there.
+        # No side may be crushed by a step, since the neo-Hookean stress is infinite at h1 = 0.
         share = min(_allowed(one, a.q1, step.q1), _allowed(other, b.q1, -ratio1 * step.q1))
         a = Unknowns(a.q1 + share * step.q1, a.q3 + share * step.q3)
         if _small(step, a):
@@ -101,7 +107,9 @@ def unknowns_before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
 
 @compiled
 def unknowns_behind_jump(sides: Array, q: Unknowns, a: Unknowns) -> Unknowns:
-    """The unknowns b on the tip side of a jump, from the mean unknowns q and a; sides: (2, 7)."""
+    """The unknowns b on the tip side of a jump, from the mean unknowns q and the unknowns a; sides:
+    (2, 7).
+    """
     return Unknowns((q.q1 - sides[0, 3] * a.q1) / sides[1, 3], (q.q3 - sides[0, 4] * a.q3) / sides[1, 4])
 
 
@@ -114,9 +122,9 @@ def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
 
 @compiled
 def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tangent:
-    """Derivatives of the mean unknowns at a jump by the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM).
+    """Derivatives of the mean unknowns q with respect to the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM).
 
-    sides: (2, 7). a, b: unknowns on the base side and the tip side.
+    a, b: unknowns on the base side and on the tip side. sides: (2, 7).
     """
     S = tangent(law, _section(sides[0]), a.q1, a.q3)
     T = tangent(law, _section(sides[1]), b.q1, b.q3)
@@ -133,9 +141,10 @@ def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tan
 
 @compiled
 def changes_beside_jump(law: int, sides: Array, q: Unknowns, change: Unknowns) -> tuple[Unknowns, Unknowns]:
-    """(change of a, change of b): changes of the unknowns on the base side and the tip side of a jump.
+    """Returns (change of a, change of b): changes of the unknowns on the base side and the tip side of a
+    jump.
 
-    change: infinitesimal change of the mean unknowns q. sides: (2, 7).
+    q: mean unknowns. change: infinitesimal change of q. sides: (2, 7).
     """
     a = unknowns_before_jump(law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
@@ -147,7 +156,9 @@ def changes_beside_jump(law: int, sides: Array, q: Unknowns, change: Unknowns) -
 
 @compiled
 def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
-    """Derivatives of the stresses N and M at a jump by the mean unknowns q1 and q3; sides: (2, 7)."""
+    """Derivatives of the stresses N and M at a jump with respect to the mean unknowns q1, q3; sides:
+    (2, 7).
+    """
     q = Unknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)
     Z = _compliance_at_jump(law, sides, a, unknowns_behind_jump(sides, q, a))
@@ -160,7 +171,8 @@ def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: 
     """Derivatives of the stresses N and M at a jump with respect to a parameter, at fixed mean unknowns.
 
     sides: (2, 7). change: derivatives of nu, c1 and c3 of both sides with respect to the parameter, (2, 3).
-    The weights in the mean strain do not change: a parameter scales the compliances of both sides alike.
+    The weights in the mean strain are constant, because a parameter multiplies the compliances of both sides
+    by the same factor.
     """
     q = Unknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)
@@ -171,8 +183,8 @@ def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: 
         at = _section(sides[i])
         x = a if i == 0 else b
         own = stress_change(law, at, _section(change[i]), x.q1, x.q3)
-        # At fixed stress the unknowns would change by -back. The mean is fixed, so the stress changes
-        # instead.
+        # At fixed stress the unknowns of this side would change by -back. A change of the stress keeps the
+        # mean unknowns fixed.
         back = _solved(tangent(law, at, x.q1, x.q3), own.N, own.M)
         moved1 += sides[i, 3] * back.q1
         moved3 += sides[i, 4] * back.q3

@@ -1,12 +1,12 @@
 """Constitutive laws: the energy of a rod per reference length, its derivatives, and the straight state.
 
-A law is U(h1, h2, kappa) = k1 W(h1) + k2 h2^2/2 + k3 B(h1) kappa^2/2 with the stretch energy W and the
-bending factor B. W'(1) = 0 and W''(1) = B(1) = 1, so k1, k2 and k3 are the stiffnesses of the undeformed
+A law is the energy U(h1, h2, kappa) = k1 W(h1) + k2 h2^2/2 + k3 B(h1) kappa^2/2 with the stretch energy W and
+the bending factor B. W'(1) = 0 and W''(1) = B(1) = 1, so k1, k2 and k3 are the stiffnesses of the undeformed
 rod. The stretch nu of a straight rod under the stress n1 = -F solves k1 W'(nu) = -F. The transverse linear
 problem depends on the law only through nu and B(nu): kappa = 0 at rest, so B' enters no linear term.
 
-Incompressible neo-Hookean rubber has two variants. The cross-section is either fixed, or swells as the
-rod shortens, with the stretch h1 - Y h1^(-1/2) kappa of a fibre at the distance Y.
+Incompressible neo-Hookean rubber has two variants: a fixed cross-section, or a cross-section that swells as
+the rod shortens, in which a fibre at the distance Y from the axis has the stretch h1 - Y h1^(-1/2) kappa.
 """
 
 from collections.abc import Callable
@@ -19,8 +19,9 @@ Values = Any
 """A float, or an array of floats of any shape."""
 
 POLISHING_STEPS = 2
-"""Number of Newton steps on the shortening e = 1 - nu. For small loads e = 1 - nu loses digits by
-cancellation; the residual for e does not, and each step doubles the number of digits."""
+"""Number of Newton steps for the shortening e = 1 - nu, which double the number of correct digits. Cardano's
+formula gives nu, so that e = 1 - nu loses digits by cancellation for small loads; the residual of e has no
+cancellation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,9 +30,9 @@ class Law:
 
     All functions take and return floats or arrays. energy: W(h1). energy_over_square: W(h1)/(h1 - 1)^2.
     stress: W'(h1). stiffness: W''(h1). stiffness_slope, stiffness_curvature: W''' and W''''. bending: B(h1).
-    bending_slope, bending_curvature: B' and B''.
-    shortening: 1 - nu at the load x = F/k1, from W'(nu) = -x, without cancellation for small loads.
-    largest_load: the load x that crushes the rod; inf if no force crushes the rod.
+    bending_slope, bending_curvature: B' and B''. shortening: 1 - nu at the load x = F/k1, from W'(nu) = -x,
+    without cancellation for small loads. largest_load: the load x that crushes the rod; inf if no force
+    crushes the rod.
     """
 
     law: str
@@ -50,15 +51,15 @@ class Law:
 
 
 def _neo_hookean_shortening(x: Values) -> Values:
-    """Shortening e = 1 - nu of neo-Hookean rubber under the load x = F/k1, where nu^3 + 3 x nu^2 = 1.
+    """Shortening e = 1 - nu of neo-Hookean rubber under the load x = F/k1, (...,); nu^3 + 3 x nu^2 = 1.
 
-    By Cardano's formula, then Newton's method on e. x: any shape.
+    Cardano's formula gives a start for Newton's method for e.
     """
     x = np.asarray(x, dtype=float)
     square = 0.25 - x**3
     root = np.cbrt(0.5 + np.sqrt(np.maximum(square, 0.0)))
     nu = root**2 - x + (x / root) ** 2
-    if (square < 0).any():  # three real roots, of which one is positive
+    if (square < 0).any():  # three real roots; only one root is positive
         load = np.maximum(x, 0.5)
         angle = np.arccos(np.minimum(0.5 / load**1.5, 1.0)) / 3
         nu = np.where(square < 0, 0.5 / (np.sqrt(load) * np.cos(angle)), nu)
@@ -126,7 +127,7 @@ LAWS = {(law.law, law.section): law for law in (LINEAR, NEO_HOOKEAN, SWELLING)}
 
 
 def law_of(law: str, section: str) -> Law:
-    """The constitutive law with the key (law, section) in `LAWS`; ValueError for an unknown pair."""
+    """The constitutive law with the key (law, section) in `LAWS`. Raises ValueError for an unknown pair."""
     if (law, section) not in LAWS:
         sections = [s for name, s in LAWS if name == law]
         if not sections:

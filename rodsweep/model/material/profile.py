@@ -1,9 +1,9 @@
 """Profiles along the arm: factors of stiffnesses and drags as functions of the material coordinate u.
 
-A profile is a table. Between two rows each factor is a monotone cubic (Fritsch and Carlson, 1980), which
-stays between its end values; two rows at the same u are a jump. A taper t multiplies the factors by powers of
-the radius r(u) = 1 - (1 - t) u of a circular cone: k1, k2 ~ r^2, k3 ~ r^4, gamma3 ~ r^2. The logarithms in
-the drags gamma1 and gamma2 of a cone are not part of the taper.
+A profile is a table. Between two rows each factor is a monotone cubic (Fritsch and Carlson, 1980), with
+values between its end values; two rows at the same u describe a jump. A taper t multiplies the factors by
+powers of the radius r(u) = 1 - (1 - t) u of a circular cone: k1, k2 ~ r^2, k3 ~ r^4, gamma3 ~ r^2. The
+logarithms in the drags gamma1 and gamma2 of a cone are not part of the taper.
 """
 
 from dataclasses import dataclass
@@ -14,9 +14,9 @@ import numpy as np
 from ...arrays import Array
 
 FACTORS = ("k1", "k2", "k3", "gamma1", "gamma2", "gamma3")
-"""Names of the stiffnesses and drags whose factors a profile lists, in the order of its columns after u."""
+"""Names of the stiffnesses and drags, in the order of the columns of a profile after the column u."""
 RADIUS_POWERS = {"k1": 2, "k2": 2, "k3": 4, "gamma3": 2}
-"""Exponent of the radius in each stiffness and drag of a cone; 0 for missing names."""
+"""Exponents of the radius in the stiffnesses and drags of a cone; for missing names the exponent is 0."""
 
 
 @dataclass(frozen=True)
@@ -57,15 +57,15 @@ class Profile:
 
     @cached_property
     def _pieces(self) -> Array:
-        """Coefficients of the cubics between neighbouring u, t^3 first, (4, factors, intervals).
+        """Coefficients of the cubic polynomials between neighbouring u, t^3 first, (4, factors, intervals).
 
-        t runs from 0 to 1 along each interval.
+        t increases from 0 to 1 along each interval.
         """
         u = np.array(self.u)
         rows = np.array(self.rows)
         jumps = np.flatnonzero(np.diff(u) == 0) + 1
         pieces = []
-        # A jump splits the profile: no slope is taken across it.
+        # A jump splits the profile, so that slopes use one side only.
         for part in np.split(np.arange(len(u)), jumps):
             y = rows[part]
             h = np.diff(u[part])[:, None]
@@ -77,7 +77,7 @@ class Profile:
         return np.ascontiguousarray(np.concatenate(pieces, axis=1).swapaxes(1, 2))
 
     def factors(self, u: Array) -> Array:
-        """Factors at points u in the order of `FACTORS`, (factors, *u.shape); no point may be a break."""
+        """Factors at points u, in the order of `FACTORS`, (factors, *u.shape). No point may be a break."""
         breaks = self.breaks
         piece = np.minimum(np.searchsorted(breaks[1:], u, side="right"), len(breaks) - 2)
         t = (u - breaks[piece]) / (breaks[piece + 1] - breaks[piece])
@@ -87,7 +87,8 @@ class Profile:
 
 
 def _monotone_slopes(u: Array, values: Array) -> Array:
-    """Slopes of the factors at the rows, (rows, factors), for monotone cubics (Fritsch and Carlson, 1980).
+    """Slopes of the factors at the rows, (rows, factors), for monotone cubic polynomials
+    (Fritsch and Carlson, 1980).
 
     u: (rows,). values: factors, (rows, factors).
     """
@@ -100,7 +101,7 @@ def _monotone_slopes(u: Array, values: Array) -> Array:
     w2 = h[1:] + 2 * h[:-1]
     same = chords[:-1] * chords[1:] > 0
     with np.errstate(divide="ignore", invalid="ignore"):
-        # The weighted harmonic mean never overshoots; next to an extremum the slope is 0.
+        # With the weighted harmonic mean the cubics are monotone; at an extremum the slope is 0.
         inner = (w1 + w2) / (w1 / chords[:-1] + w2 / chords[1:])
     slopes[1:-1] = np.where(same, inner, 0.0)
     for end, near, next_one in ((0, 0, 1), (-1, -1, -2)):

@@ -1,12 +1,12 @@
-"""Compiled stress-strain relation of every law: n1 and m3 from unknowns that stay regular at c1 = 0.
+"""Compiled stress-strain relation of every law: n1 and m3 from unknowns that are regular at c1 = 0.
 
-The unknowns q1, q2, q3 are the stresses, minus the stresses at rest, of a linear rod with the same
-strain: h1 = nu + c1 q1, h2 = c2 q2, kappa = c3 q3. The true stresses, minus the stresses at rest, are
+The unknowns q1, q2, q3 are the stresses, minus the stresses at rest, of a linear rod with the same strain: h1
+= nu + c1 q1, h2 = c2 q2, kappa = c3 q3. The true stresses, minus the stresses at rest, are
 
     N(q1, q3) = q1 [W'(h1) - W'(nu)]/(h1 - nu) + B'(h1) c3 q3^2/2,     q2,     M(q1, q3) = B(h1) q3
 
-with the stretch energy W and the bending factor B of `laws`. No formula divides by a compliance, so c1 = 0
-is allowed. A linear rod has N = q1 and M = q3.
+with the stretch energy W and the bending factor B of `laws`. No formula divides by a compliance, so c1 = 0 is
+allowed. A linear rod has N = q1 and M = q3.
 """
 
 from typing import NamedTuple
@@ -15,7 +15,7 @@ from ..compiled.compilation import compiled
 from .laws import LAWS
 
 LINEAR_LAW, FIXED_SECTION, SWELLING_SECTION = range(len(LAWS))
-"""Integers that stand for the constitutive laws in compiled code, in the order of `LAWS`."""
+"""Numbers of the constitutive laws in compiled code, in the order of `LAWS`."""
 
 
 class LocalSection(NamedTuple):
@@ -44,7 +44,9 @@ class Tangent(NamedTuple):
 
 @compiled
 def _bending(law: int, h: float) -> tuple[float, float, float]:
-    """Bending factor B of a law, and its derivatives B' and B'', at the stretch h."""
+    """Returns (B, B', B''): bending factor of the law with the number `law` at the stretch h, and its
+    derivatives.
+    """
     if law == SWELLING_SECTION:
         a = 1 / h
         b = 1 / h**4
@@ -62,7 +64,9 @@ def _secant(nu: float, h: float) -> float:
 
 @compiled
 def stress(law: int, at: LocalSection, q1: float, q3: float) -> Stress:
-    """Stresses N and M at one point for the unknowns q1 and q3; law: one of the integers above."""
+    """Stresses N and M at one point, minus their values at rest, for the unknowns q1 and q3. law: number of
+    the law.
+    """
     if law == LINEAR_LAW:
         return Stress(q1, q3)
     h = at.nu + at.c1 * q1
@@ -72,7 +76,9 @@ def stress(law: int, at: LocalSection, q1: float, q3: float) -> Stress:
 
 @compiled
 def tangent(law: int, at: LocalSection, q1: float, q3: float) -> Tangent:
-    """Derivatives of the stresses N and M at one point with respect to the unknowns q1 and q3."""
+    """Derivatives of the stresses N and M at one point with respect to the unknowns q1 and q3. law: number of
+    the law.
+    """
     if law == LINEAR_LAW:
         return Tangent(1.0, 0.0, 0.0, 1.0)
     h = at.nu + at.c1 * q1
@@ -86,7 +92,7 @@ def tangent(law: int, at: LocalSection, q1: float, q3: float) -> Tangent:
 def stress_change(law: int, at: LocalSection, change: LocalSection, q1: float, q3: float) -> Stress:
     """Derivatives of the stresses N and M with respect to a parameter, at fixed unknowns q1 and q3.
 
-    change: derivatives of the fields of `at` with respect to the parameter.
+    change: derivatives of the fields of `at` with respect to the parameter. law: number of the law.
     """
     if law == LINEAR_LAW:
         return Stress(0.0, 0.0)
