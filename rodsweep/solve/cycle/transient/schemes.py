@@ -12,7 +12,6 @@ class SchemeSettings:
     """Settings for the time schemes `default_scheme`, `fast_growth_scheme` and `accurate_scheme`, and for the
     choice of a scheme by the linear growth."""
 
-
     max_growth_of_accurate: float = 0.01
     """Linear growth per period, in modulus, below which the scheme is `accurate_scheme`."""
 
@@ -41,7 +40,6 @@ class SchemeSettings:
 
     accurate_tolerance: float = 1e-9
     """Local tolerance of the scheme `accurate_scheme`."""
-
 
     @property
     def default_scheme(self) -> TimeScheme:
