@@ -81,25 +81,25 @@ class Material(NamedTuple):
 
     def strain(self, Sigma: Values) -> Values:
         """Deformation E = Ebar + C Sigma under the stress Sigma, (3, ...) or (6, ...)."""
-        return _along(self.straight, Sigma) + _along(self.compliance, Sigma) * Sigma
+        return _broadcast_diagonal(self.straight, Sigma) + _broadcast_diagonal(self.compliance, Sigma) * Sigma
 
     def velocity(self, Sigma: Values, dSigma: Values) -> Values:
         """Velocity V = Gamma^-1 D*_E Sigma, (3, ...) or (6, ...), for nonzero drags.
 
         Sigma: stress; dSigma: derivative of Sigma with respect to u.
         """
-        return elastic_force(self.strain(Sigma), Sigma, dSigma) / _along(self.drag, Sigma)
+        return elastic_force(self.strain(Sigma), Sigma, dSigma) / _broadcast_diagonal(self.drag, Sigma)
 
     def energy(self, Sigma: Values) -> Values:
         """Elastic energy per length, Sigma C Sigma/2, in k3/L^2; Sigma: stress, (3, ...) or (6, ...)."""
-        return (_along(self.compliance, Sigma) * Sigma * Sigma).sum(axis=0) / 2
+        return (_broadcast_diagonal(self.compliance, Sigma) * Sigma * Sigma).sum(axis=0) / 2
 
     def dissipation(self, V: Values) -> Values:
         """Power per length lost to the fluid, V Gamma V, in k3/(L^2 tau2); V: velocity, (3 or 6, ...)."""
-        return (_along(self.drag, V) * V * V).sum(axis=0)
+        return (_broadcast_diagonal(self.drag, V) * V * V).sum(axis=0)
 
 
-def in_space(plane: Values) -> Values:
+def embed_in_se3(plane: Values) -> Values:
     """Embedding in se(3) or its dual, (6, ...), of the element `plane` of se(2) or its dual, (3, ...)."""
     space = np.zeros((6, *plane.shape[1:]), plane.dtype)
     space[PLANE_COMPONENTS] = plane
@@ -113,6 +113,6 @@ def first_component(number: float, size: int) -> Values:
     return element
 
 
-def _along(diagonal: Values, field: Values) -> Values:
+def _broadcast_diagonal(diagonal: Values, field: Values) -> Values:
     """The diagonal of C or Gamma, (d,) or (d, nodes), reshaped to broadcast with `field`, (d, ..., nodes)."""
     return diagonal.reshape(len(diagonal), *(1,) * (field.ndim - diagonal.ndim), *diagonal.shape[1:])

@@ -22,8 +22,8 @@ from .pencil import PENCIL_NORM, PencilMatrices
 
 
 class _Pieces(NamedTuple):
-    """Matrices and weights of a mesh of elements of order p, from which `_filled` computes the pencil of an
-    arm.
+    """Matrices and weights of a mesh of elements of order p, from which `_pencil_of_coefficients` computes
+    the pencil of an arm.
 
     value, slope: matrices from nodes to Gauss points, (p, p + 1). both: slope^T weights value,
     (p + 1, p + 1). constant: entries of the first two blocks, which are the same for every arm, (n,).
@@ -90,7 +90,9 @@ class ArmPencil:
 
     def matrices(self, rod: Rod) -> PencilMatrices:
         """The matrices of the pencil of an arm."""
-        return PencilMatrices(*_filled(float(rod.F), np.array(rod.local(self._points)), self._pieces))
+        return PencilMatrices(
+            *_pencil_of_coefficients(float(rod.F), np.array(rod.local(self._points)), self._pieces)
+        )
 
     def evaluation(self, points: Array) -> Array:
         """Matrix from values at all nodes to values at `points` in [0, 1], (n,): shape (n, nodes + 1)."""
@@ -128,7 +130,7 @@ def _keys(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> NDA
 
 
 @compiled
-def _filled(F: float, local: Array, pieces: _Pieces) -> tuple[Array, Array, Array]:
+def _pencil_of_coefficients(F: float, local: Array, pieces: _Pieces) -> tuple[Array, Array, Array]:
     """A, B and scale of the `PencilMatrices` of an arm; local: its coefficients, (6, elements, 2 order +
     1)."""
     elements, order = pieces.weight.shape

@@ -70,7 +70,7 @@ class StraightRod:
         return 0.0 if self.stable is None else self.w.real
 
     @property
-    def doubt(self) -> str:
+    def unproved_stability(self) -> str:
         """Message why the straight rod is not proved stable, for a rod whose motion on a mesh decays; "" for
         a stable straight rod."""
         if self.stable:

@@ -72,7 +72,7 @@ class AmplitudeEquation:
         # The beam of a coarse mesh grows at a slightly different rate; the difference is taken out.
         return growth + self.excess * duration, self.linear_rate * duration
 
-    def slow(self, times: Array, states: Array) -> bool:
+    def is_slow_mode(self, times: Array, states: Array) -> bool:
         """Whether a motion is the slowly growing or decaying leading mode. times: (k,); states:
         (k, unknowns)."""
         return max(
@@ -95,12 +95,12 @@ class AmplitudeEquation:
         """Whether a motion decays faster than the leading mode, so that no cycle is near. times: (k,);
         states: (k, unknowns)."""
         growth, linear = self.growth(times, states)
-        known = self.coefficient > 0 and self.slow(times, states)
+        known = self.coefficient > 0 and self.is_slow_mode(times, states)
         return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION.max_slow_growth) + (
             self.noise if known else 0
         )
 
-    def jump(self, times: Array, states: Array) -> float | None:
+    def scale_to_cycle(self, times: Array, states: Array) -> float | None:
         """Factor by which the state is scaled to the predicted amplitude of the cycle, or towards this
         amplitude.
 
@@ -108,7 +108,7 @@ class AmplitudeEquation:
         (k, unknowns).
         """
         growth, linear = self.growth(times, states)
-        if not self.slow(times, states):
+        if not self.is_slow_mode(times, states):
             return None
         size = float(np.linalg.norm(states[-1]))
         # d|z|/dt = linear |z| - c |z|^3, so what the growth lacks is c |z|^2.
