@@ -127,7 +127,7 @@ def first_cycles(point: Rod, settings: Sequence[AutoSetting]) -> dict[int, Orbit
     """First cycle of AUTO's runs, by the order of the single element in space."""
     near = orbit_of(solve_cycle(point, cycle_request(SETTLED_WITHIN), along="F"))
     orders = {setting.order for setting in settings}
-    moved = {order: near.on(mesh(1, order), REFERENCE_INTERVALS, REFERENCE_STAGES) for order in orders}
+    moved = {order: near.on_mesh(mesh(1, order), REFERENCE_INTERVALS, REFERENCE_STAGES) for order in orders}
     return {
         order: newton(orbit, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
         for order, orbit in moved.items()

@@ -42,7 +42,7 @@ def scipy_run(method: str, tolerance: float, leg: IntegrationTask) -> Trajectory
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # LSODA warns of a failure that `found.success` reports too
         found = scipy.integrate.solve_ivp(
-            lambda _, x: beam.rate(x),
+            lambda _, x: beam.state_derivative(x),
             (0.0, duration),
             z,
             method,

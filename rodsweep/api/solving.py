@@ -15,7 +15,7 @@ from ..results.file.view import View
 from ..results.layouts.variables import Filled
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.solver_pools import destroy_pooled_solvers
-from ..solve.exclusive import solving
+from ..solve.exclusive import exclusive_solve
 from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
 from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ..tasks.protocol import JointVariables, NamedArrays, Solver
@@ -32,7 +32,7 @@ _warm: set[str] = set()
 """Names of the tasks whose solvers are already compiled in this process."""
 
 
-@solving
+@exclusive_solve
 def solve_here(job: Job, note: PointNote | None = None, progress: bool | None = None) -> SolvedPoints:
     """Solves all points of a job in this process.
 

@@ -53,7 +53,7 @@ class Path:
         return PARAMETERS[self.name]
 
     @property
-    def inverse(self) -> bool:
+    def is_compliance(self) -> bool:
         """Whether the path variable p is the compliance 1/k of a varying stiffness k, instead of the
         parameter itself.
         """
@@ -69,16 +69,16 @@ class Path:
         """(F, nu, c2, gamma3) at p = 0, which need not be those of a valid rod."""
         return coefficients_of({**self.rod.values, self.name: self.parameter.value(0.0)})
 
-    def variable(self, value: float) -> float:
+    def coordinate(self, value: float) -> float:
         """The path variable p at which the varying parameter has `value`."""
         return self.parameter.coordinate(value)
 
     def value(self, p: float, error: float) -> tuple[float, float]:
         """(value of the varying parameter at p, error of this value); error: error of p."""
         # k = 1/p, so dk = dp/p^2.
-        return self.parameter.value(p), error / p**2 if self.inverse else error
+        return self.parameter.value(p), error / p**2 if self.is_compliance else error
 
-    def at(self, p: float) -> Rod:
+    def rod_at(self, p: float) -> Rod:
         """The rod at p. Raises ValueError if the rod is invalid, for example crushed."""
         return self.rod.with_coordinate(self.name, p)
 

@@ -57,7 +57,7 @@ class PlaneAxis:
             return exp(log(self.start) + x * (log(self.stop) - log(self.start)))
         return self.start + x * (self.stop - self.start)
 
-    def scaled(self, value: float) -> float:
+    def coordinate(self, value: float) -> float:
         """The scaled coordinate x at which the parameter has `value`."""
         if self.logarithmic:
             return (log(value) - log(self.start)) / (log(self.stop) - log(self.start))
@@ -100,7 +100,7 @@ class Plane:
         """Whether all rods of the plane are uniform and of linear material, so that D has a closed form."""
         return self.rod.standard and all(axis.name != "taper" for axis in self.axes)
 
-    def at(self, x: float, y: float) -> Rod:
+    def rod_at(self, x: float, y: float) -> Rod:
         """The rod at scaled coordinates (x, y). Raises ValueError if the rod is invalid, for example
         crushed."""
         first, second = self.axes
@@ -108,7 +108,7 @@ class Plane:
 
     def determinant(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """D and its derivatives by w, x and y, at w, for the rod at scaled coordinates (x, y)."""
-        rod = self.at(x, y)
+        rod = self.rod_at(x, y)
         if not self.standard:
             return self._of_arms(w, x, y)
         (D, D_w, _, S, noise), D_x = self._along(w, rod, self.axes[0])
@@ -119,7 +119,7 @@ class Plane:
 
     def value(self, w: complex, x: float, y: float) -> DeterminantValue:
         """D and dD/dw at w, for the rod at scaled coordinates (x, y)."""
-        rod = self.at(x, y)
+        rod = self.rod_at(x, y)
         return scaled_determinant(w, rod.coefficients) if self.standard else arm_determinant(rod).value(w)
 
     def stencil(self, x: float, y: float, which: int) -> tuple[tuple[tuple[float, float], ...], float]:
@@ -157,7 +157,7 @@ class Plane:
     def small_step(self, x: float, y: float, which: int, largest: float) -> float:
         """A step along axis number `which`: at most `largest`, and at most 1 % of the distance from
         crushing."""
-        rod = self.at(x, y)
+        rod = self.rod_at(x, y)
         axis = self.axes[which]
         force = rod.crushing_force
         if force == inf or axis.name not in (*CRUSHING, "taper"):
@@ -170,7 +170,7 @@ class Plane:
     def is_valid(self, x: float, y: float) -> bool:
         """Whether the rod at scaled coordinates (x, y) is valid."""
         try:
-            self.at(x, y)
+            self.rod_at(x, y)
         except ValueError:
             return False
         return True

@@ -18,7 +18,7 @@ from ..model.rod import Rod
 from .arm_on_mesh import jumps_on
 from .elements.basis import interpolation
 from .elements.elements import ELEMENTS
-from .elements.mesh import Mesh, transfer
+from .elements.mesh import Mesh, interpolation_matrix
 from .elements.quadrature import gauss_lobatto
 from .nodal_rod import NO_JUMPS, IntegerArray, NodalRod
 
@@ -81,19 +81,20 @@ def interpolate_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Value
     these polynomials are therefore interpolated from the other nodes of their elements. At a jump of
     `target`, the new S is the mean of the values of the polynomials on both sides.
     """
-    E = transfer(source, target)
+    E = interpolation_matrix(source, target)
     out = S @ E.T
     there = NO_JUMPS if rod.build.constitutive_law is LINEAR else jumps_on(rod, target)
     if len(there.nodes):
         here = jumps_on(rod, source).nodes
         for column, component in ((3, STRETCHING), (4, BENDING)):
             out[component] = (
-                S[component] @ _across(E, source, target, here, there.nodes, there.sides[..., column]).T
+                S[component]
+                @ _interpolation_at_jumps(E, source, target, here, there.nodes, there.sides[..., column]).T
             )
     return out
 
 
-def _across(  # noqa: PLR0913, PLR0917 - of both meshes
+def _interpolation_at_jumps(  # noqa: PLR0913, PLR0917 - of both meshes
     E: Array, source: Mesh, target: Mesh, here: IntegerArray, there: IntegerArray, shares: Array
 ) -> Array:
     """The interpolation matrix E, (target nodes, source nodes), modified for a field that is discontinuous at
@@ -112,7 +113,7 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
         for side in (e - 1, e):
             rows = element == side
             columns = slice(side * p, (side + 1) * p + 1)
-            row = _end_from_inside(p, side in at_jumps, side + 1 in at_jumps, first=side == e)
+            row = _extrapolation_weights(p, side in at_jumps, side + 1 in at_jumps, first=side == e)
             weights = out[rows, node].copy()
             out[rows, node] = 0.0
             out[rows, columns] += weights[:, None] * row
@@ -120,13 +121,13 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
         # States contain the mean of both sides at the node of a jump.
         out[node] = 0.0
         for side, share in ((e - 1, before), (e, behind)):
-            row = _end_from_inside(p, side in at_jumps, side + 1 in at_jumps, first=side == e)
+            row = _extrapolation_weights(p, side in at_jumps, side + 1 in at_jumps, first=side == e)
             out[node, side * p : (side + 1) * p + 1] += share * row
     return out
 
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
-def _end_from_inside(order: int, starts: bool, stops: bool, first: bool) -> Array:
+def _extrapolation_weights(order: int, starts: bool, stops: bool, first: bool) -> Array:
     """Weights, (p + 1,), that extrapolate from the nodes of an element, except nodes at jumps, to one end of
     the element.
 

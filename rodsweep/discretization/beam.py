@@ -54,7 +54,7 @@ class Beam(RodOnMesh):
         At a jump, h1 reaches 0 first on one side if the law is linear, and on both sides at once otherwise.
         """
         crushed = -self.nodal.rest[0, :-1] / self.sqrt_compliance[0, :-1]
-        if self.smooth_stresses:
+        if self.has_continuous_stresses:
             for node, sides in zip(self.nodal.jumps, self.nodal.sides, strict=True):
                 # The larger value belongs to the side that is crushed first.
                 crushed[node] = self.sqrt_compliance[0, node] * (-sides[:, 0] / sides[:, 1]).max()
@@ -73,7 +73,7 @@ class Beam(RodOnMesh):
         at the tip are ignored."""
         return self.layout.state((strains - self.nodal.rest) / self.sqrt_compliance, strains)
 
-    def rate(self, z: Array) -> Array:
+    def state_derivative(self, z: Array) -> Array:
         """dz/dt of states z, both (..., unknowns), with time in tau2."""
         out = np.empty(z.shape)
         flat = z.reshape(-1, self.unknowns), out.reshape(-1, self.unknowns)

@@ -70,7 +70,7 @@ class RodOnMesh(ABC):
         return nodal_rod(material_on(rod, mesh), mesh, self.unknown_velocities, law, jumps)
 
     @property
-    def smooth_stresses(self) -> bool:
+    def has_continuous_stresses(self) -> bool:
         """Whether S is continuous along the rod: if the material does not jump, or if its law is linear."""
         return self.rod.build.constitutive_law is LINEAR or not len(self.nodal.jumps)
 
@@ -80,7 +80,7 @@ class RodOnMesh(ABC):
         """
         S = self.stresses(x)
         c = self.nodal
-        return _along(c.rest, S) + _along(c.compliance, S) * S
+        return _broadcast_to_field(c.rest, S) + _broadcast_to_field(c.compliance, S) * S
 
     def element_strains(self, x: Array) -> Array:
         """Strains (h1, h2, Pi) of states x at the nodes of every element, (3, ..., elements (order + 1)); at
@@ -88,7 +88,7 @@ class RodOnMesh(ABC):
         """
         S = self.stresses(x)
         out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
-        write_element_strains(_listed(S), self.nodal, self.mesh.order, _listed(out))
+        write_element_strains(_flatten_middle_axes(S), self.nodal, self.mesh.order, _flatten_middle_axes(out))
         return out
 
     def element_strain_changes(self, x: Array, change: Array) -> Array:
@@ -98,9 +98,15 @@ class RodOnMesh(ABC):
         """
         S = self.stresses(x)
         dS = self.stresses(change)
-        moved = _along(self.nodal.compliance, dS) * dS
+        moved = _broadcast_to_field(self.nodal.compliance, dS) * dS
         out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
-        write_element_strain_changes(_listed(S), _listed(moved), self.nodal, self.mesh.order, _listed(out))
+        write_element_strain_changes(
+            _flatten_middle_axes(S),
+            _flatten_middle_axes(moved),
+            self.nodal,
+            self.mesh.order,
+            _flatten_middle_axes(out),
+        )
         return out
 
     def shape(self, x: Array) -> Array:
@@ -120,18 +126,18 @@ class RodOnMesh(ABC):
         """
         S = self.stresses(x)
         c = self.nodal
-        nu = _along(c.rest, S)[0]
-        (c1, c2, c3) = _along(c.compliance, S)
-        density = self._stored(nu, c1, c3, S[0], S[2])
+        nu = _broadcast_to_field(c.rest, S)[0]
+        (c1, c2, c3) = _broadcast_to_field(c.compliance, S)
+        density = self._strain_energy_density(nu, c1, c3, S[0], S[2])
         for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.sides, strict=True):
             # The energy of the mean stress at a jump is not the mean of the energies of both sides.
             density[..., node] = 0.0
             for (q1, q3), (nu, c1, c3, _, _, share, _) in zip(sides, numbers, strict=True):
-                density[..., node] += share * self._stored(nu, c1, c3, q1, q3)
+                density[..., node] += share * self._strain_energy_density(nu, c1, c3, q1, q3)
         energy: Array = (density + c2 * S[1] ** 2 / 2) @ self.mesh.quadrature
         return energy
 
-    def _stored(self, nu: Values, c1: Values, c3: Values, q1: Values, q3: Values) -> Values:
+    def _strain_energy_density(self, nu: Values, c1: Values, c3: Values, q1: Values, q3: Values) -> Values:
         """Energy per length of stretching and bending, without shear, from the nodal values nu, c1, c3 and
         the stresses q1 = S1, q3 = S3.
         """
@@ -172,11 +178,11 @@ class RodOnMesh(ABC):
         return all(T.M3 > 0 and T.N1 * T.M3 > T.N3 * T.M1 for T in tangents)
 
 
-def _listed(field: Array) -> Array:
+def _flatten_middle_axes(field: Array) -> Array:
     """A view of a field (3, ..., n) with the shape (3, m, n)."""
     return field.reshape(len(field), -1, field.shape[-1])
 
 
-def _along(constant: Array, field: Values) -> Array:
+def _broadcast_to_field(constant: Array, field: Values) -> Array:
     """A field (3, nodes + 1) or (3, 1), reshaped to broadcast against `field`, (3, ..., nodes + 1)."""
     return constant.reshape(len(constant), *(1,) * (field.ndim - 2), -1)

@@ -82,29 +82,29 @@ class Material(NamedTuple):
 
     def strain(self, Sigma: Values) -> Values:
         """Deformation E = Ebar + C Sigma under the stress Sigma, (3, ...) or (6, ...)."""
-        return _along(self.straight, Sigma) + _along(self.compliance, Sigma) * Sigma
+        return _broadcast_diagonal(self.straight, Sigma) + _broadcast_diagonal(self.compliance, Sigma) * Sigma
 
     def velocity(self, Sigma: Values, dSigma: Values) -> Values:
         """Velocity V = Gamma^-1 D*_E Sigma, (3, ...) or (6, ...). All drags must be nonzero.
 
         Sigma: stress. dSigma: derivative of Sigma with respect to u.
         """
-        return elastic_force(self.strain(Sigma), Sigma, dSigma) / _along(self.drag, Sigma)
+        return elastic_force(self.strain(Sigma), Sigma, dSigma) / _broadcast_diagonal(self.drag, Sigma)
 
     def energy(self, Sigma: Values) -> Values:
         """Elastic energy per length, Sigma C Sigma/2, in k3/L^2, shape (...). Sigma: stress, (3, ...) or
         (6, ...).
         """
-        return (_along(self.compliance, Sigma) * Sigma * Sigma).sum(axis=0) / 2
+        return (_broadcast_diagonal(self.compliance, Sigma) * Sigma * Sigma).sum(axis=0) / 2
 
     def dissipation(self, V: Values) -> Values:
         """Dissipated power per length, V Gamma V, in k3/(L^2 tau2), shape (...). V: velocity, (3, ...) or
         (6, ...).
         """
-        return (_along(self.drag, V) * V * V).sum(axis=0)
+        return (_broadcast_diagonal(self.drag, V) * V * V).sum(axis=0)
 
 
-def in_space(plane: Values) -> Values:
+def embed_in_se3(plane: Values) -> Values:
     """Embedding in se(3) or its dual space, (6, ...), of an element `plane` of se(2) or its dual space,
     (3, ...).
     """
@@ -120,7 +120,7 @@ def first_component(number: float, size: int) -> Values:
     return element
 
 
-def _along(diagonal: Values, field: Values) -> Values:
+def _broadcast_diagonal(diagonal: Values, field: Values) -> Values:
     """The diagonal of C or Gamma, (d,) or (d, nodes), reshaped to broadcast against `field`,
     (d, ..., nodes).
     """

@@ -12,7 +12,7 @@ import numpy as np
 from .parameters import SCALINGS
 
 
-def scaled(values: Mapping[str, Any]) -> Mapping[str, Any]:
+def local_coefficients_at_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
     """Force, stiffnesses and drags at the base, by name, from the parameter values by name.
 
     A result is the value of the parameter of the same name, times the values of all parameters that multiply

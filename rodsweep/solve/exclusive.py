@@ -52,7 +52,7 @@ def defer_signals(function: Callable[P, R]) -> Callable[P, R]:
     return call
 
 
-def solving(function: Callable[P, R]) -> Callable[P, R]:
+def exclusive_solve(function: Callable[P, R]) -> Callable[P, R]:
     """Decorator for a solve: combines `one_at_a_time` and `defer_signals`.
 
     An exception destroys all pooled solvers, because the exception may have interrupted a solver at work.

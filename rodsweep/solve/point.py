@@ -23,7 +23,7 @@ FAILURES = (*PETSC_ERRORS, Unsolvable, ArithmeticError, MemoryError, np.linalg.L
 """Exceptions that are treated as a failed solve; any other exception is a bug and ends the run."""
 
 
-def solved(
+def outcome_or_failure(
     solve: Callable[[], Outcome],
     failed: Callable[[str], Outcome],
     more_failures: tuple[type[Exception], ...] = (),

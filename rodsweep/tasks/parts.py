@@ -131,8 +131,8 @@ def crushing_clause(config: Config) -> str:
 def points_text(points: Points) -> str:
     """Text with the number of points and the shape of their grid: "50 points (5 x 10)"."""
     shape = " x ".join(str(n) for n in points.shape) if points.axes else "a list"
-    if points.over:
-        shape = f"{shape}: {' x '.join(points.over)}"
+    if points.arm_axes:
+        shape = f"{shape}: {' x '.join(points.arm_axes)}"
     return f"{counted(points.count, 'point')} ({shape})"
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..discretization.elements.quadrature import lobatto_points
-from ..solve.exclusive import solving
+from ..solve.exclusive import exclusive_solve
 from .limit_cycle import LimitCycleTask
 from .running.in_memory import blas_pool
 from .running.job import Job
@@ -46,7 +46,7 @@ class ReleasedMotion:
     """Whether the shapes cover the complete motion up to the cycle or to rest."""
 
 
-@solving
+@exclusive_solve
 def bent_shape(job: Job, tip: tuple[float, float] | None) -> Array:
     """Shape (x, y) in L, (2, NODES), of the only rod of a job.
 
@@ -63,7 +63,7 @@ def bent_shape(job: Job, tip: tuple[float, float] | None) -> Array:
     return shape
 
 
-@solving
+@exclusive_solve
 def released_motion(job: Job, tip: tuple[float, float]) -> ReleasedMotion | None:
     """Motion of the only rod of a job of the task limit_cycle after the release of its tip.
 

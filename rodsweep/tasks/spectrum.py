@@ -92,8 +92,8 @@ class SpectrumTask(CertifiedTask):
         depends_on = longitudinal_parameters(self.config.standard, linear)
         names = [name for name in depends_on if name in points.by_name]
         columns = {name: points.by_name[name] for name in names}
-        if points.over or not points.is_grid:
-            along = tuple(points.over) or ("point",)
+        if points.arm_axes or not points.is_grid:
+            along = tuple(points.arm_axes) or ("point",)
             return along, points.shape, {name: column.ravel() for name, column in columns.items()}
         grid = np.meshgrid(*columns.values(), indexing="ij")
         return tuple(names), grid[0].shape, dict(zip(names, (each.ravel() for each in grid), strict=True))

@@ -9,7 +9,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
 from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, ThresholdStatus, solve_thresholds
 from ..solve.changes.unstable_modes import ChangeKind, Crossing
-from ..solve.exclusive import solving
+from ..solve.exclusive import exclusive_solve
 from .relative import SEARCH_END, SEARCH_ENDS_OF_VARIED, rod_with
 
 SEARCH_REQUEST = ThresholdsRequest(F_max=SEARCH_END, accuracy=1e-6, certify=True, crossings=1000)
@@ -123,7 +123,7 @@ def flutter_forces(arm: SlenderArm, drag: Drag, end: float = SEARCH_END) -> Flut
     return FlutterForces(tau2=arm.tau2_with(drag), thresholds=thresholds)
 
 
-@solving
+@exclusive_solve
 def flutter_range(arm: SlenderArm) -> FlutterRange:
     """All changes of stability of the straight arm for each drag, up to a force common to all drags.
 

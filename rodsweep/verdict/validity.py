@@ -19,7 +19,7 @@ from ..model.arm.neglected import (
 )
 from ..model.arm.quantities import LOADS, SECTION_SIDES
 from ..solve.changes.unstable_modes import ChangeKind, Crossing
-from ..solve.exclusive import solving
+from ..solve.exclusive import exclusive_solve
 from .flutter import FlutterRange, flutter_forces
 
 REMEDY_DIGITS = 2
@@ -111,7 +111,7 @@ def viscosity_factor(effects: tuple[Effect, ...]) -> float:
     return max(float(e.viscosity_factor) for e in effects if e.name.startswith("inertia"))
 
 
-@solving
+@exclusive_solve
 def thickness_factor(arm: SlenderArm) -> float:
     """Largest factor on the thickness of an arm with which inertia, in the same fluid, is within its limit.
 

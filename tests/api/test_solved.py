@@ -36,7 +36,7 @@ def test_solved_points_and_their_dataset_are_read_alike(config):
         assert np.array_equal(early.variables[name], values, equal_nan=True)
         assert early.variables[name].dtype == values.dtype
     assert (early.task, early.config, early.flags) == (late.task, late.config, late.flags)
-    assert (early.parameters, early.over, early.typed) == (late.parameters, late.over, late.typed)
+    assert (early.parameters, early.arm_axes, early.typed) == (late.parameters, late.arm_axes, late.typed)
     assert early.is_grid == late.is_grid
 
 

@@ -158,7 +158,7 @@ def test_equations_in_fortran_are_those_of_the_beam(tmp_path):
     rate, jacobian, by_force = call(F, 2)
     matrix = beam.jacobian(z)
     terms = np.abs(matrix) @ np.abs(z)  # of the rate, which cancel on a cycle
-    assert np.abs(rate - beam.rate(z)).max() < 1e-14 * terms.max()
+    assert np.abs(rate - beam.state_derivative(z)).max() < 1e-14 * terms.max()
     assert np.abs(jacobian.T - matrix).max() < 1e-14 * np.abs(matrix).max()
     difference = (call(F + 1, 0)[0] - call(F - 1, 0)[0]) / 2  # exact: the rate is quadratic in F
     assert np.abs(by_force - difference).max() < 1e-14 * terms.max()

@@ -12,7 +12,7 @@ from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull.hull import hull_of
 from rodsweep.determinant.arm.hull.region import Hull, clearance
 from rodsweep.determinant.arm.newton import refine_eigenvalue, root_error
-from rodsweep.determinant.arm.roots import roots
+from rodsweep.determinant.arm.roots import refine_mesh_eigenvalues
 from rodsweep.determinant.certificate.box import eigenvalue_box, squared_amplification
 from rodsweep.determinant.certificate.winding_number import count_right_of as count_of_uniform
 from rodsweep.model.material.build import Build
@@ -115,7 +115,7 @@ def test_arms_with_soft_segments_are_bounded_and_counted_with_and_without_known_
         assert clearance(complex(value.real, abs(value.imag)), hull.a, hull.c)[0] <= 1e-6 * abs(value)
     line = line_in_gap(dense, int((dense.real > 0).sum()))
     number = int((dense.real > line).sum())
-    found = roots(dense[: number + 2].astype(complex), determinant, hull, 400.0)
+    found = refine_mesh_eigenvalues(dense[: number + 2].astype(complex), determinant, hull, 400.0)
     alone = count_right_of(line, determinant, hull)
     fast = count_right_of(line, determinant, hull, found.w, found.error)
     one_less = count_right_of(line, determinant, hull, found.w[2:], found.error[2:])
@@ -148,7 +148,7 @@ def test_roots_are_those_of_the_mesh_and_within_their_errors_on_a_finer_grid(see
     rng = np.random.default_rng(100 + seed)
     rod = random_arm(rng, pulled=0.0)
     determinant, w = ArmDeterminant(rod), eigenvalues(rod)[:5]
-    found = roots(w.astype(complex), determinant, hull_of(rod), 400.0)
+    found = refine_mesh_eigenvalues(w.astype(complex), determinant, hull_of(rod), 400.0)
     assert len(found.w) == 5
     assert found.displacement.max() < 1e-5
     for value, error in zip(found.w.tolist(), found.error.tolist(), strict=True):
@@ -160,6 +160,6 @@ def test_eigenvalues_that_are_no_roots_are_left_out():
     rod = Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)
     w = eigenvalues(rod)[:4]
     raw = np.array([*w, -1000.0, np.inf, 1e9, w[0] + 40])
-    found = roots(raw, ArmDeterminant(rod), hull_of(rod), 100.0)
+    found = refine_mesh_eigenvalues(raw, ArmDeterminant(rod), hull_of(rod), 100.0)
     assert sorted(found.indices.tolist()) == [0, 1, 2, 3]
     np.testing.assert_allclose(found.w, w[found.indices], rtol=1e-6)

@@ -33,14 +33,14 @@ def along(family, w, p):
 def test_families_have_the_determinants_of_their_arms_and_their_slopes(name, seed):
     rng = np.random.default_rng(seed)
     path = Path(random_arm(rng, pulled=0.0), name)
-    p = path.variable(getattr(path.rod, name))
+    p = path.coordinate(getattr(path.rod, name))
     low, high = sorted((p, p * (0.4 if name == "F" else 0.8)))
     family = interpolated_family(path, low, high, 4.0**6)
     assert family is not None
     between = ArmAlongPath(path)
     for share in (0.0, 0.31, 0.77, 1.0):
         p = low + share * (high - low)
-        arm = ArmDeterminant(path.at(p))
+        arm = ArmDeterminant(path.rod_at(p))
         for w in PLACES:
             here, own = along(family, w, p), arm.value(w)
             scale = np.exp(here.S - own.S)
@@ -61,7 +61,7 @@ def test_a_family_of_compressed_rubber_is_spaced_by_the_force():
     assert family is not None
     assert family.scale < np.inf
     for p in (0.0, 0.3, 7.0, 31.0, 60.0):
-        own = ArmDeterminant(path.at(p))
+        own = ArmDeterminant(path.rod_at(p))
         for w in (-3.0 + 0j, 60j, -300 + 70j):
             here, value = along(family, w, p), own.value(w)
             assert abs(here.D * np.exp(here.S - value.S) - value.D) < 1e-13 + 20 * value.noise

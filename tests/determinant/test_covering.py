@@ -44,7 +44,7 @@ PATHS = [
 
 @pytest.mark.parametrize("path", PATHS)
 def test_derivative_along_a_path_is_that_of_the_determinant(path):
-    p = path.variable(getattr(path.rod, path.name))
+    p = path.coordinate(getattr(path.rod, path.name))
     w = complex(-3.0, 41.0)
     assert coefficients_at(p, path.origin, path.direction) == pytest.approx(path.rod.coefficients, rel=1e-12)
     D, D_w, D_p, S, _ = determinant_along(w, path.rod.coefficients, path.direction)
@@ -62,7 +62,7 @@ def test_derivative_along_a_path_is_that_of_the_determinant(path):
 @pytest.mark.parametrize("path", PATHS)
 def test_a_small_error_of_the_path_variable_becomes_that_of_the_parameter(path):
     value = getattr(path.rod, path.name)
-    p = path.variable(value)
+    p = path.coordinate(value)
     assert path.value(p, 0.0) == (pytest.approx(value, rel=1e-15), 0.0)
     error = 1e-6 * abs(p)
     apart = abs(path.value(p + error, 0.0)[0] - path.value(p - error, 0.0)[0]) / 2
@@ -73,7 +73,7 @@ def test_a_small_error_of_the_path_variable_becomes_that_of_the_parameter(path):
 def test_bound_on_a_bidisc_holds_for_the_determinant_in_complex_p(path):
     """Against D with complex coefficients in mpmath, on the distinguished boundary, where the maximum is."""
     rng = np.random.default_rng(3)
-    p = path.variable(getattr(path.rod, path.name))
+    p = path.coordinate(getattr(path.rod, path.name))
     c, direction = path.rod.coefficients, path.direction
     sharpest = inf
     for eta in (2.0, 190.0, 2500.0):
@@ -130,7 +130,7 @@ def test_no_box_with_a_crossing_is_called_empty_and_regular_ones_hold_one_at_mos
     rng = np.random.default_rng(11)
     value = getattr(path.rod, path.name)
     shares = (1.01, 2.0) if path.name == "k1" else (0.5, min(1.5, 0.99 * path.rod.k1 / abs(path.rod.F)))
-    low, high = sorted(path.variable(share * value) for share in shares)
+    low, high = sorted(path.coordinate(share * value) for share in shares)
     zeros, left, _ = cover_with_boxes(first_boxes(path, low, high), path.origin, path.direction)
     assert not left
     for eta, p, *_ in zeros:
@@ -154,12 +154,12 @@ def test_no_box_with_a_crossing_is_called_empty_and_regular_ones_hold_one_at_mos
 def test_a_priori_bounds_over_a_path_hold_at_each_of_its_rods(path):
     value = getattr(path.rod, path.name)
     shares = (1.01, 2.5) if path.name == "k1" else (0.4, 0.99)
-    ends = sorted(path.variable(share * value) for share in shares)
+    ends = sorted(path.coordinate(share * value) for share in shares)
     largest = squared_amplification_over(path, *ends)
     radius = zero_free_radius(path, *ends, 1e3)
     assert radius > 0
     for p in np.linspace(*ends, 9):
-        rod = path.at(float(p))
+        rod = path.rod_at(float(p))
         assert squared_amplification(rod) <= largest * (1 + 1e-12)
         for eta in radius * np.array([1e-6, 0.1, 0.5, 1.0]):
             D, _, S, _ = scaled_determinant(complex(0, eta), rod.coefficients)

@@ -211,7 +211,7 @@ def test_it_is_the_form_from_which_the_velocities_are_eliminated(rod, elements, 
     root = np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.nodes)
     X = consistent(form, some_state(form))
     z = root * X[: form.stresses]
-    expected = Beam(rod.changed(gamma1=GAMMA1), mesh(elements, order)).rate(z)
+    expected = Beam(rod.changed(gamma1=GAMMA1), mesh(elements, order)).state_derivative(z)
     rate = root * mixed.rate(form, X)[: form.stresses] / form.M[: form.stresses]
     assert rate == pytest.approx(expected, rel=1e-10, abs=1e-12 * np.abs(expected).max())
 

@@ -83,4 +83,4 @@ def test_a_symmetry_is_a_matrix_and_is_undone(layout):
     symmetry, x, P = Symmetry(turn, 3), states(layout, 2), states(layout, layout.unknowns)
     S = symmetry.matrix(layout)
     assert symmetry.of(x, layout) == pytest.approx(x @ S.T)
-    assert symmetry.returned(P, layout) == pytest.approx(np.linalg.solve(S, P))
+    assert symmetry.apply_inverse(P, layout) == pytest.approx(np.linalg.solve(S, P))

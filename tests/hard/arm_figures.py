@@ -149,11 +149,11 @@ def _drawn_arms(d, gridded, view):
         for which in "xy":
             name = re.sub(r" ?\([^)]*\)$", "", d.label(axes, which))
             name = ARM_LABELS.get(name, PARAMETERS.get(d.label(axes, which), name.replace(" ", "_")))
-            on_axes |= {name} & set(gridded.over)
-    sizes = [len(gridded.variables[name]) for name in gridded.over]
+            on_axes |= {name} & set(gridded.arm_axes)
+    sizes = [len(gridded.variables[name]) for name in gridded.arm_axes]
     at = np.indices(sizes).reshape(len(sizes), -1)
     here, band = np.ones(at.shape[1], bool), np.ones(at.shape[1], bool)
-    for name, places in zip(gridded.over, at, strict=True):
+    for name, places in zip(gridded.arm_axes, at, strict=True):
         if name not in on_axes:
             first = int(np.argmin(gridded.variables[name])) if name == "drag" else 0
             here &= places == first

@@ -94,7 +94,7 @@ def finer(orbit):
     here = mesh_of(orbit)
     grid = mesh(here.elements, here.order + ceil(FINER_ORDER / here.elements))
     intervals = max(LEAST_INTERVALS, ceil(FINER_SHARE * here.intervals))
-    return at_orbit(newton(orbit.on(grid, intervals, FINER_STAGES), 1e-13, NewtonWorkspace()), 0.0)
+    return at_orbit(newton(orbit.on_mesh(grid, intervals, FINER_STAGES), 1e-13, NewtonWorkspace()), 0.0)
 
 
 def broken_promises(found, accuracy):

@@ -189,7 +189,7 @@ def wrong_figure(task, keywords, choices, width):
         ), None
     d, listed = Drawing(figures[0], sentence), view.listed
     fine = functools.cache(lambda: solved(task, keywords | {"accuracy": FINE[task]}))
-    of_arms = view.over and not choices and task in ("thresholds", "spectrum", "modes", "limit_cycle")
+    of_arms = view.arm_axes and not choices and task in ("thresholds", "spectrum", "modes", "limit_cycle")
     found = arm_figure(d, view, listed, fine) if of_arms else CHECKS[task](d, listed, fine)
     found += quantities_told(d, listed) + second_scales(d, listed) + validity_told(d, listed) + ticks(d)
     found += [("in the sentence", "") for _ in read(d.page, r"of NUMBER points? (?:NUMBER|are|failed)")]

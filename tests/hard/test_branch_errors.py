@@ -24,7 +24,7 @@ from rodsweep.solve.branch.mesh_choice import measurement_due, with_errors_in_ac
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
-from rodsweep.solve.orbit.newton import linearised, multipliers_of, newton
+from rodsweep.solve.orbit.newton import multipliers_of, newton, newton_step
 from rodsweep.solve.orbit.orbit_mesh import mesh_of
 from rodsweep.solve.point import Unsolvable
 
@@ -108,7 +108,7 @@ def broken_promises(case: Case) -> list[str]:
         stored, mesh = BranchPoint.of(point, case.accuracy), mesh_of(point.orbit)
         longer = ceil(1.7 * mesh.intervals) + 1
         fine = replace(mesh, order=mesh.order + 6, intervals=longer, stages=min(mesh.stages + 1, 6))
-        exact = linearised(newton(fine.carry(point.orbit), 1e-11, NewtonWorkspace()))
+        exact = newton_step(newton(fine.interpolate(point.orbit), 1e-11, NewtonWorkspace()))
         extrema, slope = CyclePath(exact.orbit).extrema, point.calibration.sensitivity
         y, multipliers = extrema["tip_y_max"], multipliers_of(exact)[0]
         others = max(abs(getattr(stored.measures, name) - value) for name, value in extrema.items())

@@ -128,7 +128,7 @@ def curve_of_folds(accuracy: float) -> Answer:
     """End of a curve of folds on an edge of the plane; the curve's accuracy is a setting itself."""
     plane = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0)
     try:
-        points, end = SpecialCurveProblem(SpecialKind.fold, *plane, NewtonWorkspace(), 1.0).followed(
+        points, end = SpecialCurveProblem(SpecialKind.fold, *plane, NewtonWorkspace(), 1.0).follow_from(
             fold(), 149.9
         )
     except FAILURES:
@@ -157,7 +157,7 @@ def coefficients(accuracy: float) -> Answer:
 def hopf_curve() -> tuple[Plane, Any]:
     axes = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 145.0, 160.0)
     plane = Plane(Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4), axes)
-    start = tuple(axis.scaled(value) for axis, value in zip(axes, GENERALISED_HOPF_AT[:2], strict=True))
+    start = tuple(axis.coordinate(value) for axis, value in zip(axes, GENERALISED_HOPF_AT[:2], strict=True))
     return plane, trace(0.0, plane, start, GENERALISED_HOPF_AT[2])
 
 
@@ -248,7 +248,7 @@ def followed(accuracy: float) -> Answer:
         answer |= eigenvalues_of(here, f"F = {F}")
     near = complex(found.eigenvalues[0, 0])
     leader = follow_leading_eigenvalue(
-        path.at(forces[0] + 0.1), np.array([complex(near.real, abs(near.imag))]), 1e-10
+        path.rod_at(forces[0] + 0.1), np.array([complex(near.real, abs(near.imag))]), 1e-10
     )
     if leader is None:
         return None

@@ -10,7 +10,7 @@ from rodsweep.model.balance import (
     PLANE_COMPONENTS,
     ad,
     coad,
-    in_space,
+    embed_in_se3,
 )
 from rodsweep.model.rod import Rod
 
@@ -67,8 +67,10 @@ def test_bracket_is_antisymmetric_and_satisfies_the_jacobi_identity(size):
 
 def test_the_plane_is_a_subalgebra_of_space():
     E, V, Sigma = elements(3)
-    assert ad(in_space(E), in_space(V)) == pytest.approx(in_space(ad(E, V)), abs=1e-15)
-    assert coad(in_space(E), in_space(Sigma)) == pytest.approx(in_space(coad(E, Sigma)), abs=1e-15)
+    assert ad(embed_in_se3(E), embed_in_se3(V)) == pytest.approx(embed_in_se3(ad(E, V)), abs=1e-15)
+    assert coad(embed_in_se3(E), embed_in_se3(Sigma)) == pytest.approx(
+        embed_in_se3(coad(E, Sigma)), abs=1e-15
+    )
 
 
 def test_bracket_is_that_of_matrices():
@@ -101,9 +103,9 @@ def test_bracket_does_not_depend_on_the_frame():
 def test_a_plane_motion_in_space_stays_in_the_plane_and_is_the_same():
     fields = stresses(np.linspace(0, 1, 7), 3)
     V, rate = rates(PLANE, *fields)
-    V_space, rate_space = rates(SPACE, *map(in_space, fields))
-    assert V_space == pytest.approx(in_space(V), rel=1e-14, abs=1e-12)
-    assert rate_space == pytest.approx(in_space(rate), rel=1e-13, abs=1e-9)
+    V_space, rate_space = rates(SPACE, *map(embed_in_se3, fields))
+    assert V_space == pytest.approx(embed_in_se3(V), rel=1e-14, abs=1e-12)
+    assert rate_space == pytest.approx(embed_in_se3(rate), rel=1e-13, abs=1e-9)
     assert SPACE.compliance[PLANE_COMPONENTS].tolist() == PLANE.compliance.tolist()
 
 
@@ -162,7 +164,7 @@ def test_compiled_rate_is_the_balance_at_the_nodes():
     beam = Beam(ROD.changed(gamma1=GAMMA1), mesh(1, 16))
     z = rough(beam)
     rate = collocated(beam, z)
-    assert beam.rate(z) == pytest.approx(rate, rel=1e-10, abs=1e-12 * np.abs(rate).max())
+    assert beam.state_derivative(z) == pytest.approx(rate, rel=1e-10, abs=1e-12 * np.abs(rate).max())
 
 
 def test_compiled_jacobian_is_the_derivative_of_the_balance():
@@ -182,5 +184,5 @@ def test_compiled_rate_of_a_smooth_rod_is_that_of_the_balance(elements, order):
     Sigma, dSigma, ddSigma = stresses(u, 3)
     _, exact = rates(PLANE, Sigma, dSigma, ddSigma)
     z = beam.state_of_strains(PLANE.strain(Sigma))
-    rate = beam.rate(z).reshape(3, -1) * beam.sqrt_compliance[:, :-1]
+    rate = beam.state_derivative(z).reshape(3, -1) * beam.sqrt_compliance[:, :-1]
     assert np.abs(rate - exact[:, :-1])[:, 1:].max() <= 1e-7 * np.abs(exact).max()

@@ -283,7 +283,7 @@ def test_a_list_of_a_grid_has_every_point_in_its_order(command):
     assert not view.is_grid
     assert listed.variables["growth_rate"].shape == (72, 2)
     places = np.unravel_index(np.arange(72), (3, 2, 12))
-    for name, place in zip(view.over, places, strict=True):
+    for name, place in zip(view.arm_axes, places, strict=True):
         assert (listed.variables[name] == view.variables[name][place]).all()
     assert listed.point_columns["F"] == pytest.approx(view.variables["F"].ravel(), nan_ok=True)
 

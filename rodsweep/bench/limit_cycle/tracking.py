@@ -106,7 +106,9 @@ def state_on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
 
 def solve_reference() -> ReferenceCycle:
     """The reference cycle at CYCLE_FORCE, on one element in space, by collocation on a fine mesh in time."""
-    near = orbit_of(cycle_at(CYCLE_FORCE)).on(mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES)
+    near = orbit_of(cycle_at(CYCLE_FORCE)).on_mesh(
+        mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES
+    )
     orbit = newton(near, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
     return ReferenceCycle(*state_on_cycle(orbit), orbit.period, float(abs(orbit.form.tip(orbit.start)[1])))
 
@@ -165,7 +167,7 @@ def tip_returns(beam: Beam, run: Trajectory) -> TipReturns:
         when = float(_spline(again.times, again.states @ row).roots(extrapolate=False)[0])
         for _ in range(NEWTON_CORRECTION_COUNT):
             there = _integrate_in_small_steps(beam, run.states[k], when).states[-1]
-            when -= float(row @ there) / float(row @ beam.rate(there))
+            when -= float(row @ there) / float(row @ beam.state_derivative(there))
         times.append(run.times[k] + when)
         states.append(_integrate_in_small_steps(beam, run.states[k], when).states[-1])
     for first, last in pairwise(rising):

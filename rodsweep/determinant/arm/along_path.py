@@ -62,7 +62,7 @@ class ArmAlongPath:
 
     def determinant(self, p: float) -> ArmDeterminant:
         """The determinant D of the arm at p."""
-        return arm_determinant(self.path.at(p))
+        return arm_determinant(self.path.rod_at(p))
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         """(w, dw/dp, error of w) of the eigenvalue w near the guess, at p."""
@@ -127,13 +127,13 @@ class ArmAlongPath:
             small = abs(in_p) <= ROOT_NEWTON.converged_step * e_p
             if small and (abs(in_x) <= ROOT_NEWTON.converged_step * e_x or abs(in_x) > last / 2):
                 # Only now: the spread takes D on further elements.
-                more = max(self._spread(x, p, S) / blur, 1.0)
-                e_p = max(more * e_p, abs(in_p)) + ARM_FAMILY.rounding * abs(p)
+                more = max(self._rounding_error_from_spread(x, p, S) / blur, 1.0)
+                e_p = max(more * e_p, abs(in_p)) + ARM_FAMILY.interpolation_error * abs(p)
                 return LocatedZero(x, p, max(more * e_x, abs(in_x)), e_p)
             last = abs(in_x)
         return FAILED
 
-    def _spread(self, x: float, p: float, S: float) -> float:
+    def _rounding_error_from_spread(self, x: float, p: float, S: float) -> float:
         """Estimated rounding error of D exp(-S) at real w = x: a factor times the differences of D between
         different elements.
 
@@ -179,7 +179,7 @@ class ArmAlongPath:
     def _exists(self, p: float) -> bool:
         """Whether the arm at p is valid."""
         try:
-            self.path.at(p)
+            self.path.rod_at(p)
         except ValueError:
             return False
         return True

@@ -27,7 +27,7 @@ from ...model.compiled.settings import CompiledSettings
 from ..exponents import EXPONENTS
 from .determinant import ArmDeterminant
 from .hull.region import Hull
-from .value import chain_value
+from .value import determinant_along_chain
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +61,7 @@ class CompletenessSettings(CompiledSettings):
     of elements, over 45 random arms."""
     ranges: ClassVar = {"widening_factor": (1.0, math.inf), "max_remainder": (0.0, 1.0)}
 
-    def trials(self) -> list[tuple[int, float]]:
+    def proof_trials(self) -> list[tuple[int, float]]:
         """(k, largest x_k in units of the largest known |w|) of each trial, in order."""
         return list(zip(self.point_counts, self.max_last_point, strict=True))
 
@@ -94,9 +94,9 @@ def prove_complete(
     pairs = has_conjugate(known)
     largest = float(np.abs(known).max())
     examined = 0
-    for k, farthest in COMPLETENESS.trials():
+    for k, farthest in COMPLETENESS.proof_trials():
         points = points_right_of_hull(line, hull.a, hull.c, k)
-        if _last(points) <= farthest * largest:
+        if _last_proof_point(points) <= farthest * largest:
             found = remainder_of_sum(
                 line, known[pairs], error[pairs], hull, points, determinant.level(points[-1])
             )
@@ -117,8 +117,8 @@ def largest_w_of_proof(line: float, hull: Hull, known: Complex) -> float:
     known: (n,).
     """
     largest = float(np.abs(known).max())
-    trials = COMPLETENESS.trials()
-    tried = ((_last(points_right_of_hull(line, hull.a, hull.c, k)), most) for k, most in trials)
+    trials = COMPLETENESS.proof_trials()
+    tried = ((_last_proof_point(points_right_of_hull(line, hull.a, hull.c, k)), most) for k, most in trials)
     return next((last for last, most in tried if last <= most * largest), math.inf)
 
 
@@ -132,8 +132,8 @@ def cheapest_proof(line: float, hull: Hull, known: Complex, modes: int) -> tuple
     best = 0, math.inf
     sizes = np.maximum.accumulate(np.abs(known)).tolist()
     whole = [*(known[1:] != known[:-1].conj()).tolist(), True]
-    for k, farthest in COMPLETENESS.trials():
-        last = _last(points_right_of_hull(line, hull.a, hull.c, k))
+    for k, farthest in COMPLETENESS.proof_trials():
+        last = _last_proof_point(points_right_of_hull(line, hull.a, hull.c, k))
         for number in range(modes, len(sizes) + 1):
             largest = sizes[number - 1]
             if last <= farthest * largest and max(last, largest) < best[1] and whole[number - 1]:
@@ -141,7 +141,7 @@ def cheapest_proof(line: float, hull: Hull, known: Complex, modes: int) -> tuple
     return best
 
 
-def _last(points: Array) -> float:
+def _last_proof_point(points: Array) -> float:
     """The last point x_k of a proof, (k,); inf without points."""
     return float(points[-1]) if len(points) else math.inf
 
@@ -208,7 +208,7 @@ def remainder_of_sum(
         for i in range(k):
             if i != j:
                 weight /= points[i] - points[j]
-        value = chain_value(complex(points[j], 0.0), level[0], level[1])
+        value = determinant_along_chain(complex(points[j], 0.0), level[0], level[1])
         slope = (value.D_w / value.D).real
         R += weight * slope
         # The c_j alternate in sign: R may be far smaller than the terms that are rounded.

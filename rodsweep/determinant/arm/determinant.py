@@ -21,7 +21,7 @@ from .elements.edges import element_edges, halved_where_coarse
 from .elements.propagators import element_propagators, gauss_method
 from .elements.settings import ARM_ELEMENTS
 from .local_waves import ArmSamples, arm_samples, scales_at, scales_at_all
-from .value import chain_value
+from .value import determinant_along_chain
 
 BoundedPropagators = tuple[float, Array]
 """(W, propagators that hold for |w| <= W, (elements, terms, PADDED))."""
@@ -46,7 +46,7 @@ class ArmDeterminant:
     def value(self, w: complex) -> DeterminantValue:
         """D and D' = dD/dw at w, times exp(-S)."""
         W, polynomials = self.level(abs(w))
-        return chain_value(complex(w), W, polynomials)
+        return determinant_along_chain(complex(w), W, polynomials)
 
     def value_at_level(self, w: complex, factor: float) -> DeterminantValue:
         """D and D' at w times exp(-S), from elements made for |w| times `factor`, at least 1.
@@ -54,7 +54,7 @@ class ArmDeterminant:
         Comparing values for several factors shows the rounding error of D.
         """
         W, polynomials = self.level(factor * abs(w), ARM_ELEMENTS.highest_compared)
-        return chain_value(complex(w), W, polynomials)
+        return determinant_along_chain(complex(w), W, polynomials)
 
     def elements(self, size: float) -> int:
         """Number of elements for D at |w| = size."""

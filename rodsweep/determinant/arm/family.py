@@ -24,7 +24,7 @@ from .determinant import Samples, elements_for, samples_of
 from .elements.minor_rates import PADDED
 from .elements.propagators import element_propagators
 from .elements.settings import ARM_ELEMENTS
-from .value import ARM_VALUE, chain_along, chain_value
+from .value import ARM_VALUE, chain_along, determinant_along_chain
 
 LINEAR_SCALE = math.inf
 """`ArmFamily.scale` of series in p itself, not in a logarithm of p."""
@@ -49,7 +49,7 @@ class ArmFamilySettings(CompiledSettings):
     """Factor on `converged_tail` for the coefficients along the arms."""
 
     @property
-    def rounding(self) -> float:
+    def interpolation_error(self) -> float:
         """Error of eigenvalues and crossings from interpolation, as a relative change of w and of p."""
         return 2 * self.converged_tail
 
@@ -83,10 +83,10 @@ def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFam
     """
     for number, share in ARM_FAMILY.trials():
         scale = share * (high - low)
-        arms = [path.at(value) for value in _places(low, high, scale, number).tolist()]
+        arms = [path.rod_at(value) for value in _interpolation_points(low, high, scale, number).tolist()]
         samples = samples_of(arms)
         # What the coefficients along the arm do not resolve, the propagators made of them cannot.
-        if not _resolves(samples):
+        if not _series_converges(samples):
             continue
         found = elements_for(arms, samples, W)
         if len(found.lengths) * ARM_ELEMENTS.max_terms * PADDED > ARM_FAMILY.max_entries:
@@ -104,19 +104,19 @@ def is_smooth(path: Path, low: float, high: float) -> bool:
     Raises ValueError at a p without a valid arm.
     """
     for number, share in reversed(ARM_FAMILY.trials()):
-        p = _places(low, high, share * (high - low), number)
-        if _resolves(samples_of([path.at(value) for value in p.tolist()])):
+        p = _interpolation_points(low, high, share * (high - low), number)
+        if _series_converges(samples_of([path.rod_at(value) for value in p.tolist()])):
             return True
     return False
 
 
-def _resolves(samples: Samples) -> bool:
+def _series_converges(samples: Samples) -> bool:
     """Whether the Chebyshev series in p of the coefficients along the arms converges at every sample."""
     tail = ARM_FAMILY.coefficient_tail_factor * ARM_FAMILY.converged_tail
     return _converged(np.moveaxis(np.array(samples.local), 1, 0), tail)
 
 
-def _places(low: float, high: float, scale: float, number: int) -> Array:
+def _interpolation_points(low: float, high: float, scale: float, number: int) -> Array:
     """Values of p at which arms are interpolated, (number,), increasing, with exactly both ends."""
     t = (chebyshev_points(number) + 1) / 2
     if scale < LINEAR_SCALE:
@@ -216,7 +216,7 @@ def determinant_in_family(family: ArmFamily, w: complex, p: float) -> Determinan
     polynomials = np.empty(shape)
     changes = np.empty(shape)
     propagators_at(family, p, polynomials, changes)
-    return chain_value(w, family.W, polynomials)
+    return determinant_along_chain(w, family.W, polynomials)
 
 
 @compiled
@@ -233,7 +233,7 @@ def eigenvalue_in_family(family: ArmFamily, guess: complex, p: float) -> tuple[c
     w = guess
     last = math.inf
     for _ in range(ROOT_NEWTON.max_refinements):
-        value = chain_value(w, family.W, polynomials)
+        value = determinant_along_chain(w, family.W, polynomials)
         step = value.D / value.D_w if value.D_w != 0 else 0j
         if w.imag == 0:
             step = complex(step.real, 0.0)
@@ -247,4 +247,4 @@ def eigenvalue_in_family(family: ArmFamily, guess: complex, p: float) -> tuple[c
     if w.imag == 0:
         slope = complex(slope.real, 0.0)
     rounding = ARM_VALUE.root_residual * abs(D) + ARM_VALUE.root_noise * noise
-    return w, slope, rounding / size + ARM_FAMILY.rounding * (abs(w) + abs(p * slope))
+    return w, slope, rounding / size + ARM_FAMILY.interpolation_error * (abs(w) + abs(p * slope))

@@ -15,7 +15,7 @@ from ..roots.roots import roots_of_parabola
 from ..roots.settings import ROOTS
 from ..value import DETERMINANT, DeterminantValue, second_difference
 from .determinant import ArmDeterminant, BoundedPropagators
-from .value import ARM_VALUE, chain_value
+from .value import ARM_VALUE, determinant_along_chain
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,8 +38,8 @@ ARM_ROOTS = ArmRootSettings()
 def _second_derivative(w: complex, S: float, level: BoundedPropagators) -> complex:
     """D'' exp(-S) at w, by a central difference of D', from the propagators of `level`."""
     h = DETERMINANT.second_difference_step * abs(w)
-    after = chain_value(w + h, level[0], level[1])
-    before = chain_value(w - h, level[0], level[1])
+    after = determinant_along_chain(w + h, level[0], level[1])
+    before = determinant_along_chain(w - h, level[0], level[1])
     second = second_difference(after, before, S, h)
     return complex(second.real, 0.0) if w.imag == 0 else second
 
@@ -62,7 +62,7 @@ def _error(w: complex, value: DeterminantValue, level: BoundedPropagators) -> fl
 @compiled
 def _root_error(w: complex, level: BoundedPropagators) -> float:
     """`root_error` at w, from the propagators of `level`."""
-    return _error(w, chain_value(w, level[0], level[1]), level)
+    return _error(w, determinant_along_chain(w, level[0], level[1]), level)
 
 
 @compiled
@@ -75,7 +75,7 @@ def _refined(guess: complex, level: BoundedPropagators, last: float) -> tuple[co
     """
     w = guess
     for _ in range(ROOT_NEWTON.max_refinements):
-        value = chain_value(w, level[0], level[1])
+        value = determinant_along_chain(w, level[0], level[1])
         step = value.D / value.D_w if value.D_w != 0 else complex(math.inf, 0.0)
         if guess.imag == 0:
             step = complex(step.real, 0.0)
@@ -93,7 +93,7 @@ def _refined(guess: complex, level: BoundedPropagators, last: float) -> tuple[co
 @compiled
 def _two_roots(middle: complex, level: BoundedPropagators) -> tuple[complex, complex]:
     """`two_roots` with the propagators of `level`."""
-    D, D_w, S, _ = chain_value(middle, level[0], level[1])
+    D, D_w, S, _ = determinant_along_chain(middle, level[0], level[1])
     if middle.imag == 0:
         D = complex(D.real, 0.0)
         D_w = complex(D_w.real, 0.0)

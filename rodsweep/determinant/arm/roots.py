@@ -24,7 +24,7 @@ from .newton import ARM_ROOTS, refine_eigenvalue_and_error, root_error, second_d
 T = TypeVar("T")
 
 
-def roots(
+def refine_mesh_eigenvalues(
     raw: Complex, determinant: ArmDeterminant, hull: Hull, most_waves: float, largest: float = 0.0
 ) -> Roots:
     """Roots of an arm's D refined from the eigenvalues `raw` of a mesh, complex, (n,), that approximate a
@@ -35,17 +35,17 @@ def roots(
     have too large a |q|, or are far from every root.
     """
     first = [w.real + 0j if abs(w.imag) <= ROOT_NEWTON.real_tolerance * abs(w) else w for w in raw.tolist()]
-    inside = [i for i, w in enumerate(first) if _inside(w, hull)]
+    inside = [i for i, w in enumerate(first) if _is_in_eigenvalue_box(w, hull)]
     waves, lengths = determinant.scales_of_all(np.array([first[i] for i in inside], complex))
     scale = dict(zip(inside, lengths.tolist(), strict=True))
     resolved = [i for i, number in zip(inside, waves.tolist(), strict=True) if number <= most_waves]
     start = [first[i] for i in resolved]
     _make_elements(determinant, max(map(abs, start), default=0.0), largest)
-    errors = dict(zip(resolved, _of_each(start, lambda w: root_error(w, determinant)), strict=True))
+    errors = dict(zip(resolved, _values_at_roots(start, lambda w: root_error(w, determinant)), strict=True))
     chosen = [i for i in resolved if errors[i] <= ROOTS.largest_of_pair * scale[i]]
     close = [errors[i] for i in chosen]
     # From two close guesses Newton's method may find one root twice, so these are moved apart first.
-    moved, reach = _separated([first[i] for i in chosen], close, determinant)
+    moved, reach = _separate_close_roots([first[i] for i in chosen], close, determinant)
     stands = [
         k
         for k, i in enumerate(chosen)
@@ -66,7 +66,7 @@ def roots(
     return Roots(kept, w, error, displacement, wave, axis, ahead)
 
 
-def _of_each(w: list[complex], function: Callable[[complex], T]) -> list[T]:
+def _values_at_roots(w: list[complex], function: Callable[[complex], T]) -> list[T]:
     """The value of a function at each w; computed once for neighbouring conjugates, at which the value is
     equal.
     """
@@ -85,7 +85,7 @@ def _make_elements(determinant: ArmDeterminant, size: float, largest: float) -> 
     determinant.level(size)
 
 
-def _inside(w: complex, hull: Hull) -> bool:
+def _is_in_eigenvalue_box(w: complex, hull: Hull) -> bool:
     """Whether w lies in the box that contains all eigenvalues with real parts >= Re w."""
     if not cmath.isfinite(w):
         return False
@@ -93,7 +93,7 @@ def _inside(w: complex, hull: Hull) -> bool:
     return w.real <= real and abs(w.imag) <= imag
 
 
-def _separated(
+def _separate_close_roots(
     w: list[complex], error: list[float], determinant: ArmDeterminant
 ) -> tuple[list[complex], list[float]]:
     """(w, reach), after each two eigenvalues closer than their errors have been moved to two roots of D.
@@ -129,8 +129,8 @@ class _LocatedRoot(NamedTuple):
 
 
 def _refined_all(guesses: list[tuple[complex, float]], determinant: ArmDeterminant) -> list[_LocatedRoot]:
-    """The root near each guess (w, reach of `_separated`); the conjugate of a refined root is not refined
-    again.
+    """The root near each guess (w, reach of `_separate_close_roots`); the conjugate of a refined root is not
+    refined again.
     """
     found: list[_LocatedRoot] = []
     for place, (w, reach) in enumerate(guesses):

@@ -78,7 +78,7 @@ def _out_of_scale(size: float) -> bool:
 
 
 @compiled
-def _swept(
+def _multiply_along_chain(
     z: complex, W: float, polynomials: Array, changes: Array
 ) -> tuple[complex, complex, complex, float]:
     """(D, dD/dw, dD/dp, S) of `chain_along` at w = z W; dD/dp is 0 if `changes` is empty.
@@ -118,7 +118,7 @@ def _swept(
 def _real_swept(
     z: float, W: float, polynomials: Array, changes: Array
 ) -> tuple[complex, complex, complex, float]:
-    """`_swept` at real z, where D and its derivatives are real."""
+    """`_multiply_along_chain` at real z, where D and its derivatives are real."""
     elements, terms, _ = polynomials.shape
     along = len(changes) > 0
     powers = powers_of(complex(z, 0.0), terms)
@@ -177,12 +177,12 @@ def chain_along(w: complex, W: float, polynomials: Array, changes: Array) -> Val
     if w.imag == 0:
         D, D_w, D_p, S = _real_swept(w.real / W, W, polynomials, changes)
     else:
-        D, D_w, D_p, S = _swept(w / W, W, polynomials, changes)
+        D, D_w, D_p, S = _multiply_along_chain(w / W, W, polynomials, changes)
     return ValueAlong(D, D_w, D_p, S, (len(polynomials) + 2) * NOISE_UNIT)
 
 
 @compiled
-def chain_value(w: complex, W: float, polynomials: Array) -> DeterminantValue:
+def determinant_along_chain(w: complex, W: float, polynomials: Array) -> DeterminantValue:
     """D and D' = dD/dw times exp(-S), from propagators that hold for |w| <= W, (elements, terms, PADDED)."""
     D, D_w, _, S, noise = chain_along(w, W, polynomials, polynomials[:0])
     return DeterminantValue(D, D_w, S, noise)

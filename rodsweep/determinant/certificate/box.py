@@ -154,12 +154,12 @@ def _zero_free_radius(r: float, T: float, X: float, G: float, pull: float) -> fl
 
     T, X, G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. pull: bound of -F g, at least 0.
     """
-    while _departure(r, T, X, G, pull) >= ZERO_FREE_DISC.max_departure:
+    while _distance_from_one_bound(r, T, X, G, pull) >= ZERO_FREE_DISC.max_departure:
         r /= 2
     return r
 
 
-def _departure(r: float, T: float, X: float, G: float, pull: float) -> float:
+def _distance_from_one_bound(r: float, T: float, X: float, G: float, pull: float) -> float:
     """An upper bound of |D(i eta) - 1| for |eta| <= r; inf where it would be too large to be useful.
 
     T, X, G, pull: as in `_zero_free_radius`.

@@ -87,7 +87,7 @@ def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
 
 
 @lru_cache(maxsize=ELEMENTS.max_mesh_pairs)
-def transfer(source: Mesh, target: Mesh) -> Array:
+def interpolation_matrix(source: Mesh, target: Mesh) -> Array:
     """Interpolation matrix from values at all nodes of `source` to values at all nodes of `target`.
 
     Shape (target.nodes + 1, source.nodes + 1).
@@ -141,10 +141,15 @@ def reconstruction(order: int) -> Reconstruction:
     """The `Reconstruction` matrices of elements of order `order`, cached."""
     x = gauss_lobatto(order)[0]
     g = gauss(order + RECONSTRUCTION.extra_points)[0]
-    return Reconstruction(interpolation(x, g).T, primitive(x, g).T, primitive(g, x).T, primitive(x, x).T)
+    return Reconstruction(
+        interpolation(x, g).T,
+        integration_matrix(x, g).T,
+        integration_matrix(g, x).T,
+        integration_matrix(x, x).T,
+    )
 
 
-def primitive(nodes: Array, ends: Array) -> Array:
+def integration_matrix(nodes: Array, ends: Array) -> Array:
     """Matrix (m, n) from values at `nodes`, (n,), to half the integral of the interpolating polynomial from
     -1 to each of `ends`, (m,).
 

@@ -61,7 +61,7 @@ def hermite_columns(values: Array, slopes: Array, signs: Array) -> Complex:
     """
     nodes, columns = values.shape
     m = 2 * nodes if signs[0] != 0 else nodes
-    turns = _waves(m)
+    turns = _cosine_sine_table(m)
     cos = np.empty(nodes)
     sin = np.empty(nodes)
     f = values.T.copy()
@@ -99,7 +99,7 @@ def hermite_columns(values: Array, slopes: Array, signs: Array) -> Complex:
 
 
 @compiled_for_vectors
-def _waves(count: int) -> Array:
+def _cosine_sine_table(count: int) -> Array:
     """Cosine and sine of 2 pi k/count for k = 0 ... count - 1, (2, count)."""
     waves = np.empty((2, count))
     for i in range(count):
@@ -128,7 +128,7 @@ def series_samples_of_columns(c: Complex, count: int) -> Array:
     odd = (harmonics + 1) // 2
     steps = order % count
     at = np.zeros(harmonics, np.int64)
-    turns = _waves(count)
+    turns = _cosine_sine_table(count)
     cos = np.empty(harmonics)
     sin = np.empty(harmonics)
     real = np.empty((columns, harmonics))
@@ -235,11 +235,11 @@ def time_of_rise_through_mean(samples: Array) -> float:
     deviation = samples - samples.mean()
     after = (int(np.argmin(deviation)) + np.arange(n + 1)) % n
     k = int(np.argmax(deviation[after] >= 0))
-    return float(_rise(fourier_coefficients(deviation), (after[k] - 1) / n, after[k] / n))
+    return float(_bisect_rising_zero(fourier_coefficients(deviation), (after[k] - 1) / n, after[k] / n))
 
 
 @compiled_for_vectors
-def _rise(c: Complex, low: float, high: float) -> float:
+def _bisect_rising_zero(c: Complex, low: float, high: float) -> float:
     """The zero of Re sum_k c_k exp(2 pi i k t) between low and high by bisection; c: (harmonics,)."""
     for _ in range(MAXIMA.max_bisections):
         middle = (low + high) / 2

@@ -22,16 +22,16 @@ from .pencil import PENCIL_NORM, PencilMatrices
 
 
 class _Pieces(NamedTuple):
-    """Matrices and weights of a mesh of elements of order p, from which `_filled` computes the pencil of an
-    arm.
+    """Matrices and weights of a mesh of elements of order p, from which `_pencil_of_coefficients` computes
+    the pencil of an arm.
 
-    value, slope: matrices from nodal values to values and derivatives at the Gauss points, (p, p + 1). both:
-    slope^T diag(Gauss weights) value, (p + 1, p + 1). constant: entries of the first two blocks, which are
-    the same for every arm, (n,). bending: Gauss weights divided by half the length of each element,
-    (elements, p). weight: Gauss weights times half the length, (elements, p). lumped: mass of the nodes,
-    (elements, p + 1). where: index in the sparsity pattern of each entry of all blocks, (m,). rows, columns:
-    row and column of each entry of the pattern, (nnz,).
+    value, slope: matrices from nodes to Gauss points, (p, p + 1). both: slope^T weights value,
+    (p + 1, p + 1). constant: entries of the first two blocks, which are the same for every arm, (n,).
+    bending, weight: Gauss weights over and times half the length of each element, (elements, p). lumped: mass
+    of the nodes, (elements, p + 1). where: index in the pattern of each entry of all blocks, (m,). rows,
+    columns: (nnz,).
     """
+
 
     value: Array
     slope: Array
@@ -92,7 +92,9 @@ class ArmPencil:
 
     def matrices(self, rod: Rod) -> PencilMatrices:
         """The matrices of the pencil of the arm `rod`."""
-        return PencilMatrices(*_filled(float(rod.F), np.array(rod.local(self._points)), self._pieces))
+        return PencilMatrices(
+            *_pencil_of_coefficients(float(rod.F), np.array(rod.local(self._points)), self._pieces)
+        )
 
     def evaluation(self, points: Array) -> Array:
         """Matrix (n, nodes + 1) from values at all nodes to values at `points`, (n,), in [0, 1]."""
@@ -131,7 +133,7 @@ def _keys(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> NDA
 
 
 @compiled
-def _filled(F: float, local: Array, pieces: _Pieces) -> tuple[Array, Array, Array]:
+def _pencil_of_coefficients(F: float, local: Array, pieces: _Pieces) -> tuple[Array, Array, Array]:
     """Returns (A, B, scale), the fields of the `PencilMatrices` of an arm. F: follower force. local:
     coefficients of the arm, (6, elements, 2 order + 1)."""
     elements, order = pieces.weight.shape

@@ -41,9 +41,9 @@ def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
     """
     weights = sampled(rod).weights
     _, amplified = local_growth(rod)
-    at_rest = (modes - RESOLUTION.mode_offset) * pi * _local_share(rod)
+    at_rest = (modes - RESOLUTION.mode_offset) * pi * _relative_wave_number(rod)
     waves = np.hypot(RESOLUTION.wave_factor * amplified, at_rest)
-    elements = _resolving(rod, waves * weights, accuracy, RESOLUTION.max_order)
+    elements = _elements_for_wave(rod, waves * weights, accuracy, RESOLUTION.max_order)
     return ArmMesh(elements.edges, elements.order)
 
 
@@ -53,11 +53,13 @@ def arm_elements(rod: Rod, wave_number: float, accuracy: float, largest_order: i
 
     largest_order: maximum order of an element, `RESOLUTION.max_order` by default.
     """
-    waves = wave_number * _local_share(rod)
-    return _resolving(rod, waves * sampled(rod).weights, accuracy, largest_order or RESOLUTION.max_order)
+    waves = wave_number * _relative_wave_number(rod)
+    return _elements_for_wave(
+        rod, waves * sampled(rod).weights, accuracy, largest_order or RESOLUTION.max_order
+    )
 
 
-def _local_share(rod: Rod) -> Array:
+def _relative_wave_number(rod: Rod) -> Array:
     """Wave number at each sample of an arm, divided by the mean wave number, (points,), for a bending wave of
     the same frequency along the arm.
     """
@@ -66,7 +68,7 @@ def _local_share(rod: Rod) -> Array:
     return at_rest / (weights @ at_rest)
 
 
-def _resolving(rod: Rod, turns: Array, accuracy: float, largest_order: int) -> Elements:
+def _elements_for_wave(rod: Rod, turns: Array, accuracy: float, largest_order: int) -> Elements:
     """Elements that resolve a wave along an arm to a relative accuracy.
 
     turns: phase of the wave over each sample interval, |q| times length, (n,). largest_order: maximum order

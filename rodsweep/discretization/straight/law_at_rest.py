@@ -45,14 +45,14 @@ class LawAtRest:
     M113: Array
     M333: Array
 
-    def second(self, S: Values, T: Values) -> Values:
+    def second_derivative_form(self, S: Values, T: Values) -> Values:
         """The second derivative of s, a bilinear form, applied to S and T; all (3, ..., nodes + 1)."""
         out = np.zeros(np.broadcast(S, T).shape, np.result_type(S, T))
         out[0] = self.N11 * S[0] * T[0] + self.N33 * S[2] * T[2]
         out[2] = self.M13 * (S[0] * T[2] + S[2] * T[0])
         return out
 
-    def third(self, S: Values, T: Values, R: Values) -> Values:
+    def third_derivative_form(self, S: Values, T: Values, R: Values) -> Values:
         """The third derivative of s, a trilinear form, applied to S, T and R; all (3, ..., nodes + 1)."""
         out = np.zeros(np.broadcast(S, T, R).shape, np.result_type(S, T, R))
         mixed = S[0] * T[2] * R[2] + S[2] * T[0] * R[2] + S[2] * T[2] * R[0]
@@ -136,12 +136,12 @@ def stress_at_rest(law: Law, sides: Array) -> LawDerivatives:
     M(q1, q3) are the inverse of this function.
     """
     shares = sides[..., 3:5]
-    unknowns = inverse_derivatives(_on_sides(law, *np.moveaxis(sides[..., :3], -1, 0)))
+    unknowns = inverse_derivatives(_derivatives_beside_jump(law, *np.moveaxis(sides[..., :3], -1, 0)))
     mean = [np.einsum("ksa,ksa...->ka...", shares, each) for each in unknowns]
     return inverse_derivatives((mean[0], mean[1], mean[2]))
 
 
-def _on_sides(law: Law, nu: Array, c1: Array, c3: Array) -> LawDerivatives:
+def _derivatives_beside_jump(law: Law, nu: Array, c1: Array, c3: Array) -> LawDerivatives:
     """Derivatives of N and M at rest with respect to q1 and q3 on each side of a jump; nu, c1, c3: arrays of
     equal shape.
     """

@@ -115,9 +115,9 @@ class MixedForm:
         Sigma = axial_field(-np.ones(len(W)))
         at_rest = self._along(self.nodal.rest, S)
         # F enters through the strain at rest, the tangent at rest, and Sigma1 = -F.
-        forces = coad(self._along(E, S), self._stressed(S)) + coad(at_rest, moved)
+        forces = coad(self._along(E, S), self._linearised_law(S)) + coad(at_rest, moved)
         forces = forces + coad(self._strain(S), self._along(Sigma, S))
-        return self.state(W * ad(self._along(E, V), V), W * forces + self._slope(moved))
+        return self.state(W * ad(self._along(E, V), V), W * forces + self._weighted_derivative(moved))
 
     @cached_property
     def tip_y(self) -> Array:
@@ -152,10 +152,12 @@ class MixedForm:
         CS = self._strain(S)
         CT = self._strain(T)
         W = self.mesh.quadrature
-        forces: Values = W * (coad(CS, self._stressed(T)) + coad(CT, self._stressed(S)))
+        forces: Values = W * (coad(CS, self._linearised_law(T)) + coad(CT, self._linearised_law(S)))
         if self.law.nonlinear:
-            second = self.law.second(S, T)
-            forces = forces + W * coad(self._along(self.nodal.rest, S), second) + self._slope(second)
+            second = self.law.second_derivative_form(S, T)
+            forces = (
+                forces + W * coad(self._along(self.nodal.rest, S), second) + self._weighted_derivative(second)
+            )
         return self.state(W * (ad(CS, V) + ad(CT, U)), forces)
 
     def trilinear(self, X: Values, Y: Values, Z: Values) -> Values:
@@ -165,21 +167,21 @@ class MixedForm:
         S, T, R = (self.fields(each)[0] for each in (X, Y, Z))
         W = self.mesh.quadrature
         law = self.law
-        third = law.third(S, T, R)
-        forces = W * coad(self._along(self.nodal.rest, S), third) + self._slope(third)
+        third = law.third_derivative_form(S, T, R)
+        forces = W * coad(self._along(self.nodal.rest, S), third) + self._weighted_derivative(third)
         for one, two, three in ((S, T, R), (T, R, S), (R, S, T)):
-            forces = forces + W * coad(self._strain(one), law.second(two, three))
+            forces = forces + W * coad(self._strain(one), law.second_derivative_form(two, three))
         return self.state(np.zeros_like(forces), forces)
 
     def _strain(self, S: Values) -> Values:
         """The strain C S, relative to the straight rod, at all nodes, (3, ..., nodes + 1)."""
         return self._along(self.nodal.compliance, S) * S
 
-    def _stressed(self, S: Values) -> Values:
+    def _linearised_law(self, S: Values) -> Values:
         """The law s(S) to first order in S, at all nodes, (3, ..., nodes + 1)."""
         return self._along(self.law.tangent, S) * S
 
-    def _slope(self, field: Values) -> Values:
+    def _weighted_derivative(self, field: Values) -> Values:
         """W D times a field at all nodes, both (3, ..., nodes + 1)."""
         return field @ -self.mesh.matrices.weak
 

@@ -48,11 +48,11 @@ class WholeMatrices:
 
     def apply_A(self, x: Values) -> Values:
         """Product A x, (unknowns,)."""
-        return self._spread(self.A @ x[self.state_indices])
+        return self._scatter(self.A @ x[self.state_indices])
 
     def times_M(self, x: Values) -> Values:
         """Product M x, (unknowns,)."""
-        return self._spread(self.M * x[self.state_indices])
+        return self._scatter(self.M * x[self.state_indices])
 
     def size_of_product(self, p: Values, q: Values) -> float:
         """The number |p| |A| |q|, with the modulus of every entry. The rounding error of p A q is about
@@ -64,7 +64,7 @@ class WholeMatrices:
         """LU factorisation of A - shift M."""
         return WholeFactors(self, lu_factorisation(self.A - np.diag(shift * self.M).astype(complex)))
 
-    def _spread(self, values: Values) -> Values:
+    def _scatter(self, values: Values) -> Values:
         """A state, (unknowns,), with `values`, (n,), in the unknowns of `components`, and 0 in all other
         entries.
         """
@@ -83,7 +83,7 @@ class WholeFactors:
     def solve(self, b: Values, adjoint: bool = False) -> Complex:
         """The solution x, (unknowns,), of K x = b or, if `adjoint`, of K^H x = b; b: (unknowns,)."""
         matrices = self.matrices
-        x: Complex = matrices._spread(solve_factorised(self.factors, b[matrices.state_indices], adjoint))
+        x: Complex = matrices._scatter(solve_factorised(self.factors, b[matrices.state_indices], adjoint))
         return x
 
 

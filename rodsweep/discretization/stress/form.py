@@ -10,7 +10,7 @@ import numpy as np
 
 from ...arrays import Array
 from ..arm_on_mesh import jump_change_on, material_change_on
-from ..elements.mesh import Mesh, transfer
+from ..elements.mesh import Mesh, interpolation_matrix
 from ..nodal_rod import NodalChange, NodalRod, nodal_change
 from ..rod_on_mesh import RodOnMesh
 from ..state_layout import PLANE_COMPONENTS, plane_layout
@@ -56,8 +56,8 @@ class StressForm(RodOnMesh):
 
     def states_on(self, grid: Mesh, x: Array) -> Array:
         """States x, (..., unknowns), interpolated to the mesh `grid`, (..., unknowns on grid)."""
-        E = transfer(self.mesh, grid)
-        if self.smooth_stresses:
+        E = interpolation_matrix(self.mesh, grid)
+        if self.has_continuous_stresses:
             return self.layout.interpolate(x, E)
         layout = plane_layout(grid.nodes, self.unknown_velocities)
         # Velocities are continuous where stresses jump, so their interpolation needs no correction.

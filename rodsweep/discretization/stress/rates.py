@@ -24,7 +24,7 @@ def write_rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices)
     V = np.empty((d, size))
     G = np.empty((d, size))
     x = np.empty(len(z))
-    _unscale(z, x, roots)
+    _stresses_of_unknowns(z, x, roots)
     balance(x, V, G, c, m)
     for a in range(d):
         for i in range(size - 1):
@@ -33,7 +33,7 @@ def write_rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices)
 
 
 @compiled_for_vectors
-def _unscale(z: Array, x: Array, roots: Array) -> None:
+def _stresses_of_unknowns(z: Array, x: Array, roots: Array) -> None:
     """Writes the stresses S = C^(-1/2) z into x; x, z: (unknowns,). roots: as in `write_rate`."""
     d = roots.shape[0]
     n = roots.shape[1] - 1
@@ -56,7 +56,7 @@ def write_rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: Node
     x = np.empty(unknowns)
     J = np.empty((unknowns, unknowns))
     tip = np.empty((d, unknowns))
-    _unscale(z, x, roots)
+    _stresses_of_unknowns(z, x, roots)
     balance(x, V, G, c, m)
     jacobian(x, V, J, tip, c, m)
     scale = np.empty(unknowns)

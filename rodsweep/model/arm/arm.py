@@ -77,7 +77,7 @@ class SlenderArm:
         """Value of the rod parameter `name`; the neutral value if an arm does not determine the parameter."""
         return float(getattr(self, name, PARAMETERS[name].neutral))
 
-    def quoted(self, name: str) -> str:
+    def text_of(self, name: str) -> str:
         """Name and value of a quantity as the user wrote them, like "length = '10 cm'", for messages."""
         return quoted(name, getattr(self, name))
 
@@ -162,7 +162,7 @@ class SlenderArm:
         if self.load is None:
             raise InputError("pressure is missing; give the pressure on the tip's cross section, or a force")
         if self.share_of_flutter is not None:
-            raise InputError(f"{self.quoted(self.load)} has no value until the flutter threshold is solved")
+            raise InputError(f"{self.text_of(self.load)} has no value until the flutter threshold is solved")
         return float(getattr(self.si, self.load)) * self._loaded_area
 
     @property

@@ -14,10 +14,11 @@ slender-body theory are then meaningless."""
 
 
 DRAGS = ("likeliest", "least", "most_rotational", "most_translational", "most")
-"""Names of the drag estimates in the order of `range_of_drag`: the likeliest estimate, then the corners of
-the range. `least` has the smallest translational and rotational drag, `most` the largest; `most_rotational`
-has the largest rotational and the smallest translational drag, `most_translational` the smallest rotational
-and the largest translational drag."""
+
+"""Names of the drag estimates in the order of `range_of_drag`: the likeliest, then the corners of the range.
+`least` has the smallest translational and rotational drag, `most` the largest; `max_rotational_drag` combines
+the largest rotational with the smallest translational drag, `most_translational` the reverse."""
+
 RANGE_OF_DRAG = "range"
 """Value of the config key `drag` that stands for all estimates in DRAGS."""
 
@@ -91,7 +92,7 @@ def min_rotational_drag(viscosity: float, half_height: float) -> float:
     return pi * viscosity * half_height**2
 
 
-def most_rotational(viscosity: float, half_height: float) -> float:
+def max_rotational_drag(viscosity: float, half_height: float) -> float:
     """Largest estimate of rotational drag, gamma3 = 4 pi eta a^2, in Pa s m^2, with a = half_height, in m.
 
     The value for rotation about the axis of the cylinder (Powers 2010) is used for rotation about a diameter.
@@ -107,7 +108,7 @@ def range_of_drag(viscosity: float, length: float, radius: float, half_height: f
     """
     slenderness = length / radius
     least = min_rotational_drag(1.0, half_height)
-    most = most_rotational(1.0, half_height)
+    most = max_rotational_drag(1.0, half_height)
     translations = (gray_hancock(1.0, slenderness), lighthill(1.0, slenderness))
     # All estimates are for viscosity 1, because drag is proportional to the viscosity.
     members = [(*cox(1.0, slenderness), (least * most) ** 0.5)]

@@ -80,7 +80,7 @@ def refuse_wrong_combinations(arm: "SlenderArm") -> None:
             raise InputError(f"{name} is missing; write it as in '{quantity.example}'")
     if arm.pressure is not None and arm.force is not None:
         raise InputError(
-            f"{arm.quoted('pressure')} and {arm.quoted('force')} are both given; give one of them: the "
+            f"{arm.text_of('pressure')} and {arm.text_of('force')} are both given; give one of them: the "
             "pressure on the tip's cross section, or its resultant"
         )
 
@@ -90,7 +90,7 @@ def _refuse_sections(arm: "SlenderArm") -> None:
     sides = (arm.width, arm.height)
     for name, why in (("inner_radius", "a rectangle has no bore here"), ("tip_radius", "only cones taper")):
         if getattr(arm, name) is not None and arm.radius is None:
-            raise InputError(f"{arm.quoted(name)} needs a radius; {why}")
+            raise InputError(f"{arm.text_of(name)} needs a radius; {why}")
     if (arm.radius is None) == (sides == (None, None)) or (arm.radius is None and None in sides):
         sizes = ("radius", "width", "height")
         given = " and ".join(name for name in sizes if getattr(arm, name) is not None) or "no size"
@@ -98,17 +98,17 @@ def _refuse_sections(arm: "SlenderArm") -> None:
             f"radius: give either a radius, or width and height, or segments; given of the section: {given}"
         )
     if arm.si.inner_radius >= arm.si.radius:
-        raise NoWall(f"{arm.quoted('inner_radius')} is not below {arm.quoted('radius')}")
+        raise NoWall(f"{arm.text_of('inner_radius')} is not below {arm.text_of('radius')}")
     if arm.tip_radius is None:
         return
     if arm.inner_radius is not None:
         raise InputError(
-            f"{arm.quoted('tip_radius')} and {arm.quoted('inner_radius')} are both given, but a cone is "
+            f"{arm.text_of('tip_radius')} and {arm.text_of('inner_radius')} are both given, but a cone is "
             "solid; give one of them, or segments"
         )
     if not SMALLEST_TAPER <= arm.si.tip_radius / arm.si.radius <= LARGEST_TAPER:
         raise InputError(
-            f"{arm.quoted('tip_radius')} is {arm.si.tip_radius / arm.si.radius:.3g} of the radius; it must "
+            f"{arm.text_of('tip_radius')} is {arm.si.tip_radius / arm.si.radius:.3g} of the radius; it must "
             f"be from {SMALLEST_TAPER:g} to {LARGEST_TAPER:g} of it"
         )
 
@@ -122,7 +122,7 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
     for name in (*SECTION_SIDES[0], *SECTION_SIDES[1]):
         if getattr(arm, name) is not None:
             raise InputError(
-                f"{arm.quoted(name)} and segments are both given; a segment has its own radius, so give one "
+                f"{arm.text_of(name)} and segments are both given; a segment has its own radius, so give one "
                 "of them"
             )
     pieces = arm.pieces
@@ -135,7 +135,7 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
     if arm.length is not None and not abs(arm.si.length - total) <= LENGTH_TOLERANCE * total:
         unit = unit_of(arm.length, "m")
         summed = f"{written_in(total, unit, 'm'):.6g} {unit}"
-        raise InputError(f"{arm.quoted('length')} is not the sum of the segments, {summed}; leave it out")
+        raise InputError(f"{arm.text_of('length')} is not the sum of the segments, {summed}; leave it out")
 
 
 def refuse_out_of_range(arm: "SlenderArm") -> None:
@@ -145,10 +145,10 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
     Raises NotSlender for an arm that is too short.
     """
     if arm.si.density_difference <= -arm.si.fluid_density:
-        given = arm.quoted("density_difference")
+        given = arm.text_of("density_difference")
         least = f"{-arm.si.fluid_density:.4g} kg/m^3"
         raise InputError(f"{given} leaves the arm no mass; it must be above {least}")
-    length = "segments: their length" if arm.length is None else arm.quoted("length")
+    length = "segments: their length" if arm.length is None else arm.text_of("length")
     try:
         slenderness = arm.shape.length / arm.shape.drag_radius
         fine = all(0 < number < inf for number in (arm.k1, arm.k2, arm.force_scale)) and arm.build
@@ -176,6 +176,6 @@ def refuse_crushed(arm: "SlenderArm") -> None:
     unit = unit_of(getattr(arm, loaded), si)
     where = "the weakest section of" if arm.shape.varies else ""
     raise InputError(
-        f"{arm.quoted(loaded)} compresses {f'{where} the arm'.strip()} to nothing; it must be below "
+        f"{arm.text_of(loaded)} compresses {f'{where} the arm'.strip()} to nothing; it must be below "
         f"{float(f'{written_in(limit, unit, si):.4g}'):g} {unit}, where a linear material is crushed"
     )

@@ -93,15 +93,15 @@ def _mapping(where: str, given: Any) -> Mapping[str, Given]:
         raise InputError(f"{where}: {str(given)!r:.60} is not a segment; write it as in '{EXAMPLE}'")
     found: dict[str, Given] = {"length": length.strip()}
     for part in parts.split(","):
-        name_and_value = PART.fullmatch(part)
-        if name_and_value is None:
+        text_of = PART.fullmatch(part)
+        if text_of is None:
             raise InputError(
                 f"{where}: {part.strip()!r:.60} is not a quantity; write a segment as in '{EXAMPLE}'"
             )
-        name = name_and_value[1].replace("-", "_").replace(" ", "_")
+        name = text_of[1].replace("-", "_").replace(" ", "_")
         if name in found:
             raise InputError(f"{where}: {name} is given twice; give it once")
-        found[name] = name_and_value[2]
+        found[name] = text_of[2]
     return found
 
 

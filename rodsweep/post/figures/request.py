@@ -161,7 +161,7 @@ class FigureRequest:
         """
         add_si_scales(figure, self.views)
         # Figures over an arm's quantities show the validity themselves.
-        if not any(view.over for view in self.views):
+        if not any(view.arm_axes for view in self.views):
             add_validity(figure, self.views)
         if self.keep is not None:
             self.look.fit(figure, min_aspect)

@@ -52,7 +52,7 @@ def _number(name: str, value: float | str) -> float:
 def _cut(view: View, name: str, value: float) -> View:
     """View of the points at which `name` has the given value. Raises InputError if there is no such point."""
     listed = {} if view.is_grid else {n: v for n, v in view.quantities.items() if np.ndim(v)}
-    axes = view.over or (*view.parameters, *listed)
+    axes = view.arm_axes or (*view.parameters, *listed)
     if name not in axes:
         known = ", ".join(axes)
         close = similar_keys(name, list(axes))
@@ -69,7 +69,7 @@ def _cut(view: View, name: str, value: float) -> View:
             f"--at {name}={value:.15g}: {view.path} has no point there; it has {name} = "
             f"{', '.join(named)}{more}"
         )
-    if view.is_grid or view.over:
+    if view.is_grid or view.arm_axes:
         return _grid_at(view, name, chosen)
     variables = {
         key: data[chosen] if data.shape[:1] == chosen.shape and key not in OTHER_DIMENSIONS else data
@@ -80,7 +80,7 @@ def _cut(view: View, name: str, value: float) -> View:
 
 def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
     """View of a grid restricted to some values of the axis `name`. chosen: mask of these values."""
-    names = view.over or view.parameters
+    names = view.arm_axes or view.parameters
     shape = view.variables["status"].shape
     axis = names.index(name)
     along = {name, *(quantity for quantity, moved in STORED_ALONG.items() if moved == name)}

@@ -99,7 +99,7 @@ def _write_parameters(file: h5py.File, plan: Plan) -> None:
     beside = [variable.name for variable, _ in plan.quantities if not is_axis(variable)]
     if beside or not points.axes:
         file.attrs["coordinates"] = " ".join([*(() if points.axes else names), *beside])
-    if points.over:
+    if points.arm_axes:
         return
     if not points.is_grid:
         _write_scale(file, "point", np.arange(1, points.count + 1, dtype="<i4"))

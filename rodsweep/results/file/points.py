@@ -117,7 +117,7 @@ def points_in(file: h5py.File, layout: Layout) -> Points:
     if not over:
         return Points(names, tuple(file[name][...] for name in names), is_grid="point" not in file)
     columns = tuple(np.broadcast_to(table, file["status"].shape).ravel() for table in on_grid(file, layout))
-    return Points(names, columns, is_grid=False, over=over)
+    return Points(names, columns, is_grid=False, arm_axes=over)
 
 
 def on_grid(variables: Mapping[str, Any], layout: Layout) -> Iterator[np.ndarray]:

@@ -65,7 +65,7 @@ class View:
     """Name of the status, by value of the variable `status`."""
     journalled: int
     """Number of points that are still in the journals of a running or interrupted run."""
-    over: tuple[str, ...] = ()
+    arm_axes: tuple[str, ...] = ()
     """Names of the dimensions of a grid over an arm's quantities; empty for a grid of parameters or a
     list."""
     typed: dict[str, str] = field(default_factory=dict)
@@ -85,7 +85,7 @@ class View:
     @property
     def is_grid(self) -> bool:
         """Whether the points are a grid of parameters."""
-        return "point" not in self.variables and not self.over
+        return "point" not in self.variables and not self.arm_axes
 
     @property
     def axes(self) -> dict[str, np.ndarray]:
@@ -106,12 +106,12 @@ class View:
         """This view with a grid over an arm's quantities turned into a list of points; for all other points,
         this view unchanged.
         """
-        if not self.over:
+        if not self.arm_axes:
             return self
         shape = self.variables["status"].shape
         found = {name: self._listed(name, shape) for name in self.variables}
         found["point"] = np.arange(1, self.variables["status"].size + 1)
-        return replace(self, variables=found, over=())
+        return replace(self, variables=found, arm_axes=())
 
     def _listed(self, name: str, shape: tuple[int, ...]) -> np.ndarray:
         """Variable `name` with the axes of a grid, of the shape `shape`, flattened to the list of points.
@@ -119,8 +119,8 @@ class View:
         Variables without these axes are unchanged.
         """
         values = self.variables[name]
-        if name in self.over:
-            along = [-1 if axis == name else 1 for axis in self.over]
+        if name in self.arm_axes:
+            along = [-1 if axis == name else 1 for axis in self.arm_axes]
             return np.broadcast_to(values.reshape(along), shape).ravel()
         n = len(shape)
         return values.reshape(-1, *values.shape[n:]) if values.shape[:n] == shape else values

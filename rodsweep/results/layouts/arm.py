@@ -185,20 +185,18 @@ def arm_variables(parameters: Axes, points: Points) -> tuple[Filled, ...]:
     arm = parameters.arm
     if arm is None:
         return ()
-    if not points.over:
+    if not points.arm_axes:
         return tuple(
             _filled(arm, name, values, (STORED_ALONG[name],) if np.ndim(values) else ())
             for name, values in arm.grid_quantities().items()
         )
-    numbers = {name: axis.array()[0] for name, axis in arm.quantity_axes.items() if name not in points.over}
-    own = points.units | {name: column for name, column in points.by_name.items() if name not in points.over}
+    axes = points.arm_axes
+    numbers = {name: axis.array()[0] for name, axis in arm.quantity_axes.items() if name not in axes}
+    own = points.units | {name: column for name, column in points.by_name.items() if name not in axes}
     return (
-        *(_filled(arm, name, values, (name,)) for name, values in points.over.items()),
+        *(_filled(arm, name, values, (name,)) for name, values in axes.items()),
         *(_filled(arm, name, value, ()) for name, value in numbers.items()),
-        *(
-            _filled(arm, name, column.reshape(points.shape), tuple(points.over))
-            for name, column in own.items()
-        ),
+        *(_filled(arm, name, column.reshape(points.shape), tuple(axes)) for name, column in own.items()),
     )
 
 
@@ -215,9 +213,9 @@ def _filled(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]
 
 def at_points(quantities: Iterable[Filled], points: Points) -> dict[str, NDArray[Any]]:
     """Values of an arm's quantities by name; for a grid over quantities, at every point, (points,)."""
-    if not points.over:
+    if not points.arm_axes:
         return {variable.name: values for variable, values in quantities}
-    dimensions = tuple(points.over)
+    dimensions = tuple(points.arm_axes)
     found = {}
     for variable, values in quantities:
         place = [slice(None) if name in variable.extra else None for name in dimensions]

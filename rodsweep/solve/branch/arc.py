@@ -130,7 +130,7 @@ class ArcPoint:
         its cube. before: previous cycle, through which the cubic passes."""
         name = self.scale.name
         mesh = mesh_of(self.orbit)
-        last = mesh.carry(before.orbit)
+        last = mesh.interpolate(before.orbit)
         coordinate = last.form.rod.coordinate(name)
         # Both tangents on one mesh: the cubic combines their values node by node.
         slope = np.append(carried_change(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])

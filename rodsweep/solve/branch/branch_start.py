@@ -87,7 +87,7 @@ class HopfBranchStart:
         cycles exist at p' < p, otherwise a > 0.
         """
         # Along a stiffness the coordinate is 1/k, which falls as the parameter rises.
-        turned = -1.0 if Path(self.rod, self.name).inverse else 1.0
+        turned = -1.0 if Path(self.rod, self.name).is_compliance else 1.0
         # 0 = Re slope dp + Re c a^2, so a^2 = -Re slope p/Re c per relative change of p; a negative value
         # means cycles at smaller p.
         squared = -turned * self.slope.real * self.coordinate / self.coefficients.landau.real
@@ -124,14 +124,14 @@ def hopf_point(path: Path, crossing: Crossing) -> HopfBranchStart:
     """The Hopf point with its normal form, at a crossing of the imaginary axis along the parameter path
     `path`; raises Unsolvable."""
     w = complex(0.0, crossing.frequency)
-    at = path.at(path.variable(crossing.at))
-    _, slope, _ = path_problem(path).eigenvalue(w, path.variable(crossing.at))
+    at = path.rod_at(path.coordinate(crossing.at))
+    _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.at))
     normal = accurate_normal_form(at, w, HOPF_START.normal_form_accuracy)
     return HopfBranchStart(
         crossing=crossing,
         rod=at,
         name=path.name,
-        coordinate=path.variable(crossing.at),
+        coordinate=path.coordinate(crossing.at),
         slope=complex(slope),
         normal_form=normal,
         coefficients=hopf_coefficients(at, crossing, HOPF_START.normal_form_accuracy),
@@ -187,7 +187,7 @@ def _cycle_of(
     """
     start = predicted_cycle(hopf, amplitude)
     if finer:
-        start = wanted_mesh(start, aim, stages_for(aim)).carry(start)
+        start = wanted_mesh(start, aim, stages_for(aim)).interpolate(start)
     least = abs(deflection_of(start)) * BRANCH_START.min_deflection_amplitude / amplitude
     scale = Scale.of(start, hopf.name, least)
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.

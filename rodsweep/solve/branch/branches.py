@@ -14,7 +14,7 @@ from ...watch import solve_part
 from ..changes.along_path import Transitions, pair_crossings
 from ..changes.unstable_modes import Crossing
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..point import FAILURES, cause_of, solved
+from ..point import FAILURES, cause_of, outcome_or_failure
 from ..status import PointStatus
 from .branch_curve import BranchCurve
 from .branch_start import hopf_point
@@ -107,7 +107,7 @@ def solve_branches(
     which rods may share; None: a new workspace."""
     memory = workspace or NewtonWorkspace()
     try:
-        return solved(
+        return outcome_or_failure(
             lambda: _solve(rod, request, memory),
             lambda cause: BranchesOfRod(status=BranchStatus.failed, message=cause),
         )
@@ -137,14 +137,14 @@ def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> Bran
             hopfs.append(hopf_point(path, crossing))
         except FAILURES as error:
             failures.append(f"the Hopf point at {request.along} = {crossing.at:.12g}: {cause_of(error)}")
-    ends = (path.variable(low), path.variable(high))
+    ends = (path.coordinate(low), path.coordinate(high))
     reasons = [EndReason.crushed if side == crushed else EndReason.range_end for side in (0, 1)]
-    if path.inverse:
+    if path.is_compliance:
         ends = ends[::-1]
         reasons = reasons[::-1]
     limits = BranchLimits(hopfs, ends, (reasons[0], reasons[1]), request.accuracy, request.cycles, workspace)
     curves = _followed(limits, request.along)
-    status, message = _judged(found, curves, failures, request)
+    status, message = _status_and_message(found, curves, failures, request)
     return BranchesOfRod(
         status=status,
         message=message,
@@ -166,12 +166,12 @@ def _range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
     if request.along == "k1" and low < rod.F / share * (1 + BRANCHES.crushing_margin):
         return rod.F / share * (1 + BRANCHES.crushing_margin), high, 0
     if request.along == "taper":
-        thinnest = _thinnest(rod, low, high)
+        thinnest = _smallest_uncrushed_taper(rod, low, high)
         return thinnest, high, 0 if thinnest > low else -1
     return low, high, -1
 
 
-def _thinnest(rod: Rod, low: float, high: float) -> float:
+def _smallest_uncrushed_taper(rod: Rod, low: float, high: float) -> float:
     """Smallest taper between `low` and `high` at which the force does not crush the tip; `high` if the force
     crushes every tip."""
 
@@ -220,7 +220,7 @@ def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
     return curves
 
 
-def _judged(
+def _status_and_message(
     found: Transitions, curves: list[BranchCurve], failures: list[str], request: BranchRequest
 ) -> tuple[BranchStatus, str]:
     """(status, message) of all branches of a rod: status of the first problem in the order of `BranchStatus`,

@@ -202,13 +202,13 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
         elif signs and 0 not in signs:
             stable = 0
         low, high = sorted((one, other), key=lambda point: point.at)
-        within = low.at + _closed(low) * low.error, high.at - _closed(high) * high.error
+        within = low.at + _end_error_sign(low) * low.error, high.at - _end_error_sign(high) * high.error
         about = low.at - low.error, high.at + high.error
         intervals.append(StabilityInterval(within, about, stable))
     return intervals
 
 
-def _closed(point: SpecialPoint) -> int:
+def _end_error_sign(point: SpecialPoint) -> int:
     """Sign of the error of a special point in `certain_range`: 1 (the interval is shortened), or -1 at an end
     of the parameter range, where the branch has a cycle exactly at the end."""
     return -1 if point.reason is EndReason.range_end else 1

@@ -204,7 +204,7 @@ def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
     The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
     mesh = mesh_of(end.orbit)
     layout = end.orbit.form.layout
-    one = layout.field(mesh.carry(start.orbit).start, "m3")
+    one = layout.field(mesh.interpolate(start.orbit).start, "m3")
     # t = 0 is the time of the largest y; the moments at this time change sign where the amplitude passes 0.
     return float(one @ layout.field(end.orbit.start, "m3")) < 0
 

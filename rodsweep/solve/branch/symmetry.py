@@ -116,7 +116,7 @@ def extended_to_whole_period(orbit: Orbit) -> Orbit:
     intervals = 2 * orbit.intervals
     times = 2 * node_times(intervals, orbit.stages)
     later = times > 1
-    points = orbit.at(np.where(later, times - 1, times))
+    points = orbit.states_at(np.where(later, times - 1, times))
     # The second half of the period is the mirror image of the first.
     points[later] = orbit.symmetry.of(points[later], orbit.form.layout)
     values = np.append(points.ravel(), orbit.period)
@@ -126,7 +126,7 @@ def extended_to_whole_period(orbit: Orbit) -> Orbit:
 def asymmetry(orbit: Orbit) -> Array:
     """Asymmetry of an orbit: bending moments at t = 0 plus bending moments half a period later, (nodes,); 0
     for a symmetric orbit."""
-    return _moments(orbit.start, orbit) + _moments(orbit.at(np.array([0.5]))[0], orbit)
+    return _moments(orbit.start, orbit) + _moments(orbit.states_at(np.array([0.5]))[0], orbit)
 
 
 def _moments(states: Array, orbit: Orbit) -> Array:
@@ -189,7 +189,7 @@ def reaches_symmetric_cycle(
     in `known`, because a mesh without the symmetry of the cycle perturbs the crossing of the branches.
     """
     reference = asymmetry(start.orbit)
-    other = end.orbit.on(start.orbit.form.mesh, end.orbit.intervals, end.orbit.stages)
+    other = end.orbit.on_mesh(start.orbit.form.mesh, end.orbit.intervals, end.orbit.stages)
     # The asymmetry changes sign where the branch passes a symmetric cycle, and is small near this cycle.
     if float(asymmetry(other) @ reference) < BRANCH_END.lost_asymmetry_ratio * float(reference @ reference):
         return True

@@ -88,8 +88,8 @@ class AxisCrossings:
         end."""
         if reach.p == self.reach.p:
             return self
-        crossings = [c for c in self.crossings if self.path.variable(c.at) <= reach.p]
-        gaps = [gap for gap in self.gaps if min(map(self.path.variable, gap)) <= reach.p]
+        crossings = [c for c in self.crossings if self.path.coordinate(c.at) <= reach.p]
+        gaps = [gap for gap in self.gaps if min(map(self.path.coordinate, gap)) <= reach.p]
         return replace(self, crossings=crossings, gaps=gaps, reach=reach)
 
     def searched(self, start: float, stop: float) -> tuple[float, float]:
@@ -97,7 +97,7 @@ class AxisCrossings:
         if not self.reach.reason:
             return start, stop
         end = self.path.parameter.value(self.reach.p)
-        return (end, stop) if self.path.inverse else (start, end)
+        return (end, stop) if self.path.is_compliance else (start, end)
 
 
 def transitions(
@@ -109,7 +109,7 @@ def transitions(
     than `most` crossings. Raises Unsolvable if not even the first interval can be searched, or if no a-priori
     bound applies.
     """
-    low, high = sorted((path.variable(start), path.variable(stop)))
+    low, high = sorted((path.coordinate(start), path.coordinate(stop)))
     problem = path_problem(path)
     found = _crossings(problem, (low, high), certify, most)
     tracer = Tracer(problem, certify)
@@ -122,7 +122,7 @@ def transitions(
         counts = ModeCounter(problem, found.gaps, certify)
         # Without load the operator is self-adjoint and negative: no mode is unstable, no count is needed.
         unstable = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, found.crossings)
-        oscillates = tracer.anchor(path.variable(ends[0])).oscillates
+        oscillates = tracer.anchor(path.coordinate(ends[0])).oscillates
         ordered = sorted(changes + found.crossings, key=lambda c: c.at)
         crossings, at_end = counts.along(ordered, ends, unstable)
         missed = _pairs_missed_as_leaders(path, crossings, oscillates, unstable)
@@ -148,7 +148,7 @@ def pair_crossings(
     `proved` then means that the covering is complete and every count agrees. The search ends early, and
     Unsolvable is raised, under the same conditions as in `transitions`.
     """
-    low, high = sorted((path.variable(start), path.variable(stop)))
+    low, high = sorted((path.coordinate(start), path.coordinate(stop)))
     problem = path_problem(path)
     found = _crossings(problem, (low, high), certify, most)
     counts = ModeCounter(problem, found.gaps, certify)
@@ -223,7 +223,7 @@ def _pairs_missed_as_leaders(
             oscillates = crossing.kind.pair_leads_after
         else:
             if min(unstable, crossing.unstable_after) == 0 and not oscillates:
-                missed.append(path.variable(crossing.at))
+                missed.append(path.coordinate(crossing.at))
             unstable = crossing.unstable_after
     return missed
 
@@ -234,7 +234,7 @@ def _hopf(path: Path, zero: LocatedZero) -> Crossing:
     there = determinant_along(complex(0.0, zero.eta_or_x), coefficients, path.direction)
     # dw/dp = -D_p/D_w; along a stiffness p = 1/k falls as the parameter rises.
     growing = (-there.D_p / there.D_w).real > 0
-    kind = ChangeKind.hopf if growing != path.inverse else ChangeKind.hopf_reverse
+    kind = ChangeKind.hopf if growing != path.is_compliance else ChangeKind.hopf_reverse
     at, error = path.value(zero.p, zero.error_of_p)
     return Crossing(at, kind, zero.eta_or_x, 0.0, error, frequency_error=zero.error)
 
@@ -242,7 +242,7 @@ def _hopf(path: Path, zero: LocatedZero) -> Crossing:
 def _gaps(path: Path, left: list[Box]) -> list[tuple[float, float]]:
     """Disjoint intervals of the parameter covered by the undecided boxes `left`."""
     gaps: list[tuple[float, float]] = []
-    for a, b in sorted(sorted((path.variable(box.p_from), path.variable(box.p_to))) for box in left):
+    for a, b in sorted(sorted((path.coordinate(box.p_from), path.coordinate(box.p_to))) for box in left):
         if gaps and a <= gaps[-1][1] * (1 + TRANSITIONS.merge_distance):
             gaps[-1] = gaps[-1][0], max(b, gaps[-1][1])
         else:

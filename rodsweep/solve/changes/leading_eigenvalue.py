@@ -99,7 +99,7 @@ class Tracer:
         found = self.problem.spectrum(p, request)
         self.proved = self.proved and found.certified
         if not np.isfinite(found.eigenvalues).all():
-            raise Unsolvable(f"{self.path.at(p)}: {found.status.name} {found.message}".rstrip())
+            raise Unsolvable(f"{self.path.rod_at(p)}: {found.status.name} {found.message}".rstrip())
         w = found.eigenvalues.copy()
         slope = np.empty(ANCHOR_MODES, dtype=complex)
         for i, guess in enumerate(found.eigenvalues):
@@ -148,7 +148,7 @@ class Tracer:
             if change is not None:
                 return [change]
             if b - a <= LEADER.smallest_step * max(abs(a), abs(b)):
-                where = self.path.at(a)
+                where = self.path.rod_at(a)
                 raise Unsolvable(f"the change of the leading eigenvalue near {where} was not found")
         middle = a + share * (b - a)
         intervals.divide((a, middle), (middle, b))
@@ -159,7 +159,7 @@ class Tracer:
         if Newton's method finds no change, or if a count shows that other eigenvalues lead at the change."""
         pair, real = (left, right) if left.oscillates else (right, left)
         # Kinds are named in the direction of the parameter, along a stiffness the direction of falling p.
-        if right.oscillates != self.path.inverse:
+        if right.oscillates != self.path.is_compliance:
             double = ChangeKind.onset
             single = ChangeKind.pair_leads
         else:

@@ -22,7 +22,7 @@ class PathProblem(ABC):
         """The spectrum of the rod at p for `request`; each request is solved once and stored."""
         key = p, request
         if key not in self._spectra:
-            self._spectra[key] = solve_spectrum(self.path.at(p), request)
+            self._spectra[key] = solve_spectrum(self.path.rod_at(p), request)
             self.solves += 1
         return self._spectra[key]
 
@@ -68,7 +68,7 @@ class UniformPath(PathProblem):
         return double_newton(x, p, self.path.origin, self.path.direction, reach)
 
     def count(self, line: float, p: float) -> EigenvalueCount:
-        return count_right_of(line, self.path.at(p))
+        return count_right_of(line, self.path.rod_at(p))
 
     def relaxation(self, p: float) -> tuple[float, float]:
         here = coefficients_at(p, self.path.origin, self.path.direction)

@@ -7,7 +7,7 @@ from functools import cache
 
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
-from ..point import solved
+from ..point import outcome_or_failure
 from ..status import PointStatus
 from .along_path import Transitions, transitions
 from .unstable_modes import ChangeKind, Crossing, end_below_crushing
@@ -82,7 +82,7 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
         found = transitions(Path(rod, "F"), 0.0, end, request.certify, request.crossings)
         return thresholds_with_status(found, request.accuracy, request.certify, request.crossings)
 
-    return solved(search, lambda cause: empty_thresholds(ThresholdStatus.failed, end, cause))
+    return outcome_or_failure(search, lambda cause: empty_thresholds(ThresholdStatus.failed, end, cause))
 
 
 def empty_thresholds(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:

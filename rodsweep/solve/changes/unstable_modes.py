@@ -100,13 +100,13 @@ class ModeCounter:
 
     def count_at(self, value: float) -> int:
         """Number of unstable modes at the parameter value `value`, by the winding number; -1 if undecided."""
-        number = self.problem.count(0.0, self.path.variable(value)).number
+        number = self.problem.count(0.0, self.path.coordinate(value)).number
         return -1 if number is None else number
 
     def count_between(self, a: float, b: float) -> int:
         """Number of unstable modes at a position between the parameter values a and b, by the winding number;
         -1 if the count is undecided at all positions tried."""
-        known = self.problem.counted_amid(*sorted((self.path.variable(a), self.path.variable(b))))
+        known = self.problem.counted_amid(*sorted((self.path.coordinate(a), self.path.coordinate(b))))
         if known is not None:
             return known
         for share in CHANGE_COUNTS.places:

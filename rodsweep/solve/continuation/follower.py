@@ -49,7 +49,7 @@ class CurveProblem(Protocol[Solution]):
         """The solution between `behind[-1]` and `outer` at which the margin with the index `margin` is 0;
         None if this solution is not found."""
 
-    def closes(self, behind: Sequence[Solution], there: Solution) -> bool:
+    def is_closed_by(self, behind: Sequence[Solution], there: Solution) -> bool:
         """Whether the first solution of the curve lies on the step from `behind[-1]` to the next solution
         `there`."""
 
@@ -176,7 +176,7 @@ def follow_curve(
         if outside >= 0:
             last = problem.located_zero(solutions, there.solution, outside)
             return Curve(solutions if last is None else [*solutions, last], CurveStop.margin, outside)
-        if problem.closes(solutions, there.solution):
+        if problem.is_closed_by(solutions, there.solution):
             # `start` is appended again, so that the curve is closed exactly.
             return Curve([*solutions, start], CurveStop.closed)
         solutions.append(there.solution)

@@ -115,13 +115,13 @@ class CyclePredictor:
         if target == mesh_of(self.orbit):
             return self
         data = [np.append(carried_change(self.orbit, row[:-1], target), row[-1]) for row in self.data]
-        return replace(self, orbit=target.carry(self.orbit), data=np.array(data))
+        return replace(self, orbit=target.interpolate(self.orbit), data=np.array(data))
 
 
 def carried_change(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
     """The change `change` of the values of `orbit`, (N,), interpolated to the mesh `target` by a linear map,
     (N of the target,)."""
-    return target.carry(replace(orbit, values=change)).values
+    return target.interpolate(replace(orbit, values=change)).values
 
 
 def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: str) -> CyclePredictor:

@@ -21,13 +21,13 @@ from ...discretization.stress.form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ...watch import SolvePosition, report
-from ..motion.integrator import RunLimit, Trajectory, forget_integrators, integrator, relaxed
+from ..motion.integrator import RunLimit, Trajectory, forget_integrators, integrator, relax_fast_components
 from ..motion.leading_mode import leading_mode
 from ..motion.time_scheme import TimeScheme
 from ..orbit.measures import CyclePath, measures_of
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import NO_SYMMETRY
-from ..point import solved
+from ..point import outcome_or_failure
 from .accuracy.cycle_errors import CycleErrors
 from .accuracy.integration_errors import errors_of_pair
 from .cycle import Cycle, CycleRequest, with_measures
@@ -73,7 +73,7 @@ def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
         forget_integrators()  # after an error inside PETSc its objects are unusable
         return Cycle(status=MarchedStatus.failed, message=cause)
 
-    return solved(lambda: _MarchedMotion(rod, request).cycle(), failed)
+    return outcome_or_failure(lambda: _MarchedMotion(rod, request).cycle(), failed)
 
 
 class _MarchedMotion:
@@ -94,7 +94,7 @@ class _MarchedMotion:
         w = straight_rod(self.limit).w  # exact; an eigenvalue of the mesh has errors up to 1e-3
         straight = Cycle(status=MarchedStatus.straight, linear_growth_rate=w.real, linear_frequency=w.imag)
         try:
-            z = relaxed(self.beam, self.request.amplitude * self.mode.z.real, self.mode.period)
+            z = relax_fast_components(self.beam, self.request.amplitude * self.mode.z.real, self.mode.period)
             settled = self._settled(z)
             path = self._path(settled)
             in_limit = self.rod != self.limit
@@ -122,7 +122,7 @@ class _MarchedMotion:
         self.scheme = replace(self.scheme, tolerance=MARCHING.tolerance_ratio * self.scheme.tolerance)
         self.beam = self._beam()
         z = self.beam.state_of_stresses(before.stresses_on(self.beam.mesh, settled.z))
-        return self._settled(relaxed(self.beam, z, self.mode.period))
+        return self._settled(relax_fast_components(self.beam, z, self.mode.period))
 
     def _settled(self, z: Array) -> _SettledMotion:
         """Integrates from the state z, (unknowns,), until the motion has settled, or raises _NoCycle."""
@@ -186,7 +186,7 @@ class _MarchedMotion:
             z = run.states[before]
             if left > 0:
                 z = self._run(z, left, left, RunLimit()).states[-1]
-            rates = self.beam.rate(z[None])[0]
+            rates = self.beam.state_derivative(z[None])[0]
             # A Newton step in time from the interpolated crossing: theta is smooth there.
             late = float(row @ z) / float(row @ rates)
             times[i] = rough - late
@@ -226,7 +226,7 @@ class _MarchedMotion:
         coordinates = {name: MARCHING.limit_distance_ratio * known.coordinate(name) for name in in_limits}
         self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = self._beam()
-        z = relaxed(self.beam, settled.z, self.mode.period)
+        z = relax_fast_components(self.beam, settled.z, self.mode.period)
         more = errors_of_pair(path, self._path(self._settled(z)), 0.0)
         return CycleErrors(
             errors.period_error + more.period_error,

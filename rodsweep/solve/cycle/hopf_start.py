@@ -13,7 +13,7 @@ import numpy as np
 
 from ...determinant.parameter_path import Path
 from ...discretization.at_jumps import interpolate_stress
-from ...discretization.elements.mesh import transfer
+from ...discretization.elements.mesh import interpolation_matrix
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
@@ -245,6 +245,6 @@ def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, f
     source = normal.form.mesh
     target = form.mesh
     states = form.layout.state(
-        interpolate_stress(form.rod, S, source, target), V @ transfer(source, target).T
+        interpolate_stress(form.rod, S, source, target), V @ interpolation_matrix(source, target).T
     )
     return Orbit.of(form, REFLECTION, 2 * np.pi / frequency, states, HOPF_START.stages)

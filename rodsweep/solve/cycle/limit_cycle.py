@@ -20,7 +20,7 @@ from ...model.rod import Rod
 from ..motion.fixed_tip import equilibrium_at_tip
 from ..motion.integrator import forget_integrators
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..point import Unsolvable, solved
+from ..point import Unsolvable, outcome_or_failure
 from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.refinement import refined_cycle
 from .cycle import Cycle, CycleRequest, MotionShapes, padded_or_cut, with_measures
@@ -80,7 +80,7 @@ def solve_cycle(
         cycle = _solve(rod, request, stability, start, along, memory)
         return _with_second_state(rod, _checked_by_spectrum(cycle, stability), stability)
 
-    return solved(solve, failed)
+    return outcome_or_failure(solve, failed)
 
 
 def _solve(
@@ -170,7 +170,7 @@ def _checked_by_spectrum(cycle: Cycle, stability: StraightRod) -> Cycle:
     straight rod stable."""
     if cycle.status != CycleStatus.straight or stability.stable:
         return cycle
-    return replace(cycle, status=CycleStatus.not_settled, message=stability.doubt)
+    return replace(cycle, status=CycleStatus.not_settled, message=stability.unproved_stability)
 
 
 def _with_second_state(rod: Rod, cycle: Cycle, stability: StraightRod) -> Cycle:

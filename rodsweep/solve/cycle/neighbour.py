@@ -97,20 +97,20 @@ class Neighbour:
             # Checkpoints hold arrays only, so a text is stored as its bytes.
             "build": np.frombuffer(orbit.form.rod.build.text.encode(), np.uint8),
             "symmetric": np.array(orbit.symmetric),
-            "mesh": mesh_of(orbit).numbers,
+            "mesh": mesh_of(orbit).as_array,
             "orbit": orbit.values,
             "places": branch.offsets,
             "orders": branch.orders,
             "data": branch.data,
-            "next_mesh": self.next_mesh.numbers,
+            "next_mesh": self.next_mesh.as_array,
             "eigenvalues": self.eigenvalues,
         } | self.calibration.arrays()
 
     @classmethod
     def from_arrays(cls, arrays: Arrays) -> "Neighbour":
         """The neighbour from the named arrays that `Neighbour.arrays` returns."""
-        mesh = OrbitMesh.from_numbers(arrays["mesh"])
-        next_mesh = OrbitMesh.from_numbers(arrays["next_mesh"])
+        mesh = OrbitMesh.from_array(arrays["mesh"])
+        next_mesh = OrbitMesh.from_array(arrays["next_mesh"])
         parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))
         rod = Rod(**parameters, build=Build.from_text(bytes(arrays["build"]).decode()))
         symmetry = REFLECTION if arrays["symmetric"] else NO_SYMMETRY
@@ -190,5 +190,5 @@ def _converged(
     except Unsolvable:
         # The steps are made on a coarser mesh; only the last correction is made on `next_mesh`.
         start = orbit_in_steps(neighbour.predictor.on(target.coarser), form, name, tolerance, workspace)
-        found = newton(target.carry(start.orbit), tolerance, workspace, name)
+        found = newton(target.interpolate(start.orbit), tolerance, workspace, name)
     return at_orbit(found, matrix_distance(accuracy), name)

@@ -70,7 +70,7 @@ class StraightRod:
         return 0.0 if self.stable is None else self.w.real
 
     @property
-    def doubt(self) -> str:
+    def unproved_stability(self) -> str:
         """Message that the straight rod is not proved stable although its integrated motion decays; "" if the
         straight rod is stable."""
         if self.stable:

@@ -88,7 +88,7 @@ class BautinSpace:
 
     def scaled(self, values: Array, frequency: float) -> Array:
         """Coordinates v, (4,): the parameters `values`, (3,), scaled to [0, 1], and log `frequency`."""
-        places = [axis.scaled(float(value)) for axis, value in zip(self.axes, values, strict=True)]
+        places = [axis.coordinate(float(value)) for axis, value in zip(self.axes, values, strict=True)]
         return np.array([*places, np.log(frequency)])
 
     def solved(self, guess: Array, held: int) -> _CurvePoint:
@@ -155,7 +155,7 @@ class BautinSpace:
         """The point `outer` itself: `_within` has already shortened the step to end on the edge."""
         return outer
 
-    def closes(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
+    def is_closed_by(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
         """Whether the curve is closed: its first point lies between its last point and `there`."""
         first = behind[0].v
         last = behind[-1].v
@@ -169,19 +169,19 @@ class BautinSpace:
         # Secants, because the normal form does not give the derivatives of Re c.
         before = 0.0
         s = BAUTIN.first_secant
-        last = hopf.at(start, way, hopf.accuracy).share
+        last = hopf.at(start, way, hopf.accuracy).relative_real_part
         for _ in range(BAUTIN.max_secants):
             here = hopf.at(start + s * way, way, hopf.accuracy)
-            if here.share == last:
+            if here.relative_real_part == last:
                 break
-            slope = (here.share - last) / (s - before)
-            step = -here.share / slope
+            slope = (here.relative_real_part - last) / (s - before)
+            step = -here.relative_real_part / slope
             if not abs(s + step) < BAUTIN_STEPS.max_length:
                 break
             along = here.coefficients.landau_error / abs(slope)
             if abs(step) <= max(BAUTIN.tolerance, along):
                 return hopf.as_point(here, 0, way * (along + abs(step)))
-            last = here.share
+            last = here.relative_real_part
             before = s
             s = s + step
         raise Unsolvable("no generalised Hopf point is found near the predictor")
@@ -240,7 +240,7 @@ def _asked_between(space: BautinSpace, here: _CurvePoint, there: _CurvePoint) ->
     """Points at the requested third values between `here` and `there`; raises Unsolvable or ValueError."""
     a = here.v[2]
     b = there.v[2]
-    inner = [z for z in map(space.axes[2].scaled, space.asked) if min(a, b) < z < max(a, b)]
+    inner = [z for z in map(space.axes[2].coordinate, space.asked) if min(a, b) < z < max(a, b)]
     found = []
     for z in sorted(inner, reverse=bool(a > b)):
         if min(abs(z - a), abs(z - b)) > BAUTIN.same_point:

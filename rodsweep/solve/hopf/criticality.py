@@ -12,7 +12,7 @@ from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..changes.along_path import Transitions, pair_crossings
 from ..changes.unstable_modes import Crossing, end_below_crushing
-from ..point import FAILURES, cause_of, solved
+from ..point import FAILURES, cause_of, outcome_or_failure
 from ..status import PointStatus
 from .coefficient_errors import COEFFICIENT, HopfCoefficients, hopf_coefficients
 
@@ -107,7 +107,7 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
             message=message,
         )
 
-    return solved(search, lambda cause: _nothing(end, cause))
+    return outcome_or_failure(search, lambda cause: _nothing(end, cause))
 
 
 @cache

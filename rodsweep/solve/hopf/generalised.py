@@ -83,7 +83,7 @@ class _HopfNormalForm:
     coefficients: HopfCoefficients
 
     @property
-    def share(self) -> float:
+    def relative_real_part(self) -> float:
         """Re c/|c|, a dimensionless function that vanishes where Re c vanishes."""
         return self.coefficients.landau.real / abs(self.coefficients.landau)
 
@@ -139,7 +139,7 @@ class HopfCurve:
         if there is None:
             raise Unsolvable("no Hopf point is found between two points of the curve")
         x, y, h = map(float, there.v)
-        rod = self.boundary.plane.at(x, y)
+        rod = self.boundary.plane.rod_at(x, y)
         w = complex(0.0, math.exp(h))
         slope = path_problem(Path(rod, "F")).eigenvalue(w, rod.F)[1]
         value = self.boundary.plane.determinant(w, x, y)
@@ -161,12 +161,14 @@ class HopfCurve:
             return self.at(start + s * chord, normal, self.accuracy)
 
         try:
-            s = float(brentq(lambda s: on_chord(s).share, 0.0, 1.0, xtol=GENERALISED_HOPF.tolerance))
+            s = float(
+                brentq(lambda s: on_chord(s).relative_real_part, 0.0, 1.0, xtol=GENERALISED_HOPF.tolerance)
+            )
             here, before, beyond = (on_chord(s + side * GENERALISED_HOPF.slope_step) for side in (0, -1, 1))
         except (*FAILURES, ValueError):
             return None
-        slope = (beyond.share - before.share) / (2 * GENERALISED_HOPF.slope_step)
-        if abs(here.share) > GENERALISED_HOPF.max_zero_ratio or slope == 0:
+        slope = (beyond.relative_real_part - before.relative_real_part) / (2 * GENERALISED_HOPF.slope_step)
+        if abs(here.relative_real_part) > GENERALISED_HOPF.max_zero_ratio or slope == 0:
             return None
         # Points of undecided sign may lie between the two points, on both sides of the zero.
         passed = (self.scaled[first + 1 : last] - start) @ chord <= s * (chord @ chord)

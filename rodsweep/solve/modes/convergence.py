@@ -55,7 +55,7 @@ def converged_vectors(
     number that the mesh must resolve. None if even the second mesh has more than
     `ModeMeshSettings.max_unknowns` unknowns."""
     mesh = mesh_for(rod, wave, vector_accuracy(accuracy))
-    gaps = np.array([gap(rod, complex(w)) for w in eigenvalues])
+    gaps = np.array([eigenvalue_separation(rod, complex(w)) for w in eigenvalues])
     coarse = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
     best: ModeVectors | None = None
     least = inf
@@ -101,7 +101,7 @@ def _compared(coarse: ModeVectors, fine: ModeVectors, gaps: Array) -> ModeVector
     return replace(fine, mode_error=error, condition_error=moved + turned)
 
 
-def gap(rod: Rod, w: complex) -> float:
+def eigenvalue_separation(rod: Rod, w: complex) -> float:
     """Estimated distance from the eigenvalue w to the nearest other eigenvalue, 2 |D'/D''|; accurate if the
     distance is small."""
     if rod.standard:

@@ -20,7 +20,7 @@ from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.elements.resolution import Resolution
 from ...discretization.straight.transverse_mesh import mesh_for
 from ...model.rod import Rod
-from ..point import solved
+from ..point import outcome_or_failure
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus
 from .convergence import converged_vectors
@@ -87,7 +87,7 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
     )
     if not np.isfinite(spectrum.eigenvalues).all():
         return outcome
-    found = solved(
+    found = outcome_or_failure(
         lambda: _solve(rod, request, outcome),
         lambda cause: replace(outcome, status=SpectrumStatus.failed, message=cause),
     )

@@ -66,7 +66,7 @@ class Propagator:
         self.generator: Array = np.zeros((0, 0))
         self.overlap: Array = np.zeros((0, 0))
 
-    def keep(self, k: int) -> int:
+    def truncate(self, k: int) -> int:
         """From now on exp(L t) is represented by k leading modes, Q exp(L_k t) (Z^T Q)^-1 Z^T, with
         orthonormal real Q, Z.
 
@@ -109,7 +109,7 @@ class Propagator:
         size = np.asarray(np.linalg.eigvalsh(np.swapaxes(E, 1, 2) @ E)[:, -1], np.float64)
         return size, np.maximum(-np.linalg.eigvalsh(half + np.swapaxes(half, 1, 2))[:, 0], 0.0)
 
-    def left_over(self, m: int, time: float) -> float:
+    def truncation_contribution(self, m: int, time: float) -> float:
         """|exp(L t) (P_k - P_m)|, the contribution of the modes m + 1 to k at `time`; m < k must not split a
         complex pair."""
         E = self.at(np.array([time]))[0]

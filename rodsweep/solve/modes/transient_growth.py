@@ -146,7 +146,7 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
     tail = stop = 0.0
     k = GROWTH.min_modes
     while True:
-        k = fine.keep(k)
+        k = fine.truncate(k)
         # After this time the omitted modes have decayed to the accuracy; before, more modes are needed.
         first = patience / abs(fine.w[min(k, len(fine.w) - 1)].real)
         if not stop:
@@ -165,7 +165,7 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
     if best[0] > 1:
         # The meshes are compared at the peak and at the geometric mean of the peak's time and the earliest
         # time that may matter; the coarser mesh uses more modes if possible.
-        coarse.keep(int((1 + GROWTH.more_modes) * k))
+        coarse.truncate(int((1 + GROWTH.more_modes) * k))
         times = best[1], sqrt(best[1] * max(first, log(best[0]) / abscissa))
         hidden += max(abs(coarse.norm(t)[0] / fine.norm(t)[0] - 1) for t in times)
     return Growth(transient_growth=best[0], transient_time=best[1], growth_error=hidden)
@@ -193,4 +193,4 @@ def _end(propagator: Propagator, first: float, patience: float) -> tuple[float, 
         end *= 2
     alone = max(alone, first)
     # The norm of a decaying pair repeats with half its period, so a maximum may be half a period later.
-    return alone + (pi / w[0].imag if m == 2 else 0.0), 2 * propagator.left_over(m, alone)
+    return alone + (pi / w[0].imag if m == 2 else 0.0), 2 * propagator.truncation_contribution(m, alone)

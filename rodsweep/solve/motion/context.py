@@ -12,7 +12,7 @@ from ...discretization.elements.mesh import NodeMatrices
 from ...discretization.nodal_rod import NodalRod
 from ...model.compiled.compilation import compiled
 from ...model.material.jump import COLUMNS
-from ..backend.c_functions import floats, floats_in, integers
+from ..backend.c_functions import double_array_at, floats, integers
 from .time_scheme import EXTRAPOLATION_POINTS
 
 CONSTANTS_PER_JUMP_SIDE = len(COLUMNS)
@@ -90,14 +90,14 @@ def arrays_of(beam: Beam) -> dict[str, Array]:
 def rod_of(c: Any) -> NodalRod:
     d = c.components
     m = c.nodes
-    rest = floats_in(c.rest, (d, m))
-    compliance = floats_in(c.compliance, (d, m))
-    drag = floats_in(c.drag, (d, m))
-    mobility = floats_in(c.mobility, (d, m))
-    second = floats_in(c.second, (d, m, m))
+    rest = double_array_at(c.rest, (d, m))
+    compliance = double_array_at(c.compliance, (d, m))
+    drag = double_array_at(c.drag, (d, m))
+    mobility = double_array_at(c.mobility, (d, m))
+    second = double_array_at(c.second, (d, m, m))
     none = integers(c.rest, 0)
     jumps = integers(c.jumps, c.jump_count)
-    sides = floats_in(c.sides, (c.jump_count, 2, CONSTANTS_PER_JUMP_SIDE))
+    sides = double_array_at(c.sides, (c.jump_count, 2, CONSTANTS_PER_JUMP_SIDE))
     tip_stress = floats(c.tip_stress, d)
     return NodalRod(tip_stress, rest, compliance, drag, mobility, second, none, c.law, jumps, sides)
 
@@ -105,14 +105,14 @@ def rod_of(c: Any) -> NodalRod:
 @compiled
 def matrices_of(c: Any) -> NodeMatrices:
     all_nodes = (c.nodes, c.nodes)
-    D = floats_in(c.D, all_nodes)
-    D_transposed = floats_in(c.D_transposed, all_nodes)
-    return NodeMatrices(D, D_transposed, floats_in(c.weak, all_nodes), floats(c.weights, c.nodes))
+    D = double_array_at(c.D, all_nodes)
+    D_transposed = double_array_at(c.D_transposed, all_nodes)
+    return NodeMatrices(D, D_transposed, double_array_at(c.weak, all_nodes), floats(c.weights, c.nodes))
 
 
 @compiled
 def roots_of(c: Any) -> Any:
-    return floats_in(c.roots, (c.components, c.nodes))
+    return double_array_at(c.roots, (c.components, c.nodes))
 
 
 @compiled
@@ -122,4 +122,4 @@ def times_of(c: Any) -> Any:
 
 @compiled
 def states_of(c: Any) -> Any:
-    return floats_in(c.states, (2 * MAX_STAGES, c.unknowns))
+    return double_array_at(c.states, (2 * MAX_STAGES, c.unknowns))

@@ -27,7 +27,8 @@ from .time_scheme import TimeScheme
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IntegratorSettings:
-    """Settings for runs of the time integration: tolerances, limits, and the run in `relaxed`."""
+    """Settings for runs of the time integration: tolerances, limits, and the run in
+    `relax_fast_components`."""
 
     stage_rounding: float = 1e-9
     """The iteration ends, as converged, if it stagnates at Newton steps smaller than this, divided by the
@@ -42,11 +43,13 @@ class IntegratorSettings:
     """PETSc ends the run after more than this number of stages at which Newton's method fails; each failure
     shortens the step."""
     relaxation_share: float = 1e-3
-    """Duration of the run in `relaxed`, as a fraction of the period."""
+    """Duration of the run in `relax_fast_components`, as a fraction of the period."""
     relaxation_steps: float = 1e5
-    """Period divided by the first time step in `relaxed`; the fast components decay within ten steps."""
+    """Period divided by the first time step in `relax_fast_components`; the fast components decay within ten
+    steps."""
     relaxation_tolerance: float = 1e-3
-    """Relative local error per time step of the run that relaxes the fast components (see `relaxed`)."""
+    """Relative local error per time step of the run that relaxes the fast components (see
+    `relax_fast_components`)."""
     kept: int = 8
     """Maximum number of integrators in the pool, which serve further runs with the same mesh and scheme."""
 
@@ -55,7 +58,7 @@ INTEGRATOR = IntegratorSettings()
 
 
 RELAXATION = TimeScheme("beuler", "", tolerance=INTEGRATOR.relaxation_tolerance, prefix="cycle_relaxation_")
-"""Time scheme of the run in `relaxed`: backward Euler, which damps fast components."""
+"""Time scheme of the run in `relax_fast_components`: backward Euler, which damps fast components."""
 
 
 class RunEnding(IntEnum):
@@ -217,7 +220,7 @@ def forget_integrators() -> None:
     _kept.clear()
 
 
-def relaxed(beam: Beam, z: Array, period: float) -> Array:
+def relax_fast_components(beam: Beam, z: Array, period: float) -> Array:
     """The state, (unknowns,), a thousandth of `period` after the state z, when the fast components of z have
     decayed.
 

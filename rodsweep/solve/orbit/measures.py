@@ -110,19 +110,19 @@ class CyclePath:
         return int(self.tip_samples[:, 1].argmax()) / len(self.tip_samples)
 
     @cached_property
-    def beginning(self) -> float:
+    def start_phase(self) -> float:
         """Time at which the tip's y rises through its mean, counted from the start of the orbit, in
         periods."""
         return time_of_rise_through_mean(self.tip_samples[:, 1])
 
     def tip(self, samples: int) -> Array:
-        """(x, y, theta) of the tip at `samples` equidistant times of a period from `beginning`, (3,
+        """(x, y, theta) of the tip at `samples` equidistant times of a period from `start_phase`, (3,
         samples)."""
         return self._sampled(self.tip_coefficients, samples).T
 
     def energy(self, samples: int) -> Array:
         """(elastic energy U, injected power, dissipated power) at `samples` equidistant times of a period
-        from `beginning`, (3, samples)."""
+        from `start_phase`, (3, samples)."""
         period = self.orbit.period
         # Factors of the time derivative of Fourier coefficients.
         times = 2j * np.pi / period * np.arange(len(self.tip_coefficients))
@@ -144,16 +144,16 @@ class CyclePath:
         return np.stack([U, injection, injection - change])
 
     def shapes(self, count: int, nodes: int) -> Array:
-        """(x, y, theta) of the rod at `count` equidistant times of a period from `beginning` and at `nodes`
+        """(x, y, theta) of the rod at `count` equidistant times of a period from `start_phase` and at `nodes`
         Lobatto nodes, (3, count, nodes)."""
         strains = self._sampled(self.strain_coefficients, count).swapaxes(0, 1)
         grid = self.orbit.form.mesh
         return shape_from_strains(grid, np.ascontiguousarray(strains), np.zeros(3)) @ _at_lobatto(grid, nodes)
 
     def _sampled(self, c: Complex, count: int) -> Array:
-        """Re sum_k c_k exp(2 pi i k t) at `count` equidistant times t of a period from `beginning`, (count,
+        """Re sum_k c_k exp(2 pi i k t) at `count` equidistant times t of a period from `start_phase`, (count,
         ...)."""
-        turns = np.exp(2j * np.pi * self.beginning * np.arange(len(c)))
+        turns = np.exp(2j * np.pi * self.start_phase * np.arange(len(c)))
         return series_samples(c * turns.reshape(-1, *(1,) * (c.ndim - 1)), count)
 
 

@@ -85,7 +85,7 @@ def newton(
             raise Unsolvable("Newton's method for the orbit diverges from its start")
         # A full step from a poor start may leave the neighbourhood of the orbit, so long steps are shortened.
         share = min(1.0, ORBIT_NEWTON.longest_step / change) if change > 0 else 1.0
-        orbit = orbit.moved(step, share)
+        orbit = orbit.plus_change(step, share)
         distance += share * change
         if not orbit.period > 0:
             raise Unsolvable("Newton's method for the orbit broke down: the period is not positive")
@@ -114,15 +114,15 @@ def at_orbit(found: ConvergedOrbit, distance: float, parameter: str | None = Non
     more than `distance` from the orbit. parameter: as in `newton`."""
     if found.distance <= distance:
         return found
-    return linearised(found, parameter)
+    return newton_step(found, parameter)
 
 
-def linearised(found: ConvergedOrbit, parameter: str | None = None) -> ConvergedOrbit:
+def newton_step(found: ConvergedOrbit, parameter: str | None = None) -> ConvergedOrbit:
     """The orbit `found` after one more Newton step, with the matrix at the orbit before this step. parameter:
     as in `newton`."""
     orbit = found.orbit
     matrix = Linearisation(orbit, found.workspace, parameter)
-    return ConvergedOrbit(orbit.moved(matrix.step), matrix, relative_change(orbit, matrix.step))
+    return ConvergedOrbit(orbit.plus_change(matrix.step), matrix, relative_change(orbit, matrix.step))
 
 
 def multipliers_of(found: ConvergedOrbit) -> tuple[Complex, float]:

@@ -97,16 +97,16 @@ class Orbit:
         # The norm is the same in the part of the period that follows by symmetry.
         return float(self.form.amplitude(self.regular_states).max())
 
-    def moved(self, change: Array, share: float = 1.0) -> "Orbit":
+    def plus_change(self, change: Array, share: float = 1.0) -> "Orbit":
         """The orbit with the values `values` + `share` * `change`; change: (N,)."""
         return replace(self, values=self.values + share * change)
 
-    def at(self, times: Array) -> Array:
+    def states_at(self, times: Array) -> Array:
         """Interpolated states, (m, n), at `times`, (m,), in [0, 1], as fractions of the solved duration."""
         at: Array = piecewise((self.intervals, self.stages), times) @ self.points
         return at
 
-    def on(self, grid: Mesh, intervals: int, stages: int) -> "Orbit":
+    def on_mesh(self, grid: Mesh, intervals: int, stages: int) -> "Orbit":
         """The orbit interpolated to the space mesh `grid` and to `intervals` time intervals with `stages`
         stages each."""
         points = self.points

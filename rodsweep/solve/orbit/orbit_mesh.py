@@ -98,13 +98,13 @@ class OrbitMesh:
         return plane_layout(self.elements * self.order).unknowns
 
     @property
-    def numbers(self) -> Array:
+    def as_array(self) -> Array:
         """The mesh as one array for storage, (elements + 4,): order, intervals, stages, edges."""
         return np.array([self.order, self.intervals, self.stages, *self.edges])
 
     @classmethod
-    def from_numbers(cls, numbers: Array) -> "OrbitMesh":
-        """The mesh from the array that the property `numbers` returns, (elements + 4,)."""
+    def from_array(cls, numbers: Array) -> "OrbitMesh":
+        """The mesh from the array that the property `as_array` returns, (elements + 4,)."""
         order, intervals, stages = map(int, numbers[:3])
         return cls(tuple(numbers[3:].tolist()), order, intervals, stages)
 
@@ -142,9 +142,9 @@ class OrbitMesh:
         unknowns = ORBIT_MESH.vector * ceil(self.unknowns / ORBIT_MESH.vector)
         return float(unknowns**3 * self.intervals * self.stages**2)
 
-    def carry(self, orbit: Orbit) -> Orbit:
+    def interpolate(self, orbit: Orbit) -> Orbit:
         """The orbit `orbit` interpolated to this mesh."""
-        return orbit.on(self.grid, self.intervals, self.stages)
+        return orbit.on_mesh(self.grid, self.intervals, self.stages)
 
 
 def mesh_of(orbit: Orbit) -> OrbitMesh:

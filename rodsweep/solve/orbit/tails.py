@@ -86,7 +86,7 @@ def _space_coefficients(orbit: Orbit) -> Array:
     of all time intervals, (3, p + 1)."""
     grid = orbit.form.mesh
     ends = np.ascontiguousarray(orbit.states[:, -1])
-    if not orbit.form.smooth_stresses:
+    if not orbit.form.has_continuous_stresses:
         c = np.abs(_by_elements(orbit, ends) @ _analysis_on_element(grid.order))
         largest: Array = c.max(axis=(1, 2))
         return largest
@@ -128,7 +128,7 @@ def smooth_tails(orbit: Orbit) -> Array:
     branch, because the tail in space is the norm of `TAILS.last_coefficients` coefficients: a single
     coefficient may vanish."""
     grid = orbit.form.mesh
-    if not orbit.form.smooth_stresses:
+    if not orbit.form.has_continuous_stresses:
         fields = _by_elements(orbit, orbit.points)
         ends = np.linalg.norm(fields @ _lasting_on_element(grid.order), axis=-1).max(axis=(1, 2))
         largest = np.maximum(np.abs(fields).max(axis=(1, 2, 3)), EXPONENTS.least_divisor)

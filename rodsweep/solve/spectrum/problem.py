@@ -18,7 +18,7 @@ from ...determinant.arm.count.count import count_right_of as count_of_arm
 from ...determinant.arm.count.count import is_countable, largest_w_of_count
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.hull.hull import hull_of
-from ...determinant.arm.roots import roots as roots_of_arm
+from ...determinant.arm.roots import refine_mesh_eigenvalues as roots_of_arm
 from ...determinant.certificate.box import squared_amplification
 from ...determinant.certificate.winding_number import EigenvalueCount, count_right_of
 from ...determinant.roots.roots import Roots, roots

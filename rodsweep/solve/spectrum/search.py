@@ -12,7 +12,7 @@ from typing import Any
 from ...discretization.elements.resolution import RESOLUTION, mesh_accuracy
 from ...model.rod import Rod
 from ..backend.solver_pools import destroy_pooled_solvers
-from ..point import solved
+from ..point import outcome_or_failure
 from .candidates import Candidates, CountComparison, candidates_on, compare_with_count
 from .problem import TransverseProblem, transverse_problem
 from .search_settings import SEARCH
@@ -32,7 +32,7 @@ class CheckedCandidates:
     """Largest ratio of an error to the allowed error; accepted if at most `SEARCH.max_error_over_limit`."""
 
     @property
-    def grade(self) -> tuple[bool, float]:
+    def sort_key(self) -> tuple[bool, float]:
         """Sort key, best candidates first: candidates with an undecided count come last; then by increasing
         error."""
         return self.comparison is not None and self.comparison.count.number is None, self.error_over_limit
@@ -47,7 +47,7 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
     if rod.uniform and not rod.standard:
         return _from_equivalent(rod, request)
-    return solved(lambda: Search(rod, request).outcome(), failed)
+    return outcome_or_failure(lambda: Search(rod, request).outcome(), failed)
 
 
 def _from_equivalent(rod: Rod, request: SpectrumRequest) -> Spectrum:
@@ -191,11 +191,12 @@ class Search:
     def update_best(self, judged: CheckedCandidates) -> None:
         """Stores the candidates if they are the best so far; counts successive attempts without progress."""
         best = self.best
-        better = best is None or judged.grade < (best.grade[0], SEARCH.progress_ratio * best.error_over_limit)
+        limit = SEARCH.progress_ratio * best.error_over_limit if best else 0.0
+        better = best is None or judged.sort_key < (best.sort_key[0], limit)
         self.stalled = 0 if better else self.stalled + 1
         if (
             best is None
-            or judged.grade <= best.grade
+            or judged.sort_key <= best.sort_key
             or judged.error_over_limit <= SEARCH.max_error_over_limit
         ):
             self.best = judged

@@ -17,7 +17,7 @@ from ...discretization.elements.resolution import RESOLUTION, mesh_accuracy
 from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.rod import Rod
 from ..backend.solver_pools import destroy_pooled_solvers
-from ..point import Unsolvable, solved
+from ..point import Unsolvable, outcome_or_failure
 from .problem import TransverseProblem, transverse_problem
 from .spectrum import Spectrum, SpectrumRequest, failed_spectrum, vectors_on_nodes
 from .status import SpectrumStatus
@@ -60,7 +60,7 @@ def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
         destroy_pooled_solvers()
         return failed_spectrum(SpectrumStatus.failed, request, cause)
 
-    return solved(lambda: _solve(rod, request), failed)
+    return outcome_or_failure(lambda: _solve(rod, request), failed)
 
 
 def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:

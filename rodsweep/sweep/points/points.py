@@ -35,7 +35,7 @@ class Points:
     """Values of each parameter: along its axis, (n,), or at every point, (points,)."""
     is_grid: bool
     """Whether the points are a grid of parameters, whose axes are `columns`."""
-    over: dict[str, Array] = field(default_factory=dict)
+    arm_axes: dict[str, Array] = field(default_factory=dict)
     """Axes of a grid over an arm's quantities by name, in SI units, (n,) each; empty for a grid of parameters
     or a list."""
     units: dict[str, Array] = field(default_factory=dict)
@@ -60,21 +60,21 @@ class Points:
     @property
     def axes(self) -> dict[str, Array]:
         """Axes of the grid by name, (n,) each: parameters or an arm's quantities; empty for a list."""
-        return self.by_name if self.is_grid else self.over
+        return self.by_name if self.is_grid else self.arm_axes
 
     @property
     def varying_parameters(self) -> tuple[str, ...]:
         """Name of the only parameter that varies along each axis; "" for an axis along which several
         parameters or no parameters vary.
         """
-        return self.names if self.is_grid else tuple(map(parameter_of_axis, self.over))
+        return self.names if self.is_grid else tuple(map(parameter_of_axis, self.arm_axes))
 
     @property
     def identity(self) -> list[Array]:
-        """The arrays in `over` and `columns`, (n,) each. Two sweeps have the same points if all these arrays
-        are equal.
+        """The arrays in `arm_axes` and `columns`, (n,) each. Two sweeps have the same points if all these
+        arrays are equal.
         """
-        return [*self.over.values(), *self.columns]
+        return [*self.arm_axes.values(), *self.columns]
 
     @property
     def of_rods(self) -> dict[str, Array]:

@@ -85,7 +85,7 @@ def rod_numbers(points: Points) -> NDArray[np.int64] | None:
     Rods may be equal because viscosity and densities change no parameter, and Young's modulus changes no
     parameter if the arm has no load or a load relative to flutter.
     """
-    if not points.over:
+    if not points.arm_axes:
         return None
     columns = list(points.columns)
     if points.builds:

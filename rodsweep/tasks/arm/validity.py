@@ -140,7 +140,7 @@ class ArmValidity:
         self.searched = [int(each) for each in statuses if each.succeeded or each.name in at_rest]
         """Values of the statuses at which the solver missed no motion."""
         sections = [axis.size for name, axis in self.section.quantity_axes.items() if name in ALL_BUT_LOAD]
-        self.each = points.count // int(np.prod(sections)) if points.over else points.count
+        self.each = points.count // int(np.prod(sections)) if points.arm_axes else points.count
         """Number of consecutive points with the same arm."""
         self.arm = lru_cache(CACHED_ARM_COUNT)(_arm_of_number(self.section))
 
@@ -167,10 +167,10 @@ class ArmValidity:
         return {name: np.concatenate([each[name] for each in found]) for name in found[0]}
 
     def _arm_of(self, index: int) -> SlenderArm:
-        return self.arm(index // self.each if self.points.over else 0)
+        return self.arm(index // self.each if self.points.arm_axes else 0)
 
     def _validity(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> dict[str, Any]:
-        drag = arm.own_drag if "drag" in self.points.over else least_drag(arm)
+        drag = arm.own_drag if "drag" in self.points.arm_axes else least_drag(arm)
         rate = motion.frequency / arm.tau2_with(drag)
         F = self._force(arm, motion, index)
         effects = effects_of(arm, rate, self._compressing(F, index), drag=drag, amplitude=motion.amplitude)

@@ -15,7 +15,7 @@ from ...results.file.provenance import now
 from ...results.file.view import View
 from ...results.layouts.variables import MISSING, Filled, dimension_attributes, flag_attributes
 from ...solve.backend.availability import require_solvers
-from ...solve.exclusive import solving
+from ...solve.exclusive import exclusive_solve
 from ...sweep.points.ranges import Shard
 from .job import Job, plan_of
 
@@ -23,7 +23,7 @@ StoredVariable = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
 """Variable of a file: (dimensions, values, attributes)."""
 
 
-@solving
+@exclusive_solve
 def solved_view(job: Job) -> View:
     """Solves all points of a job; returns the results as a `View`, which `show` and figures read.
 
@@ -66,7 +66,7 @@ def view_in_memory(
         plan.layout.parameters,
         {MISSING: "missing", **dict(plan.flags)},
         journalled=0,
-        over=plan.layout.arm_axes,
+        arm_axes=plan.layout.arm_axes,
         typed={variable.name: variable.typed for variable, _ in plan.quantities if variable.typed},
     )
 
@@ -98,7 +98,7 @@ def _coordinates(plan: Plan) -> dict[str, StoredVariable]:
     if not points.axes:
         rows = np.arange(1, points.count + 1, dtype="<i4")
         found["point"] = (("point",), rows, dimension_attributes("point"))
-    for name, column in () if points.over else points.by_name.items():
+    for name, column in () if points.arm_axes else points.by_name.items():
         found[name] = ((name if points.is_grid else "point",), column, dimension_attributes(name))
     for variable, values in plan.quantities:
         found[variable.name] = (variable.extra, values, variable.attributes)

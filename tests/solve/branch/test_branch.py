@@ -189,7 +189,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
         assert cycle.measures.tip_y_max == pytest.approx(torus.tip_y_max, rel=2e-3)
     points, end = SpecialCurveProblem(
         SpecialKind.torus, PlaneAxis("F", 150.0, 220.0), PlaneAxis("k2", 97.0, 103.0), NewtonWorkspace(), -1.0
-    ).followed(torus, 100.0)
+    ).follow_from(torus, 100.0)
     assert end is CurveEnd.edge
     assert points[0].parameter == pytest.approx(torus.at, abs=points[0].error + torus.error)
     for point in points:

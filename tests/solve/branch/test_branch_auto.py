@@ -52,7 +52,7 @@ def branch_of_auto(program, rod, setting, place):
     form = StressForm(rod, mesh(1, 16))
     memory = NewtonWorkspace()
     near = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod), memory), 1e-6, memory).orbit
-    first = newton(near.on(mesh(1, order), 40, 5), 1e-10, memory).orbit
+    first = newton(near.on_mesh(mesh(1, order), 40, 5), 1e-10, memory).orbit
     (place / "rod").write_bytes(rod_file(first.form))
     (place / "start").write_bytes(start_file(first, 4 * intervals))
     unknowns = first.form.unknowns

@@ -123,7 +123,7 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
     found = solve_ivp(rate, (0, times[1]), orbit.start, "LSODA", times, rtol=1e-6, atol=1e-6 * size)
     half, whole = found.y.T
     assert np.abs(whole - orbit.start).max() < 0.01 * size
-    assert np.abs(half - orbit.at(np.array([0.5]))[0]).max() < 0.01 * size
+    assert np.abs(half - orbit.states_at(np.array([0.5]))[0]).max() < 0.01 * size
     moments = slice(2 * nodes, 3 * nodes)
     assert np.abs(half + orbit.start)[moments].max() > 0.05 * np.abs(orbit.start[moments]).max()
 
@@ -151,7 +151,7 @@ def test_a_symmetric_orbit_over_its_whole_period_is_the_same_motion(known):
     whole = extended_to_whole_period(orbit)
     assert not whole.symmetric
     times = np.linspace(0, 1, 21)
-    assert np.abs(whole.at(times / 2) - orbit.at(times)).max() < 1e-4 * np.abs(orbit.points).max()
+    assert np.abs(whole.states_at(times / 2) - orbit.at(times)).max() < 1e-4 * np.abs(orbit.points).max()
     assert np.abs(asymmetry(whole)).max() < 1e-5 * np.abs(orbit.start).max()
 
 

@@ -131,7 +131,7 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     plane = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0)
     halves = []
     for side in (1.0, -1.0):
-        points, end = SpecialCurveProblem(SpecialKind.fold, *plane, NewtonWorkspace(), side).followed(
+        points, end = SpecialCurveProblem(SpecialKind.fold, *plane, NewtonWorkspace(), side).follow_from(
             fold, 149.9
         )
         halves.append(HalfCurve(tuple(map(CurvePoint.of, points)), end))

@@ -136,7 +136,7 @@ def test_a_generalised_hopf_point_of_a_uniform_arm_is_that_of_the_closed_form():
     points = []
     for build in (Build(), ONES):
         plane = Plane(Rod(F=0.0, k1=200.0, **ROD, build=build), plane_axes)
-        start = tuple(axis.scaled(value) for axis, value in zip(plane_axes, fold[:2], strict=True))
+        start = tuple(axis.coordinate(value) for axis, value in zip(plane_axes, fold[:2], strict=True))
         told = curve_criticality(plane, trace(0.0, plane, start, fold[2]), 1e-10)
         assert told.unlocated == 0
         points.append(told.points[0])

@@ -50,7 +50,9 @@ def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F,
         Rod(F=0.0, k1=300.0, k2=k2, gamma3=gamma3), RowRequest("F", np.array([0.0, 119.0]), 1e-9, True, 9)
     )
     hopf = next(c for c in row.changes.crossings if c.kind == ChangeKind.hopf)
-    curve = trace(0.0, plane, (plane.axes[0].scaled(hopf.at), plane.axes[1].scaled(300.0)), hopf.frequency)
+    curve = trace(
+        0.0, plane, (plane.axes[0].coordinate(hopf.at), plane.axes[1].coordinate(300.0)), hopf.frequency
+    )
     (fold,) = [f for f in curve.folds if f.axis == 1]
     assert fold.values[1] == pytest.approx(k1, rel=1e-12)
     assert fold.values[0] == pytest.approx(F, rel=1e-10)
@@ -66,7 +68,7 @@ def test_the_hopf_curve_of_the_partial_beam_is_the_parabola_of_the_paper():
         Rod(F=0.0, k1=200.0, k2=inf, gamma3=0.0), (PlaneAxis("F", 0.0, 140.0), PlaneAxis("k1", 145.0, 400.0))
     )
     start = 200.0 * (0.5 - np.sqrt(0.25 - Fc / 200.0))
-    curve = trace(0.0, plane, (plane.axes[0].scaled(start), plane.axes[1].scaled(200.0)), 341.801)
+    curve = trace(0.0, plane, (plane.axes[0].coordinate(start), plane.axes[1].coordinate(200.0)), 341.801)
     F, k1 = curve.values.T
     assert len(F) > 30
     assert np.abs(F * (1 - F / k1) - Fc).max() < 1e-11
@@ -158,7 +160,7 @@ def test_the_tangent_of_a_boundary_touches_it(axes, rod):
     _, seeds = rows(axes, rod, 2)
     for seed in seeds:
         boundary = Boundary(plane, seed.sign)
-        scaled = [axis.scaled(value) for axis, value in zip(axes, seed.values, strict=True)]
+        scaled = [axis.coordinate(value) for axis, value in zip(axes, seed.values, strict=True)]
         start = boundary.point_near(np.array([*scaled, log(abs(seed.eigenvalue))]), np.array([0.0, 1.0, 0.0]))
         assert boundary.eigenvalue(start.v[2])[int(seed.sign == 0)] == pytest.approx(
             seed.eigenvalue, rel=1e-6

@@ -129,7 +129,7 @@ def test_a_change_along_any_parameter_is_a_change_along_the_force(name, fixed, s
         forces = [c.at for c in thresholds(**values, F_max=1.2 * fixed.F).crossings]
         assert min(abs(F - fixed.F) for F in forces) < 1e-10 * fixed.F
         before, after = (
-            count_right_of(0.0, Path(fixed, name).at(Path(fixed, name).variable(v))).number
+            count_right_of(0.0, Path(fixed, name).rod_at(Path(fixed, name).coordinate(v))).number
             for v in (crossing.at * 0.99, crossing.at * 1.01)
         )
         assert after == crossing.unstable_after

@@ -77,7 +77,10 @@ def test_the_jacobian_is_the_derivative_of_the_rate(name):
     beam = Beam(form.rod, form.mesh)
     z = 0.3 * np.random.default_rng(1).standard_normal(beam.unknowns)
     h = 1e-6
-    differences = [(beam.rate(z + h * e) - beam.rate(z - h * e)) / (2 * h) for e in np.eye(beam.unknowns)]
+    differences = [
+        (beam.state_derivative(z + h * e) - beam.state_derivative(z - h * e)) / (2 * h)
+        for e in np.eye(beam.unknowns)
+    ]
     J = beam.jacobian(z)
     assert np.abs(J - np.array(differences).T).max() < 1e-8 * np.abs(J).max()
 
@@ -245,7 +248,7 @@ def test_the_largest_y_of_segments_is_within_its_error(accuracy, names, values, 
     found = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod), memory), accuracy, memory)
     orbit = found.orbit
     finer = mesh_on(orbit.form.mesh.edges, orbit.form.mesh.order + 8)
-    start = orbit.on(finer, 2 * orbit.intervals, orbit.stages + 1)
+    start = orbit.on_mesh(finer, 2 * orbit.intervals, orbit.stages + 1)
     exact = CyclePath(newton(start, 1e-12, memory).orbit).extrema["tip_y_max"]
     assert abs(found.measures.tip_y_max / exact - 1) <= found.errors.amplitude_error
 

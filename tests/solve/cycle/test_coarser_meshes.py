@@ -46,7 +46,9 @@ def test_it_is_nearer_to_the_orbit_than_two_meshes_in_between_are(near):
     orbit, _ = coarser.predicted(FINE)
     exact = newton(orbit, 1e-13, MEMORY).orbit
     between = [replace(coarser.mesh, order=FINE.order), replace(coarser.mesh, intervals=FINE.intervals)]
-    errors = [off(FINE.carry(newton(m.carry(exact), 1e-13, MEMORY).orbit), exact) for m in between]
+    errors = [
+        off(FINE.interpolate(newton(m.interpolate(exact), 1e-13, MEMORY).orbit), exact) for m in between
+    ]
     assert off(orbit, exact) < 0.1 * min(errors)
 
 
@@ -55,7 +57,9 @@ def test_finer_meshes_differ_by_no_more_than_is_stated(near):
     found = newton(orbit, 1e-12, MEMORY).orbit
     for field, parts in (("order", known.space), ("intervals", known.time)):
         finer = replace(FINE, **{field: 2 * getattr(FINE, field)})
-        true = path_differences(CyclePath(found), CyclePath(newton(finer.carry(found), 1e-12, MEMORY).orbit))
+        true = path_differences(
+            CyclePath(found), CyclePath(newton(finer.interpolate(found), 1e-12, MEMORY).orbit)
+        )
         for which in (PERIOD_CHANGE, LARGEST_Y, WHOLE_PATH):
             assert true[which] <= CALIBRATION.safety_factor * parts[which] + 1e-12
 
@@ -102,5 +106,5 @@ def test_the_period_of_neighbouring_orders_that_agree_by_luck_is_not_believed():
     found = refined_at_period(start, accuracy, MEMORY)
     own = mesh_of(found.orbit)
     finer = replace(own, order=own.order + 8, intervals=2 * own.intervals)
-    exact = newton(finer.carry(found.orbit), 1e-10, MEMORY).orbit
+    exact = newton(finer.interpolate(found.orbit), 1e-10, MEMORY).orbit
     assert abs(found.measures.period / exact.period - 1) <= found.errors.period_error <= accuracy

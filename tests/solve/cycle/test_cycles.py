@@ -331,14 +331,14 @@ def repeated(half, times):
     K = times * (half.intervals - 1) + 1
     at = times * node_times(K, half.stages)
     number = np.floor(at + 1e-9)
-    states = half.at(np.maximum(at - number, 0.0))
+    states = half.states_at(np.maximum(at - number, 0.0))
     later = number % 2 == 1
     states[later] = REFLECTION.of(states[later], half.form.layout)
     return Orbit.of(half.form, NO_SYMMETRY, times * half.period / 2, states, half.stages)
 
 
 def test_three_periods_are_recognised_and_cut_to_one():
-    half = newton(orbit_at_fifty().on(mesh(1, 16), 12, 4), 1e-10, NewtonWorkspace()).orbit
+    half = newton(orbit_at_fifty().on_mesh(mesh(1, 16), 12, 4), 1e-10, NewtonWorkspace()).orbit
     thrice = replace(repeated(half, 3), symmetry=REFLECTION)
     thrice = replace(thrice, values=np.append(thrice.values[:-1], 3 * half.period))
     assert [common_divisor(CyclePath(orbit), 1e-3) for orbit in (half, thrice)] == [1, 3]
@@ -351,7 +351,7 @@ def test_three_periods_are_recognised_and_cut_to_one():
 
 @cache
 def orbit_on(elements, order):
-    return newton(orbit_at_fifty().on(mesh(elements, order), 12, 4), 1e-10, NewtonWorkspace()).orbit
+    return newton(orbit_at_fifty().on_mesh(mesh(elements, order), 12, 4), 1e-10, NewtonWorkspace()).orbit
 
 
 @pytest.mark.parametrize("elements, order", [(1, 15), (2, 8)])

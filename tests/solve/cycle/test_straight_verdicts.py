@@ -49,7 +49,7 @@ def ended(point, amplitude=0.1, most_periods=400, **more):
 def test_the_sign_of_a_growth_rate_is_sure_beyond_its_error(w, error, stable, growth, doubt):
     rod = StraightRod(w, error, "no mesh")
     assert (rod.stable, rod.growth_rate(7.0)) == (stable, growth)
-    assert doubt in rod.doubt and bool(rod.doubt) != bool(rod.stable)
+    assert doubt in rod.unproved_stability and bool(rod.unproved_stability) != bool(rod.stable)
 
 
 def test_the_leading_eigenvalue_is_the_spectrums_also_from_a_rod_near_by():

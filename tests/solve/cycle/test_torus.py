@@ -70,7 +70,7 @@ def test_another_integrator_on_another_mesh_is_on_the_same_torus():
     beam = Beam(rod_of(207.0, *SOFT[:3], gamma1=SOFT[3]), mesh(1, 21))
     z, row = 0.1 * leading_mode(beam).z.real, tip_angle_row(beam)
     run = LSODA(
-        lambda _, z: beam.rate(z), 0.0, z, np.inf, rtol=1e-7, atol=1e-7 * np.abs(z).max(),
+        lambda _, z: beam.state_derivative(z), 0.0, z, np.inf, rtol=1e-7, atol=1e-7 * np.abs(z).max(),
         jac=lambda _, z: beam.jacobian(z),
     )  # fmt: skip
     returns = []

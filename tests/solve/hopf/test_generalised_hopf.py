@@ -33,7 +33,7 @@ phase_diagram: {criticality: true}
 
 
 def curve_of(plane, F, k1, frequency):
-    start = [axis.scaled({"F": F, "k1": k1, "gamma3": GAMMA3}[axis.name]) for axis in plane.axes]
+    start = [axis.coordinate({"F": F, "k1": k1, "gamma3": GAMMA3}[axis.name]) for axis in plane.axes]
     return trace(0.0, plane, tuple(start), frequency)
 
 
@@ -157,7 +157,7 @@ def test_a_point_within_the_error_of_the_change_is_undecided_and_brackets_nothin
     """A point of the curve put where Re c vanishes: the bracket reaches over it."""
     plane, curve, told = found
     (point,) = told.points
-    x, y = (axis.scaled(v) for axis, v in zip(plane.axes, point.values, strict=True))
+    x, y = (axis.coordinate(v) for axis, v in zip(plane.axes, point.values, strict=True))
     there = np.insert(curve.scaled, point.after + 1, [x, y, np.log(point.frequency)], axis=0)
     again = curve_criticality(plane, replace(curve, scaled=there), 1e-10)
     assert again.criticality[point.after + 1] == 0

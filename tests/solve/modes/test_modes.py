@@ -480,7 +480,7 @@ def test_transient_growth_is_the_largest_norm_of_the_exact_propagator(parameters
 def toy(generator):
     """exp(L t) of a small matrix L, all modes kept."""
     propagator = Propagator(np.linalg.inv(np.array(generator, dtype=float)))
-    assert propagator.keep(len(generator)) == len(generator)
+    assert propagator.truncate(len(generator)) == len(generator)
     return propagator
 
 
@@ -507,7 +507,7 @@ def test_a_peak_later_than_the_decay_time_is_found():
 
 def test_no_pair_is_cut():
     propagator = toy([[-1.0, 5.0, 0.3], [-5.0, -1.0, 0.2], [0.0, 0.0, -2.0]])
-    assert [propagator.keep(k) for k in (1, 2, 3, 4)] == [2, 2, 3, 3]
+    assert [propagator.truncate(k) for k in (1, 2, 3, 4)] == [2, 2, 3, 3]
 
 
 def test_all_modes_of_a_mesh_say_the_same_as_few():
@@ -515,7 +515,7 @@ def test_all_modes_of_a_mesh_say_the_same_as_few():
     propagator = growth_module.propagator_of(Rod(F=12.0, k1=INF, k2=INF, gamma3=0.0), assemble_pencil(1, 32))
     norms = []
     for k in (12, 18, 32):
-        assert propagator.keep(k) == k
+        assert propagator.truncate(k) == k
         assert (np.tril(propagator.generator, -2) == 0).all()
         norms.append(propagator.norm(4.3e-5)[0])
     assert norms == pytest.approx([norms[0]] * 3, rel=5e-14)

@@ -67,7 +67,9 @@ def test_jacobian_is_the_derivative_of_the_rate(elements, order):
     z = rough(beam)
     J = beam.jacobian(z)
     for k, d in enumerate(1e-3 * np.eye(len(z))):  # the rate is cubic: this difference is exact
-        difference = 8 * (beam.rate(z + d) - beam.rate(z - d)) - (beam.rate(z + 2 * d) - beam.rate(z - 2 * d))
+        difference = 8 * (beam.state_derivative(z + d) - beam.state_derivative(z - d)) - (
+            beam.state_derivative(z + 2 * d) - beam.state_derivative(z - 2 * d)
+        )
         column = difference / (12 * d[k])
         assert np.abs(J[:, k] - column).max() <= 1e-10 * np.abs(J[:, k]).max()
 
@@ -77,7 +79,7 @@ def test_jacobian_is_the_derivative_of_the_rate(elements, order):
 def test_energy_law_holds_on_the_mesh_to_rounding(elements, order):
     beam = Beam(ROD.changed(gamma1=0.7), mesh(elements, order))
     z = rough(beam)
-    rate, n = beam.rate(z), beam.mesh.nodes
+    rate, n = beam.state_derivative(z), beam.mesh.nodes
     stress = z.copy()
     stress[:n] -= ROD.F / ROD.k1**0.5  # Sigma = K^1/2 z + (-F, 0, 0)
     change = stress @ (np.tile(beam.mesh.quadrature[:-1], 3) * rate)
@@ -120,7 +122,7 @@ def test_uniformly_bent_rod_is_an_arc(elements, order):
 def test_velocity_of_the_tip_is_that_of_its_reconstruction():
     beam = Beam(ROD, mesh(1, 20))
     z, step = bent(beam), 1e-8
-    rate = beam.rate(z)
+    rate = beam.state_derivative(z)
     difference = (beam.tip(z + step * rate) - beam.tip(z - step * rate)) / (2 * step)
     assert beam.tip_velocity(z, rate) == pytest.approx(difference, rel=1e-6)
 

@@ -54,7 +54,7 @@ def test_transient_is_the_motion_that_another_integrator_finds():
     z = 0.1 * leading_mode(beam).z.real
     atol = 1e-7 * np.abs(z).max()
     found = solve_ivp(
-        lambda _, z: beam.rate(z), (0.0, time[-1]), z, "LSODA", time, rtol=1e-7, atol=atol,
+        lambda _, z: beam.state_derivative(z), (0.0, time[-1]), z, "LSODA", time, rtol=1e-7, atol=atol,
         jac=lambda _, z: beam.jacobian(z),
     )  # fmt: skip
     assert np.abs(beam.tip(found.y.T) - tip).max() < 1e-5

@@ -75,7 +75,7 @@ def test_points_that_are_followed_again_with_more_modes_have_their_own_spectra(m
     assert len(followed.accepted) == len(values)
     assert len(counted) < len(values) / 4
     for i in range(0, len(values), 20):
-        alone = solve_spectrum(path.at(float(values[i])), REQUEST)
+        alone = solve_spectrum(path.rod_at(float(values[i])), REQUEST)
         assert followed.accepted[i]
         assert followed.unstable_count[i] == alone.unstable_count
         error = 10 * (followed.error[i] + alone.error_estimate) + 1e-15 * np.abs(alone.eigenvalues)
@@ -93,7 +93,7 @@ def test_counts_of_followed_points_are_those_of_dense_eigenvalues(seed):
         if reached is None:
             continue
         for i in np.flatnonzero(reached.accepted)[::8]:
-            dense = eigenvalues(path.at(float(values[i])))
+            dense = eigenvalues(path.rod_at(float(values[i])))
             assert reached.unstable_count[i] == int((dense.real > 0).sum()), (rod, rod.build, values[i])
             for w in dense[:4]:
                 assert np.abs(reached.w[i] - w).min() <= 1e-4 * max(abs(w), 1.0)
@@ -105,7 +105,7 @@ def test_points_between_those_followed_have_their_own_spectra():
     path = Path(Rod(**CONE), "F")
     followed = FollowedArms(path, np.linspace(1, 25, 25), 4)
     for F in (3.3, 12.72, 24.99):
-        found, alone = followed.spectrum(F, 4), solve_spectrum(path.at(F), REQUEST)
+        found, alone = followed.spectrum(F, 4), solve_spectrum(path.rod_at(F), REQUEST)
         assert found.unstable_count == alone.unstable_count
         error = 10 * (found.error_estimate + alone.error_estimate) + 1e-15 * np.abs(alone.eigenvalues)
         np.testing.assert_array_less(np.abs(found.eigenvalues - alone.eigenvalues), error)

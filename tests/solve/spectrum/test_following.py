@@ -140,11 +140,11 @@ def test_what_is_proved_has_no_zero_inside():
         p, at_line, y = rng.uniform(5, 60), -(10 ** rng.uniform(0, 5)), 10 ** rng.uniform(0, 5)
         half = (y * 10 ** rng.uniform(-2, -0.4), 10 ** rng.uniform(-3, 0.5))
         tilt = rng.normal() * at_line / 10
-        at = IntervalEnd(p, path.at(p).coefficients, at_line)
+        at = IntervalEnd(p, path.rod_at(p).coefficients, at_line)
         if is_free_of_zeros(at, y, path.direction, half, tilt)[0]:
             proved += 1
             for share in (-1, -0.3, 0.6, 1):
-                rod = path.at(p + share * half[1]).coefficients
+                rod = path.rod_at(p + share * half[1]).coefficients
                 middle = at_line + share * tilt * half[1]
                 corners = [complex(middle + 1e-3 * a * half[0], y + b * half[0]) for a, b in CORNERS]
                 turn = [phase_change_by_nodes(a, b, rod)[0] for a, b in pairwise([*corners, corners[0]])]

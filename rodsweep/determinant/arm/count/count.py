@@ -166,7 +166,7 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
         if not here.reach > ARM_COUNT.min_reach * abs(here.w) or nodes > ARM_COUNT.max_nodes:
             return BoundaryTraversal(side, t, total, nodes, here, growth, ahead, math.inf)
         if ahead == 0:
-            ahead = min(_stride(here.reach, growth), length - t)
+            ahead = min(_overlapping_distance(here.reach, growth), length - t)
         w = end if ahead == length - t else corners[side] + (end - corners[side]) / length * (t + ahead)
         unit = scales_at(w, samples[0])[1]
         first = ARM_COUNT.first_radius * unit
@@ -180,17 +180,17 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
         nodes += 1
         growth = (there.reach - here.reach) / ahead
         if abs(there.w - here.w) < here.reach + there.reach:
-            total += _turn(here, there, samples[1])
+            total += _phase_between(here, there, samples[1])
             t = length if there.w == end else t + ahead
             here = there
             ahead = 0.0
         else:
-            ahead = _nearer(here.reach, growth, ahead)
+            ahead = _shortened_distance(here.reach, growth, ahead)
     return BoundaryTraversal(side, t, total, nodes, here, growth, ahead, 0.0)
 
 
 @compiled
-def _stride(reach: float, growth: float) -> float:
+def _overlapping_distance(reach: float, growth: float) -> float:
     """Distance of the next node at which the reaches of both nodes just overlap, if the reach grows by
     `growth` per distance.
     """
@@ -199,16 +199,16 @@ def _stride(reach: float, growth: float) -> float:
 
 
 @compiled
-def _nearer(reach: float, growth: float, ahead: float) -> float:
+def _shortened_distance(reach: float, growth: float, ahead: float) -> float:
     """A smaller distance of the next node than `ahead`; repeated calls end within the reach of the present
     node.
     """
-    nearer = min(_stride(reach, growth), ARM_COUNT.max_step_ratio * ahead)
+    nearer = min(_overlapping_distance(reach, growth), ARM_COUNT.max_step_ratio * ahead)
     return nearer if nearer > reach else min(ARM_COUNT.safe_step * reach, ahead / 2)
 
 
 @compiled
-def _turn(here: PhaseNode, there: PhaseNode, samples: ArmSamples) -> float:
+def _phase_between(here: PhaseNode, there: PhaseNode, samples: ArmSamples) -> float:
     """The change of arg D between two nodes whose reaches overlap, from their tangents and values of D."""
     share = here.reach / (here.reach + there.reach)
     between = here.w + share * (there.w - here.w)

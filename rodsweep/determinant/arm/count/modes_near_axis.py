@@ -16,7 +16,7 @@ from ....model.compiled.compilation import compiled
 from ....model.compiled.settings import CompiledSettings
 from ..determinant import ArmDeterminant, BoundedPropagators
 from ..local_waves import ArmSamples
-from ..value import chain_value
+from ..value import determinant_along_chain
 from .dominant_wave import slope_of_wave
 from .settings import ARM_COUNT
 
@@ -86,7 +86,7 @@ def _mode_near(start: complex, known: Complex, level: BoundedPropagators, sample
     """
     w = start
     for _ in range(NEAR_AXIS.max_steps):
-        value = chain_value(w, level[0], level[1])
+        value = determinant_along_chain(w, level[0], level[1])
         if value.D == 0:
             return w
         slope = value.D_w / value.D - slope_of_wave(w, samples)

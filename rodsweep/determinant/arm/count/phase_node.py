@@ -29,7 +29,7 @@ from ...value import DeterminantValue
 from ..determinant import BoundedPropagators
 from ..hull.region import Hull, clearance
 from ..local_waves import ArmSamples
-from ..value import chain_size, chain_value
+from ..value import chain_size, determinant_along_chain
 from .dominant_wave import dominant_wave, slope_of_wave
 from .settings import ARM_COUNT
 
@@ -71,7 +71,7 @@ def phase_node(
     known: eigenvalues to divide out of D, (n,). trial: (length over which D changes, largest radius of a
     circle). arm: samples of the arm, and the propagators for |v| <= W on the largest circle about w.
     """
-    value = chain_value(w, arm[1][0], arm[1][1])
+    value = determinant_along_chain(w, arm[1][0], arm[1][1])
     if not abs(value.D) > ARM_COUNT.rounding_over_noise * value.noise:
         return PhaseNode(w, value.D, 0j, (0j, 0j), 0.0, 0.0)
     direction = value.D / abs(value.D)

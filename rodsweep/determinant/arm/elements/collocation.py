@@ -105,7 +105,7 @@ def fill_terms(F: Array, W: float, coefficients: Array, method: IntegrationMatri
             for lane in range(ARM_ELEMENTS.lanes):
                 own = coefficients[arm, b, :, :, lane]
                 eliminated = elimination_matrix(F[arm], own[C3], own[G], method.integrals)
-                _put_in_lane(eliminated, lane, turning)
+                _copy_to_simd_lane(eliminated, lane, turning)
             here = terms[arm, b * ARM_ELEMENTS.lanes : (b + 1) * ARM_ELEMENTS.lanes]
             most = max(most, _fill_batch((F[arm], W), local, (method, turning), (values, rates), here))
     return most
@@ -122,7 +122,7 @@ def _repeat(coefficients: Array, local: Array) -> None:
 
 
 @compiled_for_vectors
-def _put_in_lane(eliminated: Array, lane: int, turning: Array) -> None:
+def _copy_to_simd_lane(eliminated: Array, lane: int, turning: Array) -> None:
     """Copies `elimination_matrix` of an element into its lane of `turning`, (STAGES, 1 + STAGES, WIDTH)."""
     for i in range(ARM_ELEMENTS.stages):
         for j in range(1 + ARM_ELEMENTS.stages):

@@ -50,13 +50,13 @@ def hulls_along(rods: Sequence[Rod], p: Array) -> PathHulls:
     Extremes along the path are evaluated at these values only; `HULL.margin` allows for the arms between.
     """
     arms = _arms(rods)
-    hulls = [_hull(_part(arms, slice(i, i + 2))) for i in range(len(rods) - 1)]
+    hulls = [_hull(_select_arms(arms, slice(i, i + 2))) for i in range(len(rods) - 1)]
     return PathHulls(p, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
 
 
 def _hull(arms: "SampledArms") -> Hull:
     largest = 1 - HULL.min_remainder
-    a, c = _smallest(arms.F, arms.lengths, arms.local, arms.averaged, _chebyshev(), largest)
+    a, c = _smallest_region(arms.F, arms.lengths, arms.local, arms.averaged, _chebyshev(), largest)
     return Hull((1 + HULL.margin) * a, c) if isfinite(a) else NO_BOUND
 
 
@@ -106,7 +106,7 @@ def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:
     return regions
 
 
-def _part(arms: SampledArms, chosen: slice) -> SampledArms:
+def _select_arms(arms: SampledArms, chosen: slice) -> SampledArms:
     """The samples of the arms with the indices `chosen`."""
     local = np.ascontiguousarray(arms.local[:, chosen])
     return arms._replace(F=arms.F[chosen], local=local, averaged=arms.averaged[chosen])
@@ -137,7 +137,7 @@ def _chebyshev() -> ChebyshevMatrices:
 
 
 @compiled
-def _smallest(
+def _smallest_region(
     F: Array, lengths: Array, local: Array, averaged: Array, chebyshev: ChebyshevMatrices, largest: float
 ) -> tuple[float, float]:
     """(a, c) of the smallest region that contains the spectra of all arms, without the margin of a; inf
@@ -158,21 +158,23 @@ def _smallest(
     continuous = averaged.shape[1] == 0
     if continuous and (g > 0).all() and (c2 > 0).all():
         for square in varying_weight_norms(F, lengths, local, chebyshev.derivative):
-            best = _smaller(best, (sqrt(square), 0.0), largest)
+            best = _smaller_region(best, (sqrt(square), 0.0), largest)
     for trial in range(averaged.shape[1]):
         c = (1 + HULL.margin) * averaged[:, trial, 1].max()
-        best = _smaller(best, (averaged[:, trial, 0].max(), c), largest)
+        best = _smaller_region(best, (averaged[:, trial, 0].max(), c), largest)
     if not (c2 > 0).all():
         alphas = np.ones(1)
     integrals = clamp_integrals(alphas, F, lengths, local, chebyshev.integral)
     for k in range(len(alphas)):
         c = (1 + HULL.margin) * sqrt(integrals[k]) / 2
-        best = _smaller(best, (sqrt(alphas[k] * push), c), largest)
+        best = _smaller_region(best, (sqrt(alphas[k] * push), c), largest)
     return best
 
 
 @compiled
-def _smaller(best: tuple[float, float], other: tuple[float, float], largest: float) -> tuple[float, float]:
+def _smaller_region(
+    best: tuple[float, float], other: tuple[float, float], largest: float
+) -> tuple[float, float]:
     """The smaller of two regions (a, c), by the measure a^2 (1 + (c/HULL.wide_c)^4).
 
     A region with c >= `largest` is never chosen.

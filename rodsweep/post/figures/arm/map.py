@@ -57,16 +57,16 @@ def draw_arm_map(request: FigureRequest) -> str:
     for each result; returns a sentence.
     """
     view = replace(request, what=None).only_view()
-    long = [name for name in view.over if len(view.variables[name]) > 1]
+    long = [name for name in view.arm_axes if len(view.variables[name]) > 1]
     if DRAG in long and long[1:]:  # drawn as a band, or for the likeliest drag
         long.remove(DRAG)
     axes = sorted(long, key=lambda name: -len(view.variables[name]))[:2]
-    x = next(name for name in view.over if name in axes)
-    y = next((name for name in view.over if name in axes and name != x), "")
-    first = {name: 0 for name in view.over if name not in axes}
+    x = next(name for name in view.arm_axes if name in axes)
+    y = next((name for name in view.arm_axes if name in axes and name != x), "")
+    first = {name: 0 for name in view.arm_axes if name not in axes}
     if DRAG in first:  # the likeliest drag has the smallest number
         first[DRAG] = int(np.argmin(view.variables[DRAG]))
-    place = tuple(first.get(name, slice(None)) for name in view.over)
+    place = tuple(first.get(name, slice(None)) for name in view.arm_axes)
     panels = PANELS[view.task](view)
     style.require(view, any(np.isfinite(panel.values[place]).any() for panel in panels), "number")
     figure, drawn = _panels(len(panels), request.look.narrow, bool(y))
@@ -91,7 +91,7 @@ def can_draw(request: FigureRequest) -> bool:
     """
     view = request.views[0]
     chosen = request.what not in (None, *MAP_KINDS) or request.points or request.roots
-    several = any(len(view.variables[name]) > 1 for name in view.over)
+    several = any(len(view.variables[name]) > 1 for name in view.arm_axes)
     return several and view.task in PANELS and not chosen
 
 
@@ -156,9 +156,9 @@ def _band(axes: Axes, view: View, x: str, values: Array, place: Any, colour: str
     """Draws the range of a result over the drags as a band; returns the legend entry as a list. x: name of
     the quantity on the horizontal axis. values: the result at all points. place: as in `_lines`.
     """
-    if DRAG not in view.over or x == DRAG or len(view.variables[DRAG]) < 2:
+    if DRAG not in view.arm_axes or x == DRAG or len(view.variables[DRAG]) < 2:
         return []
-    drag = view.over.index(DRAG)
+    drag = view.arm_axes.index(DRAG)
     whole = np.moveaxis(values, drag, -1)[tuple(each for i, each in enumerate(place) if i != drag)]
     low, high = (extreme.reduce(whole, axis=-1) for extreme in (np.fmin, np.fmax))
     axes.fill_between(_axis(view, x)[0], low, high, color=colour, alpha=BAND_OPACITY, lw=0, zorder=1)
@@ -197,7 +197,9 @@ def _fixed(view: View, drawn: list[str]) -> str:
     for name, values in view.quantities.items():
         if name in drawn or name in ARM_UNITS:
             continue
-        if np.size(values) > 1 and name not in view.over:  # varies with another quantity, as a relative load
+        if (
+            np.size(values) > 1 and name not in view.arm_axes
+        ):  # varies with another quantity, as a relative load
             continue
         more = f" (of {len(values)} values)" if np.size(values) > 1 else ""
         texts.append(quantity_text(view, name, float(np.min(values))) + more)

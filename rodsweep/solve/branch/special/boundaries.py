@@ -172,7 +172,7 @@ class _CurvesOfKind:
     def _ends(self, curve: CycleCurve) -> list[tuple[float, float]]:
         """Axis coordinates (along the rows' axis, along a row) of both ends of a curve, in ascending
         order."""
-        return sorted((p.place, self.line.scaled(p.at)) for p in (curve.points[0], curve.points[-1]))
+        return sorted((p.place, self.line.coordinate(p.at)) for p in (curve.points[0], curve.points[-1]))
 
     def _lies_on_extrapolation(self, curve: CycleCurve, one: RowSpecialPoint) -> bool:
         """Whether a special point lies on the extrapolation of a curve to a Hopf point."""
@@ -181,14 +181,14 @@ class _CurvesOfKind:
         for end, last in zip(curve.vanishing, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
                 continue
-            x = self.line.scaled(end.at)
-            y = self.rows.scaled(end.row)
+            x = self.line.coordinate(end.at)
+            y = self.rows.coordinate(end.row)
             # On the straight chord from the Hopf point to the last cycle.
-            share = (self.rows.scaled(one.row) - y) / (last.place - y)
-            chord = x + share * (self.line.scaled(last.at) - x)
+            share = (self.rows.coordinate(one.row) - y) / (last.place - y)
+            chord = x + share * (self.line.coordinate(last.at) - x)
             if (
                 0 <= share <= 1
-                and abs(chord - self.line.scaled(one.at)) <= CURVE_IDENTITY.max_last_chord_distance
+                and abs(chord - self.line.coordinate(one.at)) <= CURVE_IDENTITY.max_last_chord_distance
             ):
                 return True
         return False
@@ -213,7 +213,7 @@ def _traced(
     if not same:
         return TracedHalfCurve(None)
     try:
-        points, end = limits.followed(same[0], one.row)
+        points, end = limits.follow_from(same[0], one.row)
     except (*FAILURES, ValueError):  # a logarithmic axis refuses a value that is not positive
         return TracedHalfCurve(None)
     distances = {i: _distance(limits, points, other) for i, other in enumerate(special)}
@@ -225,7 +225,7 @@ def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: R
     """Distance along the row from the point `one` to a curve, in lengths of a row; inf if not near."""
     if limits.kind != one.kind:
         return math.inf
-    place = limits.rows.scaled(one.row)
+    place = limits.rows.coordinate(one.row)
     best = math.inf
     for a, b in zip(points[:-1], points[1:], strict=True):
         low, high = sorted((a.row_coordinate, b.row_coordinate))
@@ -236,14 +236,14 @@ def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: R
         except Unsolvable:
             continue
         if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY.max_period_difference:
-            best = min(best, abs(limits.line.scaled(crossing.parameter) - limits.line.scaled(one.at)))
+            best = min(best, abs(limits.line.coordinate(crossing.parameter) - limits.line.coordinate(one.at)))
     return best
 
 
 def _near(limits: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
     """Whether the special point `one` may lie on a curve between its successive points `a` and `b`."""
-    x = limits.line.scaled(one.at)
-    ends = sorted(limits.line.scaled(p.parameter) for p in (a, b))
+    x = limits.line.coordinate(one.at)
+    ends = sorted(limits.line.coordinate(p.parameter) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
     on_line = ends[0] - CURVE_IDENTITY.max_chord_distance <= x <= ends[1] + CURVE_IDENTITY.max_chord_distance
     ratio = 1 + CURVE_IDENTITY.max_period_change

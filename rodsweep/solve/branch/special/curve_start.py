@@ -53,12 +53,12 @@ def first_point_of_curve(
         intervals=ceil(CURVE_START.interval_share * mesh.intervals),
         stages=stages_for(CURVE_SECANT.accuracy),
     )
-    orbit = rough.carry(orbit)
+    orbit = rough.interpolate(orbit)
     least = abs(deflection_of(orbit)) * BRANCH_START.min_deflection_amplitude / special.tip_y_max
     scale = Scale.of(orbit, line, least)
     matrix = BorderedMatrix(orbit, scale, workspace)
     ahead = scale.directional_derivative(orbit, tangent_at(orbit, scale, ALONG_DEFLECTION, matrix))
-    place = rows.scaled(row)
+    place = rows.coordinate(row)
     start = SolvedPoint(
         orbit=orbit,
         scale=scale,

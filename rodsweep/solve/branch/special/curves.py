@@ -90,7 +90,7 @@ class SpecialCurveProblem:
     workspace: NewtonWorkspace
     side: float = 1.0
 
-    def followed(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEnd]:
+    def follow_from(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEnd]:
         """(points of the curve in order from the special point `special` of a row, reason for the end of the
         curve); raises Unsolvable. row: value of the rows' parameter at `special`."""
         first = first_point_of_curve(special, self.line.name, self.rows, row, self.workspace)
@@ -128,7 +128,7 @@ class SpecialCurveProblem:
             rates = last.normal_derivatives
         point = self._family(last).correct_with_error(start, place, across, slope, rates, last)
         mesh = mesh_of(point.orbit)
-        predicted = start if mesh == mesh_of(start) else mesh.carry(start)
+        predicted = start if mesh == mesh_of(start) else mesh.interpolate(start)
         # Prediction and point can be compared only on the same mesh.
         off = relative_change(predicted, point.orbit.values - predicted.values)
         if len(behind) == 1:  # the prediction was the cycle of another row
@@ -143,7 +143,7 @@ class SpecialCurveProblem:
     def _predicted(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
         """(orbit, rows' axis coordinate) predicted a step beyond the last point; raises Unsolvable."""
         known = points[-CURVE_IDENTITY.max_interpolated_points :]
-        return self._mixed(known, lagrange_weights(arc_lengths(known), step), mesh_of(known[-1].orbit))
+        return self._weighted_sum(known, lagrange_weights(arc_lengths(known), step), mesh_of(known[-1].orbit))
 
     def _step_before_crushing(self, points: Sequence[SolvedPoint], step: float) -> float:
         """The step length `step`, shortened so that the predicted rod keeps half of the crushing margin."""
@@ -164,20 +164,22 @@ class SpecialCurveProblem:
             return step
         return float(brentq(distance, 0.0, step, rtol=CYCLE_CURVES.crushing_accuracy))
 
-    def _mixed(
+    def _weighted_sum(
         self, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
     ) -> tuple[Orbit, float]:
         """(orbit, rows' axis coordinate): sums over `points` with weights, (points,); raises Unsolvable."""
-        values = np.dot(weights, [mesh.carry(point.orbit).values for point in points])
-        at = float(np.dot(weights, [point.parameter for point in points]))
+        values = np.dot(weights, [mesh.interpolate(point.orbit).values for point in points])
         place = float(np.dot(weights, [point.row_coordinate for point in points]))
-        changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
-        return orbit_with_parameters(replace(mesh.carry(points[-1].orbit), values=values), changed), place
+        at = float(np.dot(weights, [point.parameter for point in points]))
+        orbit = replace(mesh.interpolate(points[-1].orbit), values=values)
+        return orbit_with_parameters(
+            orbit, {self.line.name: at, self.rows.name: self.rows.value(place)}
+        ), place
 
     def margins(self, point: SolvedPoint) -> Array:
         """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges and from
         `crushing_margin`, smallest h1, and largest tip y minus `min_amplitude`."""
-        x = self.line.scaled(point.parameter)
+        x = self.line.coordinate(point.parameter)
         y = point.row_coordinate
         rod = point.orbit.form.rod
         crushing = 1 - CYCLE_CURVES.crushing_margin - rod.F / rod.k1
@@ -211,12 +213,12 @@ class SpecialCurveProblem:
         found: dict[float, SolvedPoint] = {1.0: outer}
 
         def left(share: float) -> float:
-            found[share] = self.between(inner, outer, share)
+            found[share] = self.point_near_chord(inner, outer, share)
             return float(self.margins(found[share])[margin])
 
         return found[zero_along_step(left, ends, 1.0, CYCLE_CURVES.edge_bracket, CYCLE_CURVES.edge_bracket)]
 
-    def closes(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
+    def is_closed_by(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
         """Whether the step from `behind[-1]` to `point` passes the first point of the curve."""
         first = behind[0]
         last = behind[-1]
@@ -227,9 +229,9 @@ class SpecialCurveProblem:
         near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
         return len(behind) > CYCLE_CURVES.min_loop_points and 0 <= passed <= 1 and near
 
-    def between(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
+    def point_near_chord(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
         """The point near the fraction `share` of the chord from `one` to `other`; raises Unsolvable."""
-        start, place = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
+        start, place = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.normal(other.step_from(one))
         return self._family(other).correct(start, place, across, other.normal_derivatives)
 
@@ -238,7 +240,7 @@ class SpecialCurveProblem:
         Unsolvable."""
         length = other.row_coordinate - one.row_coordinate
         share = (place - one.row_coordinate) / length if length else 0.0
-        start, _ = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
+        start, _ = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
         return self._family(other).correct(start, place, ALONG_BRANCH, other.normal_derivatives)
 
     def _why_lost(self, last: SolvedPoint) -> CurveEnd:

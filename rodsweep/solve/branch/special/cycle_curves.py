@@ -183,7 +183,7 @@ def with_located_ends(curve: CycleCurve, plane: Plane, known: Sequence[Generalis
         for point in known:
             pairs = zip(plane.axes, point.values, (end.at, end.row), strict=True)
             if all(
-                abs(axis.scaled(a) - axis.scaled(b)) <= CURVE_IDENTITY.max_hopf_distance
+                abs(axis.coordinate(a) - axis.coordinate(b)) <= CURVE_IDENTITY.max_hopf_distance
                 for axis, a, b in pairs
             ):
                 return VanishingPoint(*point.values, point.errors[0], 2 * np.pi / point.frequency)

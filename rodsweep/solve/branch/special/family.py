@@ -129,7 +129,7 @@ class CycleFamily:
             if not finer.allowed:
                 break
             known = last.normal_derivatives
-            fine = self.correct(finer.carry(last.orbit), last.row_coordinate, normal, known, True)
+            fine = self.correct(finer.interpolate(last.orbit), last.row_coordinate, normal, known, True)
             # The solutions on both meshes may be displaced along the curve; the slope removes this
             # displacement from the error.
             off = abs(fine.parameter - last.parameter - slope * (fine.row_coordinate - last.row_coordinate))

@@ -82,7 +82,7 @@ def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, acc
     try:
         segment = BranchSegment(start, end)
         segment.start_on(mesh_of(end.orbit))
-        length, slope = _enclosed(kind, segment)
+        length, slope = _bracketed_zero(kind, segment)
         mesh = end.calibration.cheapest_mesh_for_parameter(SPECIAL_POINT.first_mesh_share * aim)
         # At least the number of stages with the smallest cost at this accuracy.
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
@@ -179,7 +179,7 @@ def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) ->
     )
 
 
-def _enclosed(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
+def _bracketed_zero(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
     """(arc length of an approximate zero of the test function, slope of the test function at this zero), by
     bracketing on a segment; raises Unsolvable."""
     start = segment.start

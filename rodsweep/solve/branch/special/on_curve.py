@@ -86,8 +86,8 @@ class NormalDerivatives:
         mesh = mesh_of(orbit)
         if mesh == self.mesh:
             return self.orbit
-        derivative = replace(self.mesh.carry(orbit), values=self.orbit[:-1])
-        return np.append(mesh.carry(derivative).values, self.orbit[-1])
+        derivative = replace(self.mesh.interpolate(orbit), values=self.orbit[:-1])
+        return np.append(mesh.interpolate(derivative).values, self.orbit[-1])
 
 
 @dataclass(frozen=True, eq=False)

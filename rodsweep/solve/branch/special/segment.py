@@ -39,7 +39,7 @@ class BranchSegment:
         """The cycle at the arc length `length` from `start`, with the matrix of a nearby orbit; raises
         Unsolvable."""
         if self._known is None:
-            start = self.mesh.carry(self.predicted(length))
+            start = self.mesh.interpolate(self.predicted(length))
         else:
             last, orbit, tangent = self._known
             # From the last cycle along its tangent: a secant method changes the length only a little.

@@ -115,12 +115,12 @@ class CrossingSearch:
             parts = self._parted(crossings, left, right, intervals.length) if crossings else None
             if parts is not None:
                 self.found.update(
-                    (self.problem.path.variable(crossing.at), crossing) for crossing in crossings
+                    (self.problem.path.coordinate(crossing.at), crossing) for crossing in crossings
                 )
                 intervals.divide(*parts)
                 return
             if b - a <= ARM_CROSSINGS.smallest_step * max(abs(a), abs(b)):
-                raise Unsolvable(f"the crossing near {self.problem.path.at(a)} could not be located")
+                raise Unsolvable(f"the crossing near {self.problem.path.rod_at(a)} could not be located")
         middle = a + share * (b - a)
         intervals.divide((a, middle), (middle, b))
 
@@ -137,7 +137,7 @@ class CrossingSearch:
         start = left.p
         highest = ARM_CROSSINGS.higher * max(left.largest_modulus, right.largest_modulus)
         for crossing in crossings:
-            p = self.problem.path.variable(crossing.at)
+            p = self.problem.path.coordinate(crossing.at)
             before = max(start, p - ARM_CROSSINGS.count_distance * length)
             behind = min(right.p, p + ARM_CROSSINGS.count_distance * length)
             beside = None
@@ -171,7 +171,7 @@ class CrossingSearch:
             for i in sorted(pairs, key=lambda i: abs(start.w[i].real)):
                 crossing = self._newton(start, i, (left.p, right.p), grows)
                 if crossing is not None and not any(_same(crossing, other) for other in found.values()):
-                    found[self.problem.path.variable(crossing.at)] = crossing
+                    found[self.problem.path.coordinate(crossing.at)] = crossing
                 if len(found) == abs(change):
                     return [found[p] for p in sorted(found)]
         return []
@@ -209,7 +209,7 @@ class CrossingSearch:
         # Newton's method may find another pair, which crosses in the opposite direction.
         if w.imag <= 0 or (slope.real > 0) != grows:
             return None
-        kind = ChangeKind.hopf if grows != self.problem.path.inverse else ChangeKind.hopf_reverse
+        kind = ChangeKind.hopf if grows != self.problem.path.is_compliance else ChangeKind.hopf_reverse
         error_of_p = blur + abs(w.real / slope.real)
         at, error = self.problem.path.value(p, error_of_p)
         error_of_w = (abs(slope.real) + abs(slope.imag)) * error_of_p  # at fixed p, and by the error of p

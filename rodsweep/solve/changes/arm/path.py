@@ -99,7 +99,7 @@ class ArmPath(PathProblem):
 
         For 14 arms with 4 to 132 unstable modes the estimate was 0.9 to 1.9 times the true number.
         """
-        rod = self.path.at(p)
+        rod = self.path.rod_at(p)
         _, weights, local = sampled(rod)
         return float(weights @ np.sqrt(np.maximum(rod.F * local.c3 * local.g, 0.0))) / math.pi
 
@@ -167,7 +167,7 @@ class ArmPath(PathProblem):
             if clear and line == 0 and found.unstable_count < ARM_PATH.followed_modes:
                 return EigenvalueCount(found.unstable_count, 0)
         known = self._followed.roots(p) if self._followed is not None else None
-        return ArmProblem(self.path.at(p)).count(line, known)
+        return ArmProblem(self.path.rod_at(p)).count(line, known)
 
     def counted(self, p: float, known: Complex, error: Array) -> int | None:
         """Number of unstable modes at p by a count; None if undecided.
@@ -177,7 +177,7 @@ class ArmPath(PathProblem):
         """
         if p not in self._counts:
             roots = KnownRoots(np.append(known, known.conj()), np.append(error, error))
-            number = ArmProblem(self.path.at(p)).count(0.0, roots).number
+            number = ArmProblem(self.path.rod_at(p)).count(0.0, roots).number
             if number is None:
                 return None
             self._counts[p] = number
@@ -189,7 +189,7 @@ class ArmPath(PathProblem):
         known: some of these eigenvalues, (k,), which come first. Raises FloatingPointError if no elements
         resolve the arm.
         """
-        rod = self.path.at(p)
+        rod = self.path.rod_at(p)
         return modes_near_axis(arm_determinant(rod), min(highest, hull_of(rod).box()[1]), known)
 
     def relaxation(self, p: float) -> tuple[float, float]:

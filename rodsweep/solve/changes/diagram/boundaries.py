@@ -81,7 +81,7 @@ class _ChangeBoundaries:
     def curve(self, seed: int) -> BoundaryCurve | None:
         """The curve through change number `seed`; None if it is not found."""
         one = self.seeds[seed]
-        x, y = (a.scaled(v) for a, v in zip(self.plane.axes, one.values, strict=True))
+        x, y = (a.coordinate(v) for a, v in zip(self.plane.axes, one.values, strict=True))
         return trace(one.sign, self.plane, (x, y), one.eigenvalue)
 
     def distance(self, curve: BoundaryCurve, seed: int) -> float:
@@ -110,7 +110,7 @@ def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
     has no point near the change."""
     if curve.sign != seed.sign:
         return math.inf
-    x, y = (a.scaled(v) for a, v in zip(plane.axes, seed.values, strict=True))
+    x, y = (a.coordinate(v) for a, v in zip(plane.axes, seed.values, strict=True))
     points = curve.scaled
     side = points[:, 1] - y
     # A change on a point of the curve must not fall between two chords by rounding.

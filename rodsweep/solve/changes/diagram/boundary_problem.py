@@ -131,7 +131,7 @@ class ChangeCurveProblem:
             return None
         return BoundaryPoint.on(found, behind[-1].tangent)
 
-    def closes(self, behind: Sequence[BoundaryPoint], there: BoundaryPoint) -> bool:
+    def is_closed_by(self, behind: Sequence[BoundaryPoint], there: BoundaryPoint) -> bool:
         """Whether the curve passes its first point within the step from the last of `behind` to `there`."""
         first = behind[0]
         last = behind[-1]

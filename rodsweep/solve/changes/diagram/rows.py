@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....determinant.parameter_path import Path
 from ....model.rod import Rod
-from ...point import solved
+from ...point import outcome_or_failure
 from ..along_path import Transitions, transitions
 from ..thresholds import Thresholds, ThresholdStatus, empty_thresholds, thresholds_with_status
 from ..unstable_modes import CHANGE_COUNTS
@@ -76,7 +76,7 @@ def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
         return _uniform(ThresholdStatus.failed, request.values, Motion.undecided, cause)
 
     # ValueError: the search needs a rod whose parameters are outside the allowed range.
-    return solved(lambda: _searched(rod, request), failed, more_failures=(ValueError,))
+    return outcome_or_failure(lambda: _searched(rod, request), failed, more_failures=(ValueError,))
 
 
 def _searched(rod: Rod, request: RowRequest) -> DiagramRow:

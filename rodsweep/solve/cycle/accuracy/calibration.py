@@ -56,13 +56,13 @@ class Calibration:
         """Named arrays for a checkpoint: errors and rates (5,), tails (3,), reach and mesh, without
         `error_growth`."""
         errors = {name: getattr(self, name) for name in ("space", "time", "fall", "power", "tails")}
-        numbers = {"reach": np.array(self.reach), "calibrated_mesh": self.mesh.numbers}
+        numbers = {"reach": np.array(self.reach), "calibrated_mesh": self.mesh.as_array}
         return errors | numbers
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, Array]) -> "Calibration":
         """The calibration from the named arrays that `Calibration.arrays` returns."""
-        mesh = OrbitMesh.from_numbers(arrays["calibrated_mesh"])
+        mesh = OrbitMesh.from_array(arrays["calibrated_mesh"])
         errors = {name: arrays[name] for name in ("space", "time", "fall", "power", "tails")}
         return cls(mesh=mesh, reach=float(arrays["reach"]), **errors)
 

@@ -86,9 +86,9 @@ class CoarserMeshes:
         with predicted errors; raises Unsolvable."""
         space = self._on(replace(self.mesh, order=mesh.order))
         time = self._on(replace(self.mesh, intervals=mesh.intervals))
-        fine_in_space = mesh.carry(space.orbit)
-        fine_in_time = mesh.carry(time.orbit)
-        coarse = mesh.carry(self._coarse.orbit)
+        fine_in_space = mesh.interpolate(space.orbit)
+        fine_in_time = mesh.interpolate(time.orbit)
+        coarse = mesh.interpolate(self._coarse.orbit)
         orbit = replace(fine_in_space, values=fine_in_space.values + fine_in_time.values - coarse.values)
         by_orders = np.exp(_fall(space.orbit) * (mesh.order - self.mesh.order))
         by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
@@ -105,7 +105,7 @@ class CoarserMeshes:
         return self._finer[mesh]
 
     def _solved(self, mesh: OrbitMesh, near: Orbit) -> ComparedCycle:
-        return ComparedCycle(newton(mesh.carry(near), self._tolerance, self._workspace))
+        return ComparedCycle(newton(mesh.interpolate(near), self._tolerance, self._workspace))
 
     def _errors(self, finer: ComparedCycle, factor: float) -> Array:
         """Errors of a finer mesh, (4,), in the order of `path_differences`, from the difference between the

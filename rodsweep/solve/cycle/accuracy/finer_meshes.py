@@ -56,7 +56,7 @@ def measured_calibration(found: ConvergedOrbit, accuracy: float, before: Calibra
     measured = ComparedCycle(found)
     finer, share = finer_meshes(mesh)
     tolerance = COMPARISON.newton_tolerance_share * accuracy
-    others = (newton(target.carry(found.orbit), tolerance, found.workspace) for target in finer)
+    others = (newton(target.interpolate(found.orbit), tolerance, found.workspace) for target in finer)
     space, time = (measured.difference(ComparedCycle(other)) for other in others)
     time = time / share
     if before is not None and before.mesh == mesh:

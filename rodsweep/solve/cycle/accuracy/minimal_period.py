@@ -71,4 +71,4 @@ def over_minimal_period(orbit: Orbit) -> Orbit:
         return orbit
     times = node_times(orbit.intervals, orbit.stages)
     # A symmetric orbit bends in odd harmonics only, so its divisor is odd and the shorter orbit is symmetric.
-    return replace(orbit, values=np.append(orbit.at(times / g), orbit.period / g))
+    return replace(orbit, values=np.append(orbit.states_at(times / g), orbit.period / g))

@@ -13,7 +13,7 @@ import numpy as np
 from ....arrays import Complex
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import CyclePath, measures_of
-from ...orbit.newton import ORBIT_NEWTON, ConvergedOrbit, at_orbit, linearised, multipliers_of, newton
+from ...orbit.newton import ORBIT_NEWTON, ConvergedOrbit, at_orbit, multipliers_of, newton, newton_step
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
 from ...point import Unsolvable
@@ -85,7 +85,7 @@ def refined_at_period(
             mesh = wanted_mesh(orbit, aim, orbit.stages)
             if mesh.intervals * mesh.unknowns**3 > REFINEMENT.max_retry_work:
                 raise
-            start = mesh.carry(orbit)
+            start = mesh.interpolate(orbit)
 
 
 def _predicted_cycle(
@@ -160,8 +160,8 @@ def _on(mesh: OrbitMesh, found: ConvergedOrbit, accuracy: float, parameter: str 
     multipliers are exact to rounding error; raises Unsolvable."""
     # `linearised` makes one more, quadratically convergent step, so half of the digits suffice here.
     last = (newton_tolerance(accuracy) / ORBIT_NEWTON.quadratic_error) ** 0.5
-    solution = newton(mesh.carry(found.orbit), last, found.workspace)
-    return linearised(require_similar_size(solution, found.orbit.size), parameter)
+    solution = newton(mesh.interpolate(found.orbit), last, found.workspace)
+    return newton_step(require_similar_size(solution, found.orbit.size), parameter)
 
 
 def require_similar_size(found: ConvergedOrbit, size: float) -> ConvergedOrbit:

@@ -71,7 +71,7 @@ class AmplitudeEquation:
         # The integrated beam grows at a slightly different rate; `excess` corrects the difference.
         return growth + self.excess * duration, self.linear_rate * duration
 
-    def slow(self, times: Array, states: Array) -> bool:
+    def is_slow_mode(self, times: Array, states: Array) -> bool:
         """Whether a motion grows or decays slowly and has the period of the leading mode. times: (k,);
         states: (k, unknowns)."""
         return max(
@@ -94,12 +94,12 @@ class AmplitudeEquation:
         """Whether a motion decays at least 1 - max_slow_growth times as fast as the leading mode, so that no
         cycle is near. times: (k,); states: (k, unknowns)."""
         growth, linear = self.growth(times, states)
-        known = self.coefficient > 0 and self.slow(times, states)
+        known = self.coefficient > 0 and self.is_slow_mode(times, states)
         return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION.max_slow_growth) + (
             self.noise if known else 0
         )
 
-    def jump(self, times: Array, states: Array) -> float | None:
+    def scale_to_cycle(self, times: Array, states: Array) -> float | None:
         """Factor by which the state is to be scaled: to the predicted amplitude of the cycle, or by a fixed
         factor if no amplitude is predicted.
 
@@ -107,7 +107,7 @@ class AmplitudeEquation:
         times: (k,); states: (k, unknowns).
         """
         growth, linear = self.growth(times, states)
-        if not self.slow(times, states):
+        if not self.is_slow_mode(times, states):
             return None
         size = float(np.linalg.norm(states[-1]))
         # d|z|/dt = linear |z| - c |z|^3, so linear - growth = c |z|^2.

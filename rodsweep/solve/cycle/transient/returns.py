@@ -105,7 +105,7 @@ def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
     for k in np.nonzero((angle[:-1] < 0) & (angle[1:] >= 0))[0]:
         h = run.times[k + 1] - run.times[k]
         ends = run.states[k : k + 2]
-        cubic = np.concatenate((ends, h * beam.rate(ends)))
+        cubic = np.concatenate((ends, h * beam.state_derivative(ends)))
         angles = (cubic @ row).tolist()
         low = 0.0
         high = 1.0

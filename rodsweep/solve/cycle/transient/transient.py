@@ -18,7 +18,7 @@ from ....discretization.beam import Beam
 from ....discretization.stress.form import StressForm
 from ....watch import SolvePosition, report
 from ....wording import counted
-from ...motion.integrator import INTEGRATOR, RunEnding, Trajectory, integrator, relaxed
+from ...motion.integrator import INTEGRATOR, RunEnding, Trajectory, integrator, relax_fast_components
 from ...motion.leading_mode import leading_mode
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import Unsolvable
@@ -103,7 +103,7 @@ class Transient:
                 return self._ended(status, end.message)
             z = run.states[-1]
             times, states = section_crossings(self.beam, run)
-            self._remember(run, times, states)
+            self._record_returns(run, times, states)
             # An unstable rod is excluded, because rounding errors hide the growth of so small a motion.
             if self.straight.stable is not False and np.linalg.norm(z) < RETURNS.straight_size:
                 return self._ended(CycleStatus.straight, "the motion has decayed to rounding error")
@@ -115,12 +115,13 @@ class Transient:
                 continue
             early = first
             first = False
-            if len(times) < 3 or (early and self.small.slow(times, states)):
+            if len(times) < 3 or (early and self.small.is_slow_mode(times, states)):
                 continue
             shown = self.trace is not None and self.trace.needs_more_motion(z)
             if not early and not shown and self.small.decays_as_linear(times, states):
                 return self._ended(CycleStatus.straight, "the motion decays at the rate of the leading mode")
-            factor = None if early or self.jumps >= TRANSIENT.max_jumps else self.small.jump(times, states)
+            jumps = not early and self.jumps < TRANSIENT.max_jumps
+            factor = self.small.scale_to_cycle(times, states) if jumps else None
             if factor is not None and self.trace and not self.trace.is_full:
                 continue  # a motion with a stored path has no jumps
             if factor is not None:
@@ -129,12 +130,12 @@ class Transient:
                 pull *= factor  # the stretch is quadratic in the deflection
                 z = self._jumped(scaled)
                 continue
-            cycle = None if self.small.decays_faster(times, states) else self._closed(run)
+            cycle = None if self.small.decays_faster(times, states) else self._cycle_from_returns(run)
             if cycle is not None:
                 return self._ended(*cycle.verdict(self.accuracy), cycle)
         return self._ended(CycleStatus.not_settled, self._not_settled(z))
 
-    def _remember(self, run: Trajectory, times: Array, states: Array) -> None:
+    def _record_returns(self, run: Trajectory, times: Array, states: Array) -> None:
         """Counts the returns and time steps of a run, and records times and bending moments of the returns.
         times, states: at the returns, (k,) and (k, unknowns)."""
         self.waited += max(len(times), 1)
@@ -148,7 +149,7 @@ class Transient:
         components. The earlier returns are discarded."""
         self.jumps += 1
         self.past.clear()
-        return relaxed(self.beam, z, self.mode.period)
+        return relax_fast_components(self.beam, z, self.mode.period)
 
     def _not_settled(self, z: Array) -> str:
         """Message that explains why the motion, now at the state z, (unknowns,), has not settled."""
@@ -178,7 +179,7 @@ class Transient:
     def _relaxed(self, z: Array) -> Array:
         """The state, (unknowns,), after the decay of the fast components of the start z, (unknowns,). A
         record of the motion, if any, begins at z."""
-        after = relaxed(self.beam, z, self.mode.period)
+        after = relax_fast_components(self.beam, z, self.mode.period)
         if self.trace:
             self.clock = INTEGRATOR.relaxation_share * self.mode.period
             self.trace.begin(z, after, self.clock)
@@ -205,7 +206,7 @@ class Transient:
             self.trace.add(run, self.clock)
         return run
 
-    def _closed(self, run: Trajectory) -> RefinedCycle | None:
+    def _cycle_from_returns(self, run: Trajectory) -> RefinedCycle | None:
         """The stable cycle near the end of a run, if the returns repeat and Newton's method converges; else
         None."""
         turns, distance = repetition([state for _, state in self.past][-1 - RETURNS.max_returns_per_period :])
@@ -214,13 +215,13 @@ class Transient:
                 f"the motion repeats within {distance:.0e}, but finer meshes have no cycle near this motion"
             )
             return None
-        if distance >= self._near_enough() or self.waited < self.next_newton:
+        if distance >= self._newton_start_distance() or self.waited < self.next_newton:
             return None
         self.next_newton = self.waited + TRANSIENT.returns_per_run * 2**self.failures
         self.failures = min(self.failures + 1, TRANSIENT.max_newton_failures)
         return self._cycle_near(run, self.past[-1][0] - self.past[-1 - turns][0], turns)
 
-    def _near_enough(self) -> float:
+    def _newton_start_distance(self) -> float:
         """Newton's method starts if the relative distance between two returns is less than this number."""
         distance = TRANSIENT.max_newton_distance / TRANSIENT.newton_divisor**self.failures
         settles = self.trace and self.waited < self.most_periods // 2

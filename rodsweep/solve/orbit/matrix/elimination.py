@@ -21,7 +21,7 @@ from ....model.compiled.compilation import compiled_for_vectors
 from ...backend.products import square_product
 from ..semidiscrete import Semidiscrete
 from .inversion import INVERSION, invert
-from .substitution import reduce, to_end
+from .substitution import map_start_to_end, reduce
 from .workspace import Factors
 
 
@@ -62,7 +62,7 @@ def eliminate(
         for a in range(2, s - 1):
             B[0, a] = right[a]
         reduce(B, columns[k], p)
-        to_end(B, columns[k], p, ends)
+        map_start_to_end(B, columns[k], p, ends)
         # `right` was computed for x_0 = M^-1, so that B[0, 1] acts on M x_0: M is between the maps of two
         # intervals.
         square_product(B[0, 1], so_far, factors.propagator, 1.0, 0.0)

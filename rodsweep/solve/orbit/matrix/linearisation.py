@@ -18,7 +18,7 @@ from .inversion import INVERSION, invert
 from .multipliers import nonzero_eigenvalues
 from .phase import phase, phase_change, phase_row
 from .right_sides import ParameterDerivatives, residuals, right_sides, variation_sides
-from .substitution import reduce, substitute, to_end
+from .substitution import map_start_to_end, reduce, substitute
 from .workspace import Factors, MatrixMemory, NewtonWorkspace
 
 NO_CHANGE = NodalChange(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_JUMP_CHANGE)
@@ -64,7 +64,7 @@ class Linearisation:
 def partial_multipliers(propagator: Array, orbit: Orbit) -> Complex:
     """Nonzero eigenvalues, (rank,), of the map S^-1 P over the solved part of the period. propagator: P, (n,
     n)."""
-    return nonzero_eigenvalues(orbit.symmetry.returned(propagator, orbit.form.layout))
+    return nonzero_eigenvalues(orbit.symmetry.apply_inverse(propagator, orbit.form.layout))
 
 
 def over_period(partial: Complex, orbit: Orbit) -> Complex:
@@ -182,7 +182,7 @@ def reduced_residuals(
     residuals(points, duration, rod, columns[:, :, 0])
     for k in range(K):
         reduce(factors.blocks[k], columns[k], p)
-        to_end(factors.blocks[k], columns[k], p, ends)
+        map_start_to_end(factors.blocks[k], columns[k], p, ends)
     return columns, ends
 
 
@@ -209,7 +209,7 @@ def reduced_variations(
     variation_sides(values, rod, along, variations, columns)
     for k in range(K):
         reduce(factors.blocks[k], columns[k], p)
-        to_end(factors.blocks[k], columns[k], p, ends)
+        map_start_to_end(factors.blocks[k], columns[k], p, ends)
     return columns, ends
 
 

@@ -15,7 +15,7 @@ from scipy.linalg import schur
 from ....arrays import Array, Complex
 from ..orbit import Orbit
 from ..semidiscrete import Semidiscrete
-from .substitution import substitute, to_end
+from .substitution import map_start_to_end, substitute
 from .workspace import Factors
 
 
@@ -56,7 +56,7 @@ class ShootingIntervals:
         columns = np.ascontiguousarray(columns)
         for end, (first, last) in zip(ends, pairwise(self.edges), strict=True):
             for k in range(first, last):
-                to_end(factors.blocks[k], columns[k], p, end)
+                map_start_to_end(factors.blocks[k], columns[k], p, end)
         return ends
 
     def substituted(self, factors: Factors, starts: Array, columns: Array, p: Semidiscrete) -> Array:
@@ -82,7 +82,7 @@ class ShootingIntervals:
             lasting = np.flatnonzero(np.abs(np.diag(triangle)) > SHOOTING_INTERVALS.negligible_multiplier)
             start = ahead = ahead[:, : lasting[-1] + 1] if len(lasting) else ahead
             triangle = np.eye(start.shape[1])
-            for A in (*others, orbit.symmetry.returned(last, orbit.form.layout)):
+            for A in (*others, orbit.symmetry.apply_inverse(last, orbit.form.layout)):
                 ahead, R = np.linalg.qr(A @ ahead)
                 triangle = R @ triangle
         # The map is `ahead triangle start^T`, which has the nonzero eigenvalues of this matrix.

@@ -23,7 +23,7 @@ def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
     mass = p.mass
     t = np.empty((count, n))
     u = np.empty((count, n))
-    _first_two(B, columns, p, t, u)
+    _first_two_stages(B, columns, p, t, u)
     for i in range(2, s):
         for m in range(count):
             for r in range(n):
@@ -37,7 +37,7 @@ def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
 
 
 @compiled_for_vectors
-def to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
+def map_start_to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
     """Replaces `ends`, the changes of the start of an interval, (columns, n), by the changes of its end.
     columns: reduced right-hand sides of its stages, (s, columns, n)."""
     # The map of an interval acts on M x_0, as in `eliminate`.
@@ -47,7 +47,7 @@ def to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
 
 
 @compiled_for_vectors
-def _first_two(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -> None:
+def _first_two_stages(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -> None:
     """Writes the changes of the first two stages into t and u, (columns, n). y: right-hand sides, of which
     only the first two stages are used, (s, columns, n); the changes of later stages are taken as 0."""
     d = p.differentiation
@@ -109,17 +109,17 @@ def substitute(start: Array, columns: Array, p: Semidiscrete, factors: Factors, 
                     y[i, m, r] = columns[k, i, m, r] - d[i, 0] * scaled[m, r]
         # In reverse order, because a stage depends on the later stages.
         for a in range(s - 1, 1, -1):
-            _back_to(B, a, columns[k], scaled, out[k])
+            _substitute_stage(B, a, columns[k], scaled, out[k])
             for m in range(count):
                 for r in range(n):
                     for i in range(2):
                         y[i, m, r] -= d[i, a + 1] * mass[r] * out[k, a, m, r]
-        _first_two(B, y, p, out[k, 0], out[k, 1])
+        _first_two_stages(B, y, p, out[k, 0], out[k, 1])
         first[:] = out[k, s - 1]
 
 
 @compiled_for_vectors
-def _back_to(B: Array, a: int, columns: Array, scaled: Array, out: Array) -> None:
+def _substitute_stage(B: Array, a: int, columns: Array, scaled: Array, out: Array) -> None:
     """Writes the changes of stage a >= 2 into out[a]. columns: reduced right-hand sides, (s, columns, n).
     scaled: M times the changes of the start, (columns, n). out: changes of all stages, (s, columns, n), in
     which later stages are known."""

@@ -19,7 +19,7 @@ from ....determinant.arm.completeness import (
 )
 from ....determinant.arm.family import ARM_FAMILY, ArmFamily, propagators_at
 from ....determinant.arm.hull.region import Hull, PathHulls, hull_at
-from ....determinant.arm.value import ARM_VALUE, chain_along, chain_value
+from ....determinant.arm.value import ARM_VALUE, chain_along, determinant_along_chain
 from ....determinant.roots.roots import roots_of_parabola, sort_descending
 from ....determinant.value import DETERMINANT, second_difference
 from ....model.compiled.compilation import compiled
@@ -68,10 +68,10 @@ def _settled(
 @compiled
 def two_roots_of_arm(middle: complex, level: PropagatorsWithSlopes) -> tuple[complex, complex]:
     """The two roots of D near a real `middle`, from the quadratic Taylor polynomial of D about `middle`."""
-    D, D_w, S, _ = chain_value(middle, level[0], level[1])
+    D, D_w, S, _ = determinant_along_chain(middle, level[0], level[1])
     h = DETERMINANT.second_difference_step * abs(middle)
-    after = chain_value(middle + h, level[0], level[1])
-    before = chain_value(middle - h, level[0], level[1])
+    after = determinant_along_chain(middle + h, level[0], level[1])
+    before = determinant_along_chain(middle - h, level[0], level[1])
     second = second_difference(after, before, S, h)
     return roots_of_parabola(middle, complex(D.real, 0.0), complex(D_w.real, 0.0), complex(second.real, 0.0))
 

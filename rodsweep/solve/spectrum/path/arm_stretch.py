@@ -110,7 +110,7 @@ def proves_point(path: Path, found: ArmInterval, p: float, request: SpectrumRequ
     roots = _roots(path, p, request, further)
     if roots is None or len(roots.w) < request.modes:
         return False
-    arm = arm_determinant(path.at(p))
+    arm = arm_determinant(path.rod_at(p))
     line = line_for_proof(complex(roots.w[request.modes - 1]), float(roots.error[request.modes - 1]))
     try:
         return prove_complete(line, roots.w, roots.error, arm, hull_at(found.hulls, p))[0]
@@ -122,7 +122,7 @@ def follow_with(
     path: Path, p: Array, request: SpectrumRequest, further: int, before: ArmInterval | None
 ) -> ArmInterval | None:
     """As `follow_interval` of p, (n,), with exactly `further` modes in addition to the wanted modes."""
-    first = _carried(before, float(p[0]), request, further)
+    first = _eigenvalues_of_previous_interval(before, float(p[0]), request, further)
     if first is None:
         first = first_eigenvalues(path, float(p[0]), request, further)
     n = len(p)
@@ -169,7 +169,7 @@ def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[
         if not is_smooth(path, low, high):
             return None
         places = np.linspace(low, high, ARM_STRETCH.hull_arms)
-        hulls = hulls_along([path.at(x) for x in places.tolist()], places)
+        hulls = hulls_along([path.rod_at(x) for x in places.tolist()], places)
         W = ARM_STRETCH.headroom * float(np.abs(first).max())
         line = min(ARM_STRETCH.headroom * float(first[modes - 1].real), 0.0)
         hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
@@ -185,7 +185,9 @@ def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[
     return None if family is None else (family, hulls)
 
 
-def _carried(before: ArmInterval | None, p: float, request: SpectrumRequest, further: int) -> Complex | None:
+def _eigenvalues_of_previous_interval(
+    before: ArmInterval | None, p: float, request: SpectrumRequest, further: int
+) -> Complex | None:
     """Eigenvalues, (m,), at p, the last point of the previous interval; None unless all points of this
     interval are proved complete.
     """
@@ -210,7 +212,7 @@ def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Root
     """
     try:
         modes = request.modes + further
-        search = Search(path.at(p), replace(request, modes=modes, certify=False), wanted=modes)
+        search = Search(path.rod_at(p), replace(request, modes=modes, certify=False), wanted=modes)
         with np.errstate(all="ignore"):
             search.outcome()
     except FAILURES:
@@ -228,7 +230,7 @@ def count_at(path: Path, found: ArmInterval, p: float, modes: int, here: Track) 
     w, error = leading_eigenvalues(here, here.w.shape[1])
     if w[0, -1].real > 0:  # more modes grow, and the count would include them
         return 0
-    determinant = ArmDeterminant(path.at(p), propagators_in_family(found.family, p))
+    determinant = ArmDeterminant(path.rod_at(p), propagators_in_family(found.family, p))
     hull = hull_at(found.hulls, p)
     for line in lines_for_count(w[0].tolist(), modes):
         number = count_right_of(line, determinant, hull, w[0], error[0]).number

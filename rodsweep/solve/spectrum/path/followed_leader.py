@@ -63,7 +63,7 @@ def _of_uniform(rod: Rod, near: complex, accuracy: float) -> LeadingEigenvalue |
     """
     w = refine_eigenvalue(near, rod.coefficients)
     error, _, _ = root_error(w, rod.coefficients)
-    if not _is_of_its_kind(w, error, near, accuracy):
+    if not _matches_neighbour(w, error, near, accuracy):
         return None
     number = 2 if w.imag else 1
     leads = any(count_right_of(line, rod).number == number for line in _lines(w))
@@ -91,7 +91,7 @@ def _of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | Non
     w = w[order]
     error = error[order]
     leader = complex(w[0])
-    if not _is_of_its_kind(leader, float(error[0]), first, accuracy) or not are_distinct_roots(w, error):
+    if not _matches_neighbour(leader, float(error[0]), first, accuracy) or not are_distinct_roots(w, error):
         return None
     pairs = w.imag != 0
     known = KnownRoots(np.append(w, w[pairs].conj()), np.append(error, error[pairs]))
@@ -103,7 +103,7 @@ def _of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | Non
     return LeadingEigenvalue(leader, float(error[0]), w) if leads else None
 
 
-def _is_of_its_kind(w: complex, error: float, near: complex, accuracy: float) -> bool:
+def _matches_neighbour(w: complex, error: float, near: complex, accuracy: float) -> bool:
     """Whether w has a relative error of at most `accuracy`, and is real or complex like the eigenvalue `near`
     of the neighbouring rod."""
     return error <= accuracy * abs(w) and w.imag >= 0 and (w.imag == 0) == (near.imag == 0)

@@ -129,7 +129,7 @@ def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalu
 
 
 @compiled
-def _settled(
+def _iterate_to_convergence(
     first: CorrectedEigenvalue, crowding: float, exact: bool, rod: Coefficients, direction: Coefficients
 ) -> tuple[CorrectedEigenvalue, float]:
     """(last Newton step, error) of an eigenvalue of a uniform rod, after Newton steps until `converged_error`
@@ -186,7 +186,9 @@ def _correct_all(
     for rank in range(m):
         k = order[rank]
         if guess[k].imag >= 0:
-            last, error[k] = _settled(first[k], curvature_estimate(w, k), rank <= modes, rod, direction)
+            last, error[k] = _iterate_to_convergence(
+                first[k], curvature_estimate(w, k), rank <= modes, rod, direction
+            )
             if not store_root(track, i, k, mate[k], last):
                 return False
     sort_descending(w, order)

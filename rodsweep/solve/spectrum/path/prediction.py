@@ -136,7 +136,7 @@ def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, 
 
 
 @compiled
-def _two_ahead(
+def _predict_pair(
     track: Track, i: int, two: tuple[int, int], steps: tuple[float, float]
 ) -> tuple[complex, complex, bool]:
     """Returns (guess, guess, undecided) for the two eigenvalues `two` at point i; the guess with the larger
@@ -203,7 +203,7 @@ def predict_eigenvalues(track: Track, i: int, p: Array, guess: Complex, decided:
         elif j < 0:
             guess[k] = complex(w[k].real + slope[k].real * ahead, 0.0)
         elif j > k:
-            one, other, undecided = _two_ahead(track, i, (k, j), steps)
+            one, other, undecided = _predict_pair(track, i, (k, j), steps)
             set_two_guesses(w, (k, j), (one, other), guess)
             if undecided:
                 decided[k] = j

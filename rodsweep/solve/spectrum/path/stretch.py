@@ -59,7 +59,7 @@ class Stretch:
     @property
     def path_variables(self) -> Array:
         """Path variable p of every rod, (n,)."""
-        return 1 / self.values if self.path.inverse else self.values
+        return 1 / self.values if self.path.is_compliance else self.values
 
     @property
     def coefficients(self) -> Array:

@@ -114,7 +114,7 @@ class TorusFunction:
             start /= np.linalg.norm(start)
         self.border = start.conj()
         K, s, n = matrix.orbit.states.shape
-        self.vectors = matrix.back_substitute(_parts(start), np.zeros((K, s, 2, n)))
+        self.vectors = matrix.back_substitute(_real_and_imaginary(start), np.zeros((K, s, 2, n)))
         n = len(start)
         self.bordered = np.zeros((n + 1, n + 1), dtype=complex)
         self.bordered[:n, :n] = matrix.propagator - pair * p.symmetry
@@ -139,7 +139,7 @@ class TorusFunction:
         right[:-1] -= end + ends[0] + 1j * ends[1]
         change = np.linalg.solve(self.bordered, right)
         self.multiplier += complex(change[-1])
-        self.vectors = self.vectors + self.matrix.back_substitute(_parts(change[:-1]), columns)
+        self.vectors = self.vectors + self.matrix.back_substitute(_real_and_imaginary(change[:-1]), columns)
 
 
 def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
@@ -162,7 +162,7 @@ def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
     raise Unsolvable("the iteration for the test function of the special point does not converge")
 
 
-def _parts(vector: Array) -> Array:
+def _real_and_imaginary(vector: Array) -> Array:
     """Real and imaginary part, (2, n), of a complex vector, (n,)."""
     return np.array([vector.real, vector.imag])
 
