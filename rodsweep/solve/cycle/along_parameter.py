@@ -166,8 +166,9 @@ def relative_parameter_difference(one: StressForm, other: StressForm, name: str)
 def orbit_near_prediction(
     predicted: Orbit, tolerance: float, workspace: NewtonWorkspace, name: str
 ) -> ConvergedOrbit:
-    """The orbit near `predicted` with its tangent along the parameter `name`, by Newton's method; raises
-    Unsolvable if the orbit is farther from `predicted` than PREDICTION.max_prediction_distance."""
+    """The orbit near `predicted` with its tangent along the parameter `name`, by Newton's method to a
+    relative tolerance; raises Unsolvable if the orbit is farther from `predicted` than
+    PREDICTION.max_prediction_distance."""
     found = newton(predicted, tolerance, workspace, name)
     if _distance(predicted, found) > PREDICTION.max_prediction_distance:
         raise Unsolvable("the cycle is too far from its prediction")

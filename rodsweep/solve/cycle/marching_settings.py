@@ -36,9 +36,9 @@ class MarchingSettings:
     this fraction of the accuracy; the rest of the accuracy is left for the error of integrating a nearby
     rod."""
     limit_distance_ratio: float = 2.0
-    """A limiting rod is approximated by two rods, whose distances from the limit have this ratio. Cycles
-    change in proportion to the distance, so the difference of the two cycles is the error of the nearer
-    rod."""
+    """A limiting rod is approximated by an integrated rod and, for the error estimate, by a second rod that
+    is farther from the limit by this factor. Cycles change in proportion to the distance from the limit, so
+    with the factor 2 the difference of the two cycles is the error of the nearer rod."""
     max_measured_tolerance: float = 2e-8
     """Largest local tolerance of the integration from which the cycle is measured. With a larger tolerance,
     the time steps (20 per period at an accuracy of 1e-3) are too long for cubic interpolation: time

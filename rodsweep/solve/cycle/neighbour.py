@@ -45,9 +45,9 @@ class NeighbourSettings:
     """A mesh is sufficient for the next cycle if the error of the present cycle is at most this fraction of
     the accuracy."""
     max_new_mesh_cost: float = 0.8
-    """A new mesh replaces a sufficient mesh if it costs at most this fraction of the sufficient mesh."""
+    """A sufficient mesh is replaced by a new mesh that costs at most this fraction of the sufficient mesh."""
     max_new_mesh_cost_when_calibrated: float = 0.5
-    """Limit instead of `max_new_mesh_cost` if the errors were measured at the present cycle: measuring the
+    """This limit replaces `max_new_mesh_cost` if the errors were measured at the present cycle: measuring the
     errors of a new mesh costs as much as three cycles."""
 
 
@@ -83,7 +83,8 @@ class Neighbour:
         eigenvalues: Complex = UNKNOWN_EIGENVALUES,
     ) -> "Neighbour":
         """Data of the cycle `found`, which was solved with its tangent. before: data of the previous rod of
-        the chain, or None. name: varied parameter. accuracy: requested relative accuracy."""
+        the chain, or None. name: varied parameter. accuracy: requested relative accuracy. eigenvalues: as in
+        `Neighbour`."""
         branch = predictor_from(found.converged, before.predictor if before else None, name)
         return cls(branch, *_next_mesh(found, before, name, accuracy), eigenvalues)
 

@@ -4,8 +4,8 @@ from ..status import PointStatus
 
 
 class CycleStatus(PointStatus):
-    """Status of a point of the task limit_cycle with `method: collocation`. A status is a success if it means
-    that the final state of the rod is known."""
+    """Status of a point of the task limit_cycle with `method: collocation`. A status is a success if the
+    final state of the rod is known."""
 
     cycle = (
         0,

@@ -48,8 +48,8 @@ class CycleErrors:
 
 
 def largest_error(period: Array | float, amplitude: Array | float, extrema: Array | float) -> Array:
-    """`CycleErrors.largest` from the errors of period, largest y and other extrema: numbers, or arrays of a
-    common shape."""
+    """`CycleErrors.largest` for errors of the period, the largest y (`amplitude`) and the other extrema:
+    numbers, or arrays of a common shape."""
     largest: Array = np.maximum(
         np.maximum(period, amplitude), np.asarray(extrema) / CYCLE_ERRORS.extrema_tolerance_ratio
     )

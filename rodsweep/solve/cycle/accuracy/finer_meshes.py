@@ -23,7 +23,8 @@ class ComparisonSettings:
     """Settings for the two finer meshes by which the errors of a mesh are measured."""
 
     more_orders: int = 2
-    """Increase of the order on the mesh finer in space, which reduces the errors to a tenth or less."""
+    """Increase of the order from a mesh to the mesh finer in space, so that the errors fall to a tenth or
+    less."""
     more_intervals: float = 0.4
     """Additional time intervals of the mesh finer in time, as a fraction of the number of intervals of the
     mesh. A known fraction of the error in time remains on the finer mesh."""

@@ -43,7 +43,7 @@ def common_divisor(path: CyclePath, present: float) -> int:
 
 @compiled
 def _divisor_of(sizes: Array, present: float) -> int:
-    """`common_divisor` from the sizes of the harmonics 1, 2, ..., (harmonics,); 0 if all sizes are 0."""
+    """`common_divisor` for sizes of the harmonics 1, 2, ..., (harmonics,), and the same limit `present`."""
     divisor = 0
     least = present * sizes.max()
     for k in range(len(sizes)):

@@ -95,7 +95,8 @@ def _predicted_cycle(
     orbit near the cycle.
 
     The most accurate cycle is returned if no allowed mesh reaches the accuracy. Raises Unsolvable if a
-    coarser mesh has no such cycle, if the errors do not decrease, or if the cycle is far from its prediction.
+    coarser mesh has no cycle near `near`, if the errors do not decrease, or if the cycle is far from its
+    prediction.
     """
     coarser = CoarserMeshes(mesh, near, accuracy, workspace)
     last = inf
@@ -157,7 +158,7 @@ def calibrated_cycle(
 
 def _on(mesh: OrbitMesh, found: ConvergedOrbit, accuracy: float, parameter: str | None) -> ConvergedOrbit:
     """The orbit `found` solved again on the mesh `mesh`, with a matrix assembled at the solution, so that its
-    multipliers are exact to rounding error; raises Unsolvable."""
+    multipliers are exact to rounding error; raises Unsolvable. parameter: of the tangent, or None."""
     # `linearised` makes one more, quadratically convergent step, so half of the digits suffice here.
     last = (newton_tolerance(accuracy) / ORBIT_NEWTON.quadratic_error) ** 0.5
     solution = newton(mesh.interpolate(found.orbit), last, found.workspace)
@@ -199,8 +200,8 @@ def newton_tolerance(accuracy: float) -> float:
 
 
 def matrix_distance(accuracy: float) -> float:
-    """Largest relative distance between a cycle of a given relative accuracy and the orbit at which its
-    matrix was assembled, so that multipliers and tangent are accurate enough."""
+    """Largest relative distance between a cycle and the orbit at which the matrix of the cycle was assembled,
+    for multipliers and tangent of the relative accuracy `accuracy`."""
     return min(
         max(REFINEMENT.matrix_distance_share * accuracy, REFINEMENT.min_matrix_distance),
         REFINEMENT.max_matrix_distance,

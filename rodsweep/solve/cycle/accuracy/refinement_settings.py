@@ -23,7 +23,7 @@ class RefinementSettings:
     """Upper limit of the relative distance in `matrix_distance`."""
     multiplier_error_factor: float = 10.0
     """Relative error of the multipliers divided by the sum of two numbers: the relative distance between the
-    cycle and the orbit of the matrix, and the error of the trivial multiplier."""
+    cycle and the orbit at which the matrix was assembled, and the error of the trivial multiplier."""
     finest_accuracy: float = 1e-12
     """Smallest relative accuracy for which a mesh is chosen; smaller errors are rounding errors."""
     first_accuracy: float = 1e-7

@@ -65,7 +65,7 @@ def until_returns(row: Array, z: Array, wanted: int) -> RunLimit:
 
 
 class EarlyEnd(NamedTuple):
-    """Failure of a run before its limit. left_the_model: whether the rod left the range of the model."""
+    """Failure of a run before its limit. left_the_model: whether the model is no longer valid for the rod."""
 
     left_the_model: bool
     message: str

@@ -51,7 +51,7 @@ class ShapeTrace:
 
     def begin(self, z: Array, relaxed: Array, duration: float) -> None:
         """Records the start state z, (unknowns,). The relaxation from z to `relaxed`, (unknowns,), over
-        `duration`, in tau2, is not recorded, because it is too short to be visible."""
+        `duration`, in tau2, is too short to be visible and is not recorded."""
         self._keep(np.zeros(1), z[None])
 
     def add(self, run: Trajectory, clock: float) -> None:

@@ -1,4 +1,4 @@
-"""Recognition of quasiperiodic motions: motions on a torus, with two frequencies, which never repeat.
+"""Recognition of quasiperiodic motions, which lie on a torus, have two frequencies and never repeat.
 
 A torus surrounds a cycle whose largest multipliers are a complex pair outside the unit circle. The returns of
 the motion to the Poincare section lie on a closed curve around the return of the cycle, and advance on this

@@ -32,8 +32,8 @@ class TransientSettings:
     """Tip's y, in L, at a restart in the leading mode; the relative nonlinear change of the growth rate is
     about the square of this number."""
     min_unit_distance: float = 3e-8
-    """A periodic orbit with 1 - |mu| less than this, mu: largest multiplier, is no limit cycle, but belongs
-    to a family of orbits with any amplitude."""
+    """A periodic orbit with 1 - |mu| < min_unit_distance is no limit cycle, but belongs to a family of orbits
+    with any amplitude; mu: largest nontrivial multiplier."""
     max_stored_returns: int = 400
     """Number of last returns that are stored for the recognition of a torus."""
     max_periodic_distance: float = 1e-4
