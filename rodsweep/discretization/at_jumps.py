@@ -130,8 +130,8 @@ def _end_from_inside(order: int, starts: bool, stops: bool, first: bool) -> Arra
     """Weights, (p + 1,), that extrapolate from the nodes of an element, except nodes at jumps, to one end of
     the element.
 
-    starts, stops: whether a jump is at the first, and at the last node. first: whether to extrapolate to the
-    first node; otherwise to the last node.
+    starts: whether a jump lies at the first node. stops: whether a jump lies at the last node. first: whether
+    to extrapolate to the first node; otherwise to the last node.
     """
     x = gauss_lobatto(order)[0]
     # A value at a jump is a mean over both sides, not a value of the polynomial.

@@ -62,7 +62,8 @@ class Parameter:
         """Raises ValueError if the parameter scales both stiffnesses and drags."""
         if len({name in STIFFNESSES for name in self.scales}) > 1:
             raise ValueError(
-                f"{self.name} scales {' and '.join(self.scales)}: no coordinate is affine in both"
+                f"{self.name} scales {' and '.join(self.scales)}; "
+                "a parameter may scale either stiffnesses or drags"
             )
 
     @property

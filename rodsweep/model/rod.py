@@ -78,7 +78,7 @@ class Rod:
             coefficients = Coefficients(*map(float, coefficients_of(values)))
         object.__setattr__(self, "_coefficients", coefficients)
         if coefficients is None and not self.crushing_force > self.F:
-            raise Crushed(f"F = {self.F} is not below {self.crushing_force:.15g}, which crushes the arm")
+            raise Crushed(f"F = {self.F} is not below the crushing force {self.crushing_force:.15g}")
         if coefficients is not None and not coefficients.nu > 0:
             raise Crushed(f"F = {self.F} is not below k1 = {self.k1}")
 

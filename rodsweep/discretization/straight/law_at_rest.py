@@ -161,7 +161,9 @@ def _on_sides(law: Law, nu: Array, c1: Array, c3: Array) -> LawDerivatives:
 
 
 def inverse_derivatives(of: LawDerivatives) -> LawDerivatives:
-    """Derivatives of g = f^-1 from the derivatives `of` f, by differentiating f(g(y)) = y three times."""
+    """Derivatives of the inverse function g of f, by differentiating f(g(y)) = y three times. of: derivatives
+    of f.
+    """
     f1, f2, f3 = of
     g1 = np.linalg.inv(f1)
     g2 = -np.einsum("...ai,...ijk,...jb,...kc->...abc", g1, f2, g1, g1)

@@ -93,8 +93,8 @@ class KernelCache(_Cache):
                 failures.append(f"{directory} ({error.strerror})")
         if failures:
             _warn_once(
-                f"compiled formulas cannot be kept in {' or '.join(failures)}: the next run takes minutes to "
-                "compile them again; NUMBA_CACHE_DIR names another directory"
+                f"compiled formulas cannot be stored in {' or '.join(failures)}: the next run takes minutes "
+                "to compile the formulas again; set NUMBA_CACHE_DIR to another directory"
             )
 
     def _name(self, sig: Any, codegen: Any, parts: dict[FunctionType, FunctionText]) -> str:

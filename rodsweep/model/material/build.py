@@ -106,9 +106,10 @@ class Build:
         return np.array([0.0, 1.0]) if self.profile is None else self.profile.breaks
 
     def relative_crushing_force(self, taper: float) -> float:
-        """Force that crushes the weakest section of an arm with the taper `taper`, divided by k1 at the base.
+        """Force that crushes the weakest section of an arm, divided by k1 at the base; inf if no force
+        crushes the arm.
 
-        inf if no force crushes the arm.
+        taper: taper of the arm.
         """
         return self.constitutive_law.largest_load * _smallest_factor(self.profile, taper, "k1")
 
