@@ -127,8 +127,8 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def _end_from_inside(order: int, starts: bool, stops: bool, first: bool) -> Array:
-    """Weights, (p + 1,), that extrapolate from the nodes of an element, except nodes at jumps, to one end of
-    the element.
+    """Weights, (p + 1,), that extrapolate from the nodes of an element of order p to one end, without nodes
+    at jumps.
 
     starts: whether a jump lies at the first node. stops: whether a jump lies at the last node. first: whether
     to extrapolate to the first node; otherwise to the last node.

@@ -108,7 +108,10 @@ stiffness."""
 
 
 def stiffness(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
-    """The table row of a stiffness that may be inf. rigid: adjective for a rod with infinite stiffness."""
+    """The table row of a stiffness that may be inf.
+
+    name, symbol, meaning: fields of `Parameter`. rigid: adjective for a rod with infinite stiffness.
+    """
     return Parameter(
         name=name,
         symbol=symbol,

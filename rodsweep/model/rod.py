@@ -224,7 +224,7 @@ class Rod:
         return self.build.section_changes(self.sections(u), self.F, self.taper, slopes, u)
 
     def material_in_space(self, twist_stiffness: float, twist_drag: float) -> Material:
-        """Nonlinear balance of the uniform rod in space; twist stiffness in k3, twist drag in gamma2 L^2."""
+        """Material of the uniform rod in space. twist_stiffness: in k3. twist_drag: in gamma2 L^2."""
         c1, c2, bending = self.material.compliance
         axial, normal, rotational = self.material.drag
         compliance = np.array([c1, c2, c2, 1 / twist_stiffness, bending, bending])

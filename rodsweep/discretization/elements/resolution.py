@@ -88,10 +88,9 @@ def required_order(wave_number: float, accuracy: float) -> float:
 
 
 def resolution_for(wave_number: float, accuracy: float, largest_order: int | None = None) -> Resolution:
-    """The smallest number of elements, and then the lowest order, that resolve a wave number, in 1/L, to a
-    relative accuracy.
+    """The smallest number of elements, and then the lowest order, that resolve a wave to a relative accuracy.
 
-    largest_order: maximum order of an element, `RESOLUTION.max_order` by default.
+    wave_number: in 1/L. largest_order: maximum order of an element, `RESOLUTION.max_order` by default.
     """
     largest_order = largest_order or RESOLUTION.max_order
     max_elements = RESOLUTION.max_unknowns // (3 * largest_order) + 2  # more unknowns fail anyway

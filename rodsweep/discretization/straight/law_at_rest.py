@@ -96,7 +96,9 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
 
 
 def _fill_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> None:
-    """Writes the derivatives of the law at the nodes where the material jumps into `found`."""
+    """Writes the derivatives of the law at the nodes where the material jumps into `found`. nodal: the rod at
+    the nodes.
+    """
     at = nodal.jumps
     sides = nodal.sides
     nu = sides[..., 0]

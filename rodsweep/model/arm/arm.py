@@ -217,7 +217,7 @@ class SlenderArm:
 
     @property
     def own_drag(self) -> Drag:
-        """Drag at the base as the rod uses it: the estimate with the name in the field `drag`."""
+        """Drag of the rod at the base: the drag estimate with the name in the field `drag`."""
         return self.drags[DRAGS.index(self.drag)]
 
     def gamma3_with(self, drag: Drag) -> float:

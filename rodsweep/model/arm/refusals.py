@@ -120,7 +120,7 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
     """Raises InputError if an arm with segments also has a cross-section, or a length that is not the sum of
     the segment lengths.
 
-    Also raises InputError if a segment has no Young's modulus and the arm has none either.
+    Also raises InputError if neither a segment nor the arm has a Young's modulus.
     """
     for name in (*SECTION_SIDES[0], *SECTION_SIDES[1]):
         if getattr(arm, name) is not None:

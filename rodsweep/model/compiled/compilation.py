@@ -45,7 +45,7 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def compiled_for_vectors(function: Callable[P, R]) -> Callable[P, R]:
-    """The function `function`, compiled like in `compiled`, but with reordered sums, which is five times as
+    """The function `function`, compiled as by `compiled` but with sums in any order, which is five times as
     fast.
 
     Infinities and nan behave as usual. The function is always inlined in its callers. A shared copy would

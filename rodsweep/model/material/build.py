@@ -145,8 +145,8 @@ class Build:
         """Properties of the cross-sections at points u, (points,), under the tip force F. No point may be a
         break of the profile.
 
-        Compliances are those of the undeformed arm. at_base: stiffnesses and drags at u = 0, and taper, by
-        name.
+        The compliances are values of the undeformed arm. at_base: stiffnesses and drags at u = 0, and taper,
+        by name.
         """
         factors = self._factors(at_base["taper"], u)
         stiffness = {name: at_base.get(name, 1.0) * factors[name] for name in ("k1", "k2", "k3")}
@@ -158,7 +158,8 @@ class Build:
         """Compliances of stretching, shear and bending at points u, (points,), divided by the compliances at
         the base.
 
-        Shape (3, points). The ratio is also defined for a rigid rod, which has compliances of 0.
+        Shape (3, points). taper: taper of the arm. The ratio is also defined for a rigid rod, which has
+        compliances of 0.
         """
         factors = self._factors(taper, u)
         return np.array([1 / factors[name] for name in ("k1", "k2", "k3")])
@@ -205,7 +206,9 @@ class Build:
 
 @lru_cache(maxsize=1024)
 def _smallest_factor(profile: Profile | None, taper: float, name: str) -> float:
-    """Smallest k1 or gamma3 (`name`) along an arm, divided by the value at the base."""
+    """Smallest k1 or gamma3 (`name`) along an arm with a profile and a taper, divided by the value at the
+    base.
+    """
     power = RADIUS_POWERS[name]
     # The power of the radius of a cone is monotone, so its minimum is at an end.
     ends = min(1.0, taper**power)
