@@ -24,7 +24,7 @@ class ResolutionSettings:
     digit_slope: float = 0.02
     """Increase of `digit_intercept` per unit of |q|."""
     digit_slope_max_wave_number: float = 35.0
-    """For larger |q| the increase of the order per further digit is constant."""
+    """The increase of the order for each further digit is constant for |q| larger than this."""
     wave_factor: float = 1.4
     """Safety factor on the wave number of the most amplified wave in the estimate of the largest |q|."""
     mode_offset: float = 0.3
@@ -32,7 +32,7 @@ class ResolutionSettings:
     start_accuracy: float = 1e-4
     """Relative accuracy of a mesh if its eigenvalues are then refined to roots of D."""
     max_order: int = 32
-    """Maximum order of an element. At a higher order one more element would cost less."""
+    """Maximum order of an element. A further element costs less than a higher order."""
     min_order: int = 6
     """Minimum order of an element."""
     max_unknowns: int = 10_000
