@@ -46,7 +46,8 @@ def material_change_on(rod: Rod, name: str, grid: Mesh) -> Material:
 
 
 def profile_compliance_on(build: Build, grid: Mesh) -> Array:
-    """Bending compliance c3(u)/c3(0) of an arm without taper at all nodes, (nodes + 1,).
+    """Bending compliance c3(u)/c3(0) at all nodes, (nodes + 1,), of an arm without taper and with the build
+    `build`.
 
     At a jump the value is the mean of both sides, so that its product with m3 is the mean bending strain.
     """

@@ -128,11 +128,11 @@ def _interpolation_at_jumps(  # noqa: PLR0913, PLR0917 - of both meshes
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def _extrapolation_weights(order: int, starts: bool, stops: bool, first: bool) -> Array:
-    """Weights, (p + 1,), that extrapolate from the nodes of an element, except nodes at jumps, to one end of
-    the element.
+    """Weights, (p + 1,), that extrapolate from the nodes of an element of order p to one end, without nodes
+    at jumps.
 
-    starts, stops: whether a jump is at the first, and at the last node. first: whether to extrapolate to the
-    first node; otherwise to the last node.
+    starts: whether a jump lies at the first node. stops: whether a jump lies at the last node. first: whether
+    to extrapolate to the first node; otherwise to the last node.
     """
     x = gauss_lobatto(order)[0]
     # A value at a jump is a mean over both sides, not a value of the polynomial.

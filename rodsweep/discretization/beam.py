@@ -1,6 +1,6 @@
 """One nonlinear rod on one mesh as an explicit system for time stepping: dz/dt = f(z) and its exact Jacobian.
 
-The unknown is z = C^(1/2) S, with the compliances C; its unit is the square root of an energy density. S is
+The unknown z = C^(1/2) S, with the compliances C, has the unit of the square root of an energy density. S is
 the stress of a linear rod with the same strain minus the stress of the straight rod, at all nodes except the
 tip, where S = 0. A state contains z1 at every node, then z2, then z3. |z|^2/2 is an energy density of the
 linear rod, the mass matrix is the identity, and large k1 or k2 cost no digits. The form requires c1, c2,

@@ -61,8 +61,8 @@ def write_element_strains(S: Array, rod: NodalRod, order: int, out: Array) -> No
 def write_element_strain_changes(S: Array, rates: Array, rod: NodalRod, order: int, out: Array) -> None:
     """Writes changes of the strains at the nodes of every element into out, (3, m, elements (order + 1)).
 
-    S: stresses of m states at all nodes, (3, m, nodes + 1). rates: changes of the strains at all nodes,
-    (3, m, nodes + 1); at a jump, of the mean strain. order: order of the elements.
+    S: stresses of m states at all nodes, (3, m, nodes + 1). rates: changes of the strains at all nodes, and
+    of the mean strain at jumps, (3, m, nodes + 1). order: order of the elements.
     """
     for a in range(len(rates)):
         for k in range(rates.shape[1]):

@@ -75,6 +75,7 @@ def nodal_rod(
     """The `NodalRod` of a material on a mesh.
 
     unknown_velocities: indices of the components of V that are unknowns. law: number of the constitutive law.
+    jumps: jumps of the material on this mesh.
     """
     size = grid.nodes + 1
     rest = _at_nodes(material.rest, size)
@@ -97,6 +98,8 @@ def _resistance_of(
 ) -> tuple[Array, Array, Array, IntegerArray]:
     """The result of `_resistance`, cached by the bytes of the drag, because rods that differ only in F have
     equal drags.
+
+    drag, shape: bytes and shape of the array of drags.
     """
     # Bytes can be a key of the cache, and the array is restored from the bytes.
     values = np.frombuffer(drag).reshape(shape)

@@ -71,7 +71,9 @@ class RodOnMesh(ABC):
 
     @property
     def has_continuous_stresses(self) -> bool:
-        """Whether S is continuous along the rod: if the material does not jump, or if its law is linear."""
+        """Whether S is continuous along the rod. S is continuous if the material does not jump or the law is
+        linear.
+        """
         return self.rod.build.constitutive_law is LINEAR or not len(self.nodal.jumps)
 
     def strains(self, x: Values) -> Values:
@@ -184,5 +186,5 @@ def _flatten_middle_axes(field: Array) -> Array:
 
 
 def _broadcast_to_field(constant: Array, field: Values) -> Array:
-    """A field (3, nodes + 1) or (3, 1), reshaped to broadcast against `field`, (3, ..., nodes + 1)."""
+    """`constant`, (3, nodes + 1) or (3, 1), reshaped to broadcast against `field`, (3, ..., nodes + 1)."""
     return constant.reshape(len(constant), *(1,) * (field.ndim - 2), -1)

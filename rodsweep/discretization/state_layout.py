@@ -16,8 +16,8 @@ STRESS_NAMES = {3: ("n1", "n2", "m3"), 6: ("n1", "n2", "n3", "m1", "m2", "m3")}
 """Names of the stress components, by the number of components: 3 in the plane, 6 in space."""
 PLANE_COMPONENTS = 3
 BENDING_INDEX = 2
-"""PLANE_COMPONENTS: number of stress components in the plane. BENDING_INDEX: index of m3 among them. For
-compiled code."""
+"""PLANE_COMPONENTS: number of stress components in the plane. BENDING_INDEX: index of the component m3. Both
+constants are for compiled code."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ Components are (v1, v2; Omega3) in the plane and (v; Omega), three each, in spac
 
     (ad_E V)_a = sum over (b, c) of s_abc E_b V_c,    (ad*_E Sigma)_c = -sum over (a, b) of s_abc E_b Sigma_a.
 
-se(2) has 4 nonzero constants s_abc and se(3) has 18, each +1 or -1, none with a = c. Every nonlinear term of
+se(2) has 4 and se(3) has 18 nonzero constants s_abc, all +1 or -1 and with a != c. Every nonlinear term of
 the rod is a loop over the nonzero constants.
 """
 

@@ -5,7 +5,7 @@ A wave exp(i kappa u) with K = kappa^2 grows at the root w(K) of
     gamma3 c2 w^2 + [(c2 + gamma3) K + g nu] w + K^2 - F g K = 0.
 
 The largest growth rate is used as a start of the search for eigenvalues of the finite rod, its wave number
-for the choice of the mesh. Both are estimates only.
+for the choice of the mesh. Both numbers are estimates only.
 """
 
 from functools import lru_cache
@@ -95,8 +95,8 @@ def local_growth(rod: Rod) -> tuple[Array, Array]:
 def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:
     """Returns (K, growth rates) of the sampled waves, (..., SAMPLE_COUNT) each, for k3 = gamma2 = 1.
 
-    A decaying wave has the growth rate 0. top: F g. relaxation: g nu. All arguments are numbers, or arrays
-    (n, 1) for n rods.
+    A decaying wave has the growth rate 0. top: F g. relaxation: g nu. c2, gamma3: shear compliance and
+    rotational drag. All arguments are numbers, or arrays (n, 1) for n rods.
     """
     square = c2 * gamma3
     K = top * K_FRACTIONS

@@ -3,7 +3,7 @@
 
 def min_unstable_multipliers(count: int, multiplier: float, error: float) -> int:
     """Lower bound on the number of Floquet multipliers outside the unit circle: 0 if the cycle is stable, -1
-    if this is undecided.
+    if the stability is undecided.
 
     count: number of multipliers outside the unit circle, or -1 if a multiplier lies on the circle within its
     error. multiplier, error: the largest modulus of a multiplier and its absolute error. If count is -1 and

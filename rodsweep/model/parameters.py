@@ -62,7 +62,9 @@ class Parameter:
         """Raises ValueError if the parameter scales both stiffnesses and drags."""
         if len({name in STIFFNESSES for name in self.scaled_names}) > 1:
             raise ValueError(
-                f"{self.name} scales {' and '.join(self.scaled_names)}: no coordinate is affine in both"
+                f"{self.name} scales {' and '.join(self.scales)}; "
+                "a parameter may scale either stiffnesses or drags"
+
             )
 
     @property
@@ -107,7 +109,10 @@ stiffness."""
 
 
 def stiffness(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
-    """The table row of a stiffness that may be inf. rigid: adjective for a rod with infinite stiffness."""
+    """The table row of a stiffness that may be inf.
+
+    name, symbol, meaning: fields of `Parameter`. rigid: adjective for a rod with infinite stiffness.
+    """
     return Parameter(
         name=name,
         symbol=symbol,

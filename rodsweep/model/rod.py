@@ -78,7 +78,7 @@ class Rod:
             coefficients = Coefficients(*map(float, coefficients_of(values)))
         object.__setattr__(self, "_coefficients", coefficients)
         if coefficients is None and not self.crushing_force > self.F:
-            raise Crushed(f"F = {self.F} is not below {self.crushing_force:.15g}, which crushes the arm")
+            raise Crushed(f"F = {self.F} is not below the crushing force {self.crushing_force:.15g}")
         if coefficients is not None and not coefficients.nu > 0:
             raise Crushed(f"F = {self.F} is not below k1 = {self.k1}")
 
@@ -224,7 +224,7 @@ class Rod:
         return self.build.section_changes(self.sections(u), self.F, self.taper, slopes, u)
 
     def material_in_space(self, twist_stiffness: float, twist_drag: float) -> Material:
-        """Nonlinear balance of the uniform rod in space; twist stiffness in k3, twist drag in gamma2 L^2."""
+        """Material of the uniform rod in space. twist_stiffness: in k3. twist_drag: in gamma2 L^2."""
         c1, c2, bending = self.material.compliance
         axial, normal, rotational = self.material.drag
         compliance = np.array([c1, c2, c2, 1 / twist_stiffness, bending, bending])

@@ -134,8 +134,8 @@ def _ratio(written: str, unit: str) -> float:
 
 
 def _suggestion(written: str, unit: str) -> str:
-    """The text "did you mean 'kPa'? " for a misspelt common unit with the dimension of `unit`; otherwise
-    "".
+    """The text "did you mean 'kPa'? " if `written` is a misspelt common unit with the dimension of `unit`;
+    else "".
     """
     squeezed = "".join(written.split()).casefold()
     for common in COMMON_UNITS:

@@ -89,7 +89,12 @@ def test_an_arm_alike_all_along_is_standard(tmp_path):
             "",
             "material and parameters.arm.tip_radius are both given",
         ),
-        (f"{CAST}, length: 11 cm", "", "", "parameters.arm.length = 0.11 m is not the sum of the segments"),
+        (
+            f"{CAST}, length: 11 cm",
+            "",
+            "",
+            "parameters.arm.length = 0.11 m is not the sum of the segment lengths",
+        ),
         (
             f"{CAST}, length: [11 cm, 12 cm]",
             "",

@@ -223,7 +223,7 @@ def test_a_full_disk_costs_the_cache_and_nothing_else(made, tmp_path):
         file.unlink()
     done = run_python(FULL.format(place=str(tmp_path)))
     assert (done.returncode, done.stdout) == (0, f"{VALUES}\n")
-    assert done.stderr.count(f"compiled formulas cannot be kept in {tmp_path}") == 1
+    assert done.stderr.count(f"compiled formulas cannot be stored in {tmp_path}") == 1
     assert [path for path in (tmp_path / "cache").rglob("*") if path.is_file()] == []
 
 

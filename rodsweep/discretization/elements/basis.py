@@ -6,7 +6,9 @@ from ...arrays import Array
 
 
 def barycentric_weights(nodes: Array) -> Array:
-    """Barycentric weights 1/prod_(j != i) (x_i - x_j) of the nodes x, (n,), over the largest modulus."""
+    """Barycentric weights 1/prod_(j != i) (x_i - x_j) of the nodes x, (n,), scaled so that the largest
+    modulus is 1.
+    """
     difference = nodes[:, None] - nodes[None, :]
     np.fill_diagonal(difference, 1.0)
     # A product of many differences would underflow. Only ratios of weights are used, so the weights are

@@ -158,7 +158,7 @@ def series_samples_of_columns(c: Complex, count: int) -> Array:
 
 
 def interpolate_samples(samples: Array, at: NDArray[np.floating]) -> Array:
-    """The interpolant of samples, (N, ...), at the times `at`, (m,), in periods; shape (m, ...)."""
+    """Trigonometric interpolant of samples, (N, ...), at the times `at`, (m,), in periods; shape (m, ...)."""
     return series_at(fourier_coefficients(samples), at)
 
 

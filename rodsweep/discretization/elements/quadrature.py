@@ -54,7 +54,7 @@ def gauss_lobatto(p: int) -> tuple[Array, Array]:
 
 
 def lobatto_points(nodes: int) -> Array:
-    """The `nodes` Gauss-Lobatto points on [0, 1], (nodes,)."""
+    """Gauss-Lobatto points on [0, 1], (nodes,). nodes: number of points."""
     return (gauss_lobatto(nodes - 1)[0] + 1) / 2
 
 

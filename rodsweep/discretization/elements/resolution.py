@@ -24,7 +24,7 @@ class ResolutionSettings:
     digit_slope: float = 0.02
     """Increase of `digit_intercept` per unit of |q|."""
     digit_slope_max_wave_number: float = 35.0
-    """For larger |q| the increase of the order per further digit is constant."""
+    """The increase of the order for each further digit is constant for |q| larger than this."""
     wave_factor: float = 1.4
     """Safety factor on the wave number of the most amplified wave in the estimate of the largest |q|."""
     mode_offset: float = 0.3
@@ -32,7 +32,7 @@ class ResolutionSettings:
     start_accuracy: float = 1e-4
     """Relative accuracy of a mesh if its eigenvalues are then refined to roots of D."""
     max_order: int = 32
-    """Maximum order of an element. At a higher order one more element would cost less."""
+    """Maximum order of an element. A further element costs less than a higher order."""
     min_order: int = 6
     """Minimum order of an element."""
     max_unknowns: int = 10_000
@@ -88,10 +88,9 @@ def required_order(wave_number: float, accuracy: float) -> float:
 
 
 def resolution_for(wave_number: float, accuracy: float, largest_order: int | None = None) -> Resolution:
-    """The smallest number of elements, and then the lowest order, that resolve a wave number, in 1/L, to a
-    relative accuracy.
+    """The smallest number of elements, and then the lowest order, that resolve a wave to a relative accuracy.
 
-    largest_order: maximum order of an element, `RESOLUTION.max_order` by default.
+    wave_number: in 1/L. largest_order: maximum order of an element, `RESOLUTION.max_order` by default.
     """
     largest_order = largest_order or RESOLUTION.max_order
     max_elements = RESOLUTION.max_unknowns // (3 * largest_order) + 2  # more unknowns fail anyway

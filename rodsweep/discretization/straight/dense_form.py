@@ -22,8 +22,8 @@ AnyPencil = Pencil | ArmPencil
 class DenseForm:
     """The transverse eigenproblem A x = w B x of one rod, with dense A and diagonal B.
 
-    A: (unknowns, unknowns). B: diagonal, (unknowns,). scale: factors from unknowns to y and theta at the
-    nodes without the clamp, (2, nodes).
+    A: (unknowns, unknowns). B: diagonal, (unknowns,). scale: factors that convert the unknowns to y and theta
+    at the nodes, clamp excluded, (2, nodes).
     """
 
     rod: Rod

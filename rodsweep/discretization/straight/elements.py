@@ -59,7 +59,7 @@ class StraightElements:
 
     @cached_property
     def A(self) -> Array:
-        """Contribution of one element to the matrix A, (local, local)."""
+        """Contribution of one element to the matrix A of the mixed form, (local, local)."""
         each = np.eye(PLANE_COMPONENTS)
         block = np.ix_(self.components, self.components)
         material = self.form.rod.material
@@ -81,7 +81,7 @@ class StraightElements:
 
     @cached_property
     def M(self) -> Array:
-        """Contribution of one element to the diagonal of M, (local,)."""
+        """Contribution of one element to the diagonal of the matrix M of the mixed form, (local,)."""
         stresses = np.outer(self.form.rod.material.compliance[list(self.components)], self._reference[1])
         return np.concatenate([stresses, 0 * stresses]).ravel()
 

@@ -96,7 +96,9 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
 
 
 def _fill_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> None:
-    """Writes the derivatives of the law at the nodes where the material jumps into `found`."""
+    """Writes the derivatives of the law at the nodes where the material jumps into `found`. nodal: the rod at
+    the nodes.
+    """
     at = nodal.jumps
     sides = nodal.sides
     nu = sides[..., 0]
@@ -161,7 +163,9 @@ def _derivatives_beside_jump(law: Law, nu: Array, c1: Array, c3: Array) -> LawDe
 
 
 def inverse_derivatives(of: LawDerivatives) -> LawDerivatives:
-    """Derivatives of g = f^-1 from the derivatives `of` f, by differentiating f(g(y)) = y three times."""
+    """Derivatives of the inverse function g of f, by differentiating f(g(y)) = y three times. of: derivatives
+    of f.
+    """
     f1, f2, f3 = of
     g1 = np.linalg.inv(f1)
     g2 = -np.einsum("...ai,...ijk,...jb,...kc->...abc", g1, f2, g1, g1)

@@ -54,7 +54,7 @@ class PencilMatrices(NamedTuple):
     """The matrices of the pencil A x = w B x of one rod or arm.
 
     A: entries of A in the order of the sparsity pattern, (nnz,). B: diagonal of B, (unknowns,). scale:
-    factors from unknowns to y and theta at the nodes without the clamp, (2, nodes).
+    factors that convert the unknowns to y and theta at the nodes, clamp excluded, (2, nodes).
     """
 
     A: Array
@@ -111,7 +111,7 @@ class Pencil(Elements):
         return B
 
     def scale(self, rod: Rod) -> Array:
-        """Factors from the unknowns to y and theta at the nodes without the clamp for the rod `rod`,
+        """Factors that convert the unknowns of a rod to y and theta at the nodes, clamp excluded,
         (2, nodes).
         """
         push = 1 / np.sqrt(self.mass)
@@ -129,7 +129,7 @@ def finite_eigenvalues(rod: Rod, nodes: int) -> int:
 def fields_of_vectors(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
     """Returns (y, theta) of k eigenvectors, (unknowns, k), at all nodes, clamp included, (nodes + 1, k) each.
 
-    scale: factors from unknowns to y and theta at the nodes without the clamp, (2, nodes).
+    scale: factors that convert the unknowns to y and theta at the nodes, clamp excluded, (2, nodes).
     """
     n = scale.shape[1]
     clamp = np.zeros((1, vectors.shape[1]))
@@ -138,7 +138,9 @@ def fields_of_vectors(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]
 
 
 def angle_weight(gamma3: float) -> float:
-    """Weight of theta in the norm, sqrt(gamma3), but at least `PENCIL_NORM.min_angle_weight`."""
+    """Weight of theta in the norm of the pencil: sqrt(gamma3), but at least
+    `PENCIL_NORM.min_angle_weight`.
+    """
     return max(sqrt(gamma3), PENCIL_NORM.min_angle_weight)
 
 

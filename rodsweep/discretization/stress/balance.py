@@ -19,7 +19,7 @@ derivative. At the tip G is the reaction r, and -r is the velocity of the tip: -
 V(1), and dU/dt = -Sigma(1) r - <Gamma V, V> holds to rounding. The condition for the stress of the tip is
 essential, the clamp V(0) = 0 is natural.
 
-V is eliminated, except components with a drag so small that division by the drag costs digits. They become
+V is eliminated, except components with a drag so small that division by the drag costs digits. These are
 unknowns at all nodes, tip included, with the equations W (D*_E Sigma - Gamma V) = 0. A state is flat: S1 at
 every node, S2 at every node, and so on, then the unknown components of V.
 

@@ -82,6 +82,8 @@ def write_rates(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMat
 def write_rate_jacobians(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the Jacobians of `write_rate_jacobian` at n states z, (n, unknowns), into out,
     (n, unknowns, unknowns).
+
+    roots: as in `write_rate`.
     """
     for i in range(len(states)):
         write_rate_jacobian(states[i], out[i], roots, c, m)

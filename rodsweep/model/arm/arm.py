@@ -162,7 +162,9 @@ class SlenderArm:
         if self.load is None:
             raise InputError("pressure is missing; give the pressure on the tip's cross section, or a force")
         if self.share_of_flutter is not None:
-            raise InputError(f"{self.text_of(self.load)} has no value until the flutter threshold is solved")
+            raise InputError(
+f"{self.quoted(self.load)} has no value before flutter is computed"
+)
         return float(getattr(self.si, self.load)) * self._loaded_area
 
     @property
@@ -217,7 +219,7 @@ class SlenderArm:
 
     @property
     def own_drag(self) -> Drag:
-        """The drag estimate at the base that the rod uses: its name is the field `drag`."""
+        """Drag of the rod at the base: the drag estimate with the name in the field `drag`."""
         return self.drags[DRAGS.index(self.drag)]
 
     def gamma3_with(self, drag: Drag) -> float:

@@ -20,7 +20,7 @@ DRAGS = ("likeliest", "least", "most_rotational", "most_translational", "most")
 the largest rotational with the smallest translational drag, `most_translational` the reverse."""
 
 RANGE_OF_DRAG = "range"
-"""Value of the config key `drag` that stands for all estimates in DRAGS."""
+"""Value of the config key `drag` for a sweep over all estimates in DRAGS."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,17 +85,18 @@ def min_rotational_drag(viscosity: float, half_height: float) -> float:
     """Smallest estimate of rotational drag, gamma3 = pi eta a^2, in Pa s m^2, for sections that turn about a
     diameter.
 
-    The surface velocity -Omega x2 of a long cylinder is axial. The flow outside is harmonic and decays like
-    1/r; its traction eta Omega cos(phi) has the torque gamma3 Omega. a = half_height, in m, also for an
-    ellipse.
+    viscosity: eta, in Pa s. half_height: a, in m, also for an ellipse. The surface velocity -Omega x2 of a
+    long cylinder is axial. The flow outside is harmonic and decays like 1/r; its traction eta Omega cos(phi)
+    has the torque gamma3 Omega.
     """
     return pi * viscosity * half_height**2
 
 
 def max_rotational_drag(viscosity: float, half_height: float) -> float:
-    """Largest estimate of rotational drag, gamma3 = 4 pi eta a^2, in Pa s m^2, with a = half_height, in m.
+    """Largest estimate of rotational drag, gamma3 = 4 pi eta a^2, in Pa s m^2.
 
-    The value for rotation about the axis of the cylinder (Powers 2010) is used for rotation about a diameter.
+    viscosity: eta, in Pa s. half_height: a, in m. The value for rotation about the axis of the cylinder
+    (Powers 2010) is used for rotation about a diameter.
     """
     return 4 * pi * viscosity * half_height**2
 

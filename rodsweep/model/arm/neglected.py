@@ -36,7 +36,7 @@ WEIGHT_LIMIT = 0.1
 horizontal arm sags by a tenth of its length, at 0.01 by a hundredth."""
 WALL_LIMIT = 0.1
 """Limit of the fraction of bending stiffness that a tube loses as its section flattens in a large-amplitude
-cycle. An infinitely long tube buckles when it has lost a third of its stiffness."""
+cycle. An infinitely long tube buckles after losing a third of its stiffness."""
 WIDE_CURVATURE = 6.0
 """Largest curvature of an arm in a limit cycle, in 1/L, divided by the amplitude of the tip, in L. For cycles
 from 2 % to 50 % above the flutter force the ratio is 5.8 to 6.7."""
@@ -232,8 +232,8 @@ def reynolds_number(arm: SlenderArm, rate: Array, amplitude: Array) -> Effect:
 
 
 def _independent_of_viscosity(name: str, value: Array, limit: float, of_cycles_only: bool = False) -> Effect:
-    """An effect that does not depend on the viscosity of the fluid; its viscosity factor is inf above the
-    limit, otherwise 0.
+    """An effect whose `value` does not depend on the viscosity; its viscosity factor is inf above `limit`,
+    otherwise 0.
     """
     # No viscosity reduces the effect; below the limit a fluid of any viscosity is allowed.
     factor = np.where(value > limit, inf, 0.0)

@@ -31,7 +31,9 @@ QUANTITIES = {
     "length": Quantity("m", "length of the arm", "10 cm"),
     "radius": Quantity("m", "radius of the arm's circular section", "5 mm"),
     "inner_radius": Quantity("m", "radius of the bore of the arm, closed at its tip", "3 mm"),
-    "tip_radius": Quantity("m", "radius at the tip of a solid cone, with radius at its base", "3 mm"),
+    "tip_radius": Quantity(
+        "m", "radius at the tip of a solid cone; radius is then the radius at the base", "3 mm"
+    ),
     "width": Quantity("m", "width of the arm's section, across the plane of motion", "10 mm"),
     "height": Quantity("m", "height of the arm's section, in the plane of motion", "8 mm"),
     "young": Quantity("Pa", "Young's modulus of the arm at small strain", "100 kPa"),
@@ -43,7 +45,7 @@ QUANTITIES = {
         "kg/m^3", "density of the arm minus density of the fluid", "-160 kg/m^3", signed=True
     ),
     "poisson": Quantity("1", "Poisson's ratio of the arm"),
-    "drag": Quantity("1", "which member of the range of drags"),
+    "drag": Quantity("1", "drag estimate, by name"),
     **{
         f"{load}_over_flutter": Quantity(
             "1", f"{load} divided by the {load} at first flutter, with the likeliest drag"

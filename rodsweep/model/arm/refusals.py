@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from .arm import SlenderArm
 
 CRUSHED_FROM = 1 - 1e-14
-"""An arm is refused as crushed if F divided by the crushing force is at least this; below 1 because unit
-conversion has rounding errors."""
+"""An arm is refused as crushed if F divided by the crushing force is at least this. The limit is below 1
+because unit conversion has rounding errors."""
 LENGTH_TOLERANCE = 1e-9
 """A given length may differ from the sum of the segment lengths by this relative difference, which allows for
 rounding errors."""
@@ -44,8 +44,8 @@ def refuse_words(arm: "SlenderArm") -> None:
         raise InputError(f"poisson = {text:.60} is not a number above -1 and up to 0.5")
     if arm.drag == RANGE_OF_DRAG:
         raise InputError(
-            f"drag = {arm.drag!r} is an axis of sweeps; an arm has one of {', '.join(DRAGS)}, and its report "
-            "states the range"
+            f"drag = {arm.drag!r} is an axis of sweeps; for one arm choose one of {', '.join(DRAGS)}; the "
+            "report states the range"
         )
     if arm.drag not in DRAGS:
         raise InputError(f"drag = {arm.drag!r:.60} is not known; choose one of {', '.join(DRAGS)}")
@@ -59,8 +59,8 @@ def refuse_words(arm: "SlenderArm") -> None:
         raise InputError(str(error)) from None
     if arm.section == "swelling" and ratio != INCOMPRESSIBLE:
         raise InputError(
-            f"poisson = {ratio} contradicts section = swelling, which keeps the volume of rubber; it must be "
-            f"{INCOMPRESSIBLE:g}, or section = fixed"
+            f"poisson = {ratio} contradicts section = swelling, which is for incompressible rubber; "
+            f"poisson must be {INCOMPRESSIBLE:g}, or section fixed"
         )
 
 
@@ -81,21 +81,24 @@ def refuse_wrong_combinations(arm: "SlenderArm") -> None:
     if arm.pressure is not None and arm.force is not None:
         raise InputError(
             f"{arm.text_of('pressure')} and {arm.text_of('force')} are both given; give one of them: the "
-            "pressure on the tip's cross section, or its resultant"
+            "pressure on the tip's cross section, or the resulting force"
         )
 
 
 def _refuse_sections(arm: "SlenderArm") -> None:
     """Raises InputError unless an arm without segments has exactly one cross-section, with valid radii."""
     sides = (arm.width, arm.height)
-    for name, why in (("inner_radius", "a rectangle has no bore here"), ("tip_radius", "only cones taper")):
+    for name, why in (
+        ("inner_radius", "a rectangular section has no bore"),
+        ("tip_radius", "only a cone has a tip radius"),
+    ):
         if getattr(arm, name) is not None and arm.radius is None:
             raise InputError(f"{arm.text_of(name)} needs a radius; {why}")
     if (arm.radius is None) == (sides == (None, None)) or (arm.radius is None and None in sides):
         sizes = ("radius", "width", "height")
         given = " and ".join(name for name in sizes if getattr(arm, name) is not None) or "no size"
         raise InputError(
-            f"radius: give either a radius, or width and height, or segments; given of the section: {given}"
+            f"radius: give either a radius, or width and height, or segments; the arm has {given}"
         )
     if arm.si.inner_radius >= arm.si.radius:
         raise NoWall(f"{arm.text_of('inner_radius')} is not below {arm.text_of('radius')}")
@@ -108,8 +111,9 @@ def _refuse_sections(arm: "SlenderArm") -> None:
         )
     if not SMALLEST_TAPER <= arm.si.tip_radius / arm.si.radius <= LARGEST_TAPER:
         raise InputError(
-            f"{arm.text_of('tip_radius')} is {arm.si.tip_radius / arm.si.radius:.3g} of the radius; it must "
-            f"be from {SMALLEST_TAPER:g} to {LARGEST_TAPER:g} of it"
+            f"{arm.quoted('tip_radius')} is {arm.si.tip_radius / arm.si.radius:.3g} of the radius; the "
+
+            f"ratio must be from {SMALLEST_TAPER:g} to {LARGEST_TAPER:g}"
         )
 
 
@@ -117,25 +121,30 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
     """Raises InputError if an arm with segments also has a cross-section, or a length that is not the sum of
     the segment lengths.
 
-    Also raises InputError if a segment has no Young's modulus and the arm has none either.
+    Also raises InputError if neither a segment nor the arm has a Young's modulus.
     """
     for name in (*SECTION_SIDES[0], *SECTION_SIDES[1]):
         if getattr(arm, name) is not None:
             raise InputError(
-                f"{arm.text_of(name)} and segments are both given; a segment has its own radius, so give one "
-                "of them"
+                f"{arm.quoted(name)} and segments are both given; give one of them, because every segment "
+
+                "has its own radius"
             )
     pieces = arm.pieces
     for number, piece in enumerate(pieces, 1):
         if piece.young is None and arm.young is None:
             raise InputError(
-                f"segments, number {number}: young is missing; give it there, or young for all segments"
+                f"segments, number {number}: young is missing; give young for this segment or for the arm"
             )
     total = sum(piece.length for piece in pieces)
     if arm.length is not None and not abs(arm.si.length - total) <= LENGTH_TOLERANCE * total:
         unit = unit_of(arm.length, "m")
         summed = f"{written_in(total, unit, 'm'):.6g} {unit}"
-        raise InputError(f"{arm.text_of('length')} is not the sum of the segments, {summed}; leave it out")
+        raise InputError(
+
+            f"{arm.quoted('length')} is not the sum of the segment lengths, {summed}; leave out length"
+        
+)
 
 
 def refuse_out_of_range(arm: "SlenderArm") -> None:
@@ -147,7 +156,7 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
     if arm.si.density_difference <= -arm.si.fluid_density:
         given = arm.text_of("density_difference")
         least = f"{-arm.si.fluid_density:.4g} kg/m^3"
-        raise InputError(f"{given} leaves the arm no mass; it must be above {least}")
+        raise InputError(f"{given} gives the arm no positive mass; the difference must be above {least}")
     length = "segments: their length" if arm.length is None else arm.text_of("length")
     try:
         slenderness = arm.shape.length / arm.shape.drag_radius
@@ -156,8 +165,8 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
         fine = False
     if not fine:
         raise InputError(
-            f"{length} makes numbers too large or too small with its section and Young's modulus; check "
-            "their units"
+            f"{length} makes numbers too large or too small with the section and Young's modulus; check "
+            "the units"
         )
     if slenderness < LEAST_SLENDERNESS:
         raise NotSlender(
@@ -176,6 +185,7 @@ def refuse_crushed(arm: "SlenderArm") -> None:
     unit = unit_of(getattr(arm, loaded), si)
     where = "the weakest section of" if arm.shape.varies else ""
     raise InputError(
-        f"{arm.text_of(loaded)} compresses {f'{where} the arm'.strip()} to nothing; it must be below "
-        f"{float(f'{written_in(limit, unit, si):.4g}'):g} {unit}, where a linear material is crushed"
+        f"{arm.quoted(loaded)} crushes {f'{where} the arm'.strip()}; the load on a linear material must be "
+
+        f"below {float(f'{written_in(limit, unit, si):.4g}'):g} {unit}"
     )

@@ -65,7 +65,7 @@ class Tube:
     shear_formula: ClassVar[str] = (
         "kappa = 6 (1 + nu) (1 + m^2)^2/((7 + 6 nu) (1 + m^2)^2 + (20 + 12 nu) m^2), m = b/a"
     )
-    face_formula: ClassVar[str] = "p pi a^2: the whole face of the closed tip"
+    face_formula: ClassVar[str] = "p pi a^2 on the face of the closed tip"
 
     @property
     def area(self) -> float:

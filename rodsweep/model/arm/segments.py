@@ -54,7 +54,7 @@ def segment_texts(given: Any) -> tuple[str, ...]:
     if not isinstance(given, Sequence) or not given:
         raise InputError(f"segments = {str(given):.60} is not a list; write each segment as in '{EXAMPLE}'")
     if len(given) > MAX_SEGMENTS:
-        raise InputError(f"segments: there are {len(given)}; an arm has at most {MAX_SEGMENTS}")
+        raise InputError(f"segments: {len(given)} are given; an arm has at most {MAX_SEGMENTS}")
     written = [written_segment(number, each) for number, each in enumerate(given, 1)]
     for number, each in enumerate(written, 1):
         _segment(number, each)
@@ -90,7 +90,7 @@ def _mapping(where: str, given: Any) -> Mapping[str, Given]:
         return {str(name): value for name, value in given.items()}
     length, colon, parts = str(given).partition(":")
     if not isinstance(given, str) or not colon:
-        raise InputError(f"{where}: {str(given)!r:.60} is not a segment; write it as in '{EXAMPLE}'")
+        raise InputError(f"{where}: {str(given)!r:.60} is not a segment; write a segment as in '{EXAMPLE}'")
     found: dict[str, Given] = {"length": length.strip()}
     for part in parts.split(","):
         text_of = PART.fullmatch(part)

@@ -152,10 +152,10 @@ class Shape:
     def relative_weight(self, weight: float) -> float:
         """Ratio of the weight of the upright arm to the weight at which the arm buckles.
 
-        weight: weight per volume, in N/m^3. The arm buckles if theta' = m/(E I), m' = -W theta, with theta(0)
-        = 0, m(1) = 0 and the weight W(u) of the part beyond u, have a nonzero solution: if 1 is an eigenvalue
-        of the operator theta -> int_0^u (1/(E I)) int_u^1 W theta. The ratio is the largest eigenvalue,
-        computed by power iteration: the kernel of the operator is positive, and the second eigenvalue of a
+        weight: weight per volume, in N/m^3. With the weight W(u) of the part beyond u, an arm of the buckling
+        weight has a nonzero solution of theta' = m/(E I), m' = -W theta, theta(0) = 0, m(1) = 0. The ratio is
+        therefore the largest eigenvalue of the operator theta -> int_0^u (1/(E I)) int_u^1 W theta. Power
+        iteration converges fast: the kernel of the operator is positive, and the second eigenvalue of a
         uniform arm is a seventh of the largest.
         """
         h, area, stiffness = self._at_midpoints()

@@ -49,8 +49,8 @@ class KernelCache(_Cache):
     """
 
     def __init__(self, function: Any, options: Mapping[str, Any], directories: Sequence[Path]) -> None:
-        """options: numba's compiler options. directories: directories of cache files. All directories are
-        read; files are written into the first writable directory."""
+        """function: the function to compile. options: numba's compiler options. directories: directories of
+        cache files; all are read, and files are written into the first writable directory."""
         self._kernel = kernel_of(function, options)
         self._directories = tuple(directories)
 
@@ -93,8 +93,8 @@ class KernelCache(_Cache):
                 failures.append(f"{directory} ({error.strerror})")
         if failures:
             _warn_once(
-                f"compiled formulas cannot be kept in {' or '.join(failures)}: the next run takes minutes to "
-                "compile them again; NUMBA_CACHE_DIR names another directory"
+                f"compiled formulas cannot be stored in {' or '.join(failures)}: the next run takes minutes "
+                "to compile the formulas again; set NUMBA_CACHE_DIR to another directory"
             )
 
     def _name(self, sig: Any, codegen: Any, parts: dict[FunctionType, FunctionText]) -> str:
@@ -136,7 +136,7 @@ def _read(path: Path) -> bytes | None:
 
 
 def _write(path: Path, content: bytes) -> None:
-    """Writes a file atomically: other processes see the complete file or no file."""
+    """Writes `content` to the file `path` atomically: other processes see the complete file or no file."""
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(f".{uuid4().hex}")
     try:

@@ -45,11 +45,11 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def compiled_for_vectors(function: Callable[P, R]) -> Callable[P, R]:
-    """The function `function`, compiled like in `compiled`, but with reordered sums, which is five times as
+    """The function `function`, compiled as by `compiled` but with sums in any order, which is five times as
     fast.
 
-    Infinities and nan behave as usual. The function is always inlined in its callers. A shared copy would
-    depend on which caller a process loads first, and copies differ in the order of their sums.
+    Infinities and nan behave as usual. The function is always inlined in its callers. With a shared copy,
+    results would depend on the caller that a process loads first, because copies differ in the order of sums.
     """
     return _compiled(function, fastmath={"reassoc", "contract", "nsz"}, forceinline=True)
 

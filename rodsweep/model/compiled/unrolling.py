@@ -182,7 +182,7 @@ class _Writer(ast.NodeVisitor):
         return names
 
     def _value(self, node: Any) -> Any:
-        """Value of an expression. Raises NameError if a name in the expression is not in `known`."""
+        """Value of the expression `node`. Raises NameError if a name in the expression is not in `known`."""
         code = self.shared.code.get(node)
         if code is None:
             code = self.shared.code[node] = compile(ast.Expression(node), "<known>", "eval")

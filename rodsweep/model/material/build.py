@@ -106,9 +106,10 @@ class Build:
         return np.array([0.0, 1.0]) if self.profile is None else self.profile.breaks
 
     def relative_crushing_force(self, taper: float) -> float:
-        """Force that crushes the weakest section of an arm with the taper `taper`, divided by k1 at the base.
+        """Force that crushes the weakest section of an arm, divided by k1 at the base; inf if no force
+        crushes the arm.
 
-        inf if no force crushes the arm.
+        taper: taper of the arm.
         """
         return self.constitutive_law.largest_load * _smallest_factor(self.profile, taper, "k1")
 
@@ -144,8 +145,8 @@ class Build:
         """Properties of the cross-sections at points u, (points,), under the tip force F. No point may be a
         break of the profile.
 
-        Compliances are those of the undeformed arm. at_base: stiffnesses and drags at u = 0, and taper, by
-        name.
+        The compliances are values of the undeformed arm. at_base: stiffnesses and drags at u = 0, and taper,
+        by name.
         """
         factors = self._factors(at_base["taper"], u)
         stiffness = {name: at_base.get(name, 1.0) * factors[name] for name in ("k1", "k2", "k3")}
@@ -157,7 +158,8 @@ class Build:
         """Compliances of stretching, shear and bending at points u, (points,), divided by the compliances at
         the base.
 
-        Shape (3, points). The ratio is also defined for a rigid rod, which has compliances of 0.
+        Shape (3, points). taper: taper of the arm. The ratio is also defined for a rigid rod, which has
+        compliances of 0.
         """
         factors = self._factors(taper, u)
         return np.array([1 / factors[name] for name in ("k1", "k2", "k3")])
@@ -204,7 +206,9 @@ class Build:
 
 @lru_cache(maxsize=1024)
 def _smallest_factor(profile: Profile | None, taper: float, name: str) -> float:
-    """Smallest k1 or gamma3 (`name`) along an arm, divided by the value at the base."""
+    """Smallest k1 or gamma3 (`name`) along an arm with a profile and a taper, divided by the value at the
+    base.
+    """
     power = RADIUS_POWERS[name]
     # The power of the radius of a cone is monotone, so its minimum is at an end.
     ends = min(1.0, taper**power)

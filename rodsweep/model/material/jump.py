@@ -168,7 +168,8 @@ def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
 
 @compiled
 def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: float) -> Stress:
-    """Derivatives of the stresses N and M at a jump with respect to a parameter, at fixed mean unknowns.
+    """Derivatives of the stresses N and M at a jump with respect to a parameter, at fixed mean unknowns q1,
+    q3.
 
     sides: (2, 7). change: derivatives of nu, c1 and c3 of both sides with respect to the parameter, (2, 3).
     The weights in the mean strain are constant, because a parameter multiplies the compliances of both sides

@@ -42,7 +42,7 @@ class Profile:
                 raise ValueError(f"u = {b:g} follows u = {a:g}; u must not decrease")
         for number, value in enumerate(self.u):
             if self.u.count(value) > (1 if value in (0, 1) else 2):
-                most = "one row" if value in (0, 1) else "two rows, which are a jump"
+                most = "one row" if value in (0, 1) else "two rows (a jump)"
                 raise ValueError(f"there are {self.u.count(value)} rows at u = {value:g}; allowed: {most}")
             for name, factor in zip(FACTORS, self.rows[number], strict=True):
                 if not 0 < factor < np.inf:
