@@ -58,7 +58,7 @@ BRANCH_ERRORS = BranchErrorSettings()
 
 @dataclass(frozen=True, eq=False)
 class BranchDerivatives:
-    """Derivatives of a branch by arc length at a cycle, in the units of `scale`."""
+    """Derivatives of a branch with respect to arc length at a cycle, in the units of `scale`."""
 
     scale: Scale
     tangent: Array
@@ -67,13 +67,13 @@ class BranchDerivatives:
     ahead: Array
     """The tangent in components (deflection, log period, parameter), (3,), a unit vector."""
     curvature: float
-    """Second derivative of the scaled parameter coordinate by arc length."""
+    """Second derivative of the scaled parameter coordinate with respect to arc length."""
     multiplier_rate: float
-    """Modulus of the derivative of the largest multiplier by arc length."""
+    """Modulus of the derivative of the largest multiplier with respect to arc length."""
 
     @property
     def rate(self) -> float:
-        """Derivative of the scaled parameter coordinate by arc length; 0 at a fold."""
+        """Derivative of the scaled parameter coordinate with respect to arc length; 0 at a fold."""
         return float(self.ahead[2])
 
     def slide(self, off: float) -> float:
@@ -117,8 +117,8 @@ class BranchCalibration:
         )
 
     def largest(self, accuracy: float) -> float:
-        """The error that must not exceed the relative accuracy: the largest error, divided by
-        sensitivity/`max_sensitivity` if this ratio exceeds 1."""
+        """The error that must not exceed the relative accuracy: the largest error at equal parameter, divided
+        by sensitivity/`max_sensitivity` if this ratio exceeds 1, or the parameter error if larger."""
         return self._demanded.errors(accuracy).largest
 
     def planned(self, accuracy: float) -> OrbitMesh:
@@ -181,8 +181,8 @@ def measured_errors(
     found: ConvergedOrbit, derivatives: BranchDerivatives, accuracy: float, before: Calibration | None
 ) -> BranchCalibration:
     """Errors of the mesh of the cycle `found`, measured by comparison with two finer meshes; raises
-    Unsolvable. derivatives: of the branch at `found`. before: calibration at a previous cycle, from which
-    convergence rates are estimated; None if there is no such cycle."""
+    Unsolvable. derivatives: derivatives of the branch at `found`. before: calibration at a previous cycle,
+    from which convergence rates are estimated; None if there is no such cycle."""
     mesh = mesh_of(found.orbit)
     orbit = found.orbit
     finer, share = finer_meshes(mesh)
@@ -206,8 +206,8 @@ def _difference(
 ) -> Array:
     """Differences, (6,), between a cycle on a rough mesh and the same cycle on a fine mesh. The first five
     differences are at the parameter value of the rough cycle, in the order of `Calibration.space`. The last
-    is the parameter difference at equal deflection. rough, multipliers: path and nontrivial multipliers,
-    (rank - 1,), of the rough cycle. derivatives: of the branch at the rough cycle."""
+    difference is the parameter difference at equal deflection. rough, multipliers: path and nontrivial
+    multipliers, (rank - 1,), of the rough cycle. derivatives: derivatives of the branch at this cycle."""
     orbit = rough.orbit
     scale = derivatives.scale
     deflection, _, off = scale.components(orbit) - scale.components(fine.orbit)
@@ -229,7 +229,7 @@ def _difference(
 
 def sensitivity_of(path: CyclePath, derivatives: BranchDerivatives) -> float:
     """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch at the cycle `path`.
-    derivatives: of the branch at this cycle."""
+    derivatives: derivatives of the branch at this cycle."""
     orbit: Orbit = path.orbit
     ahead = CyclePath(
         moved_orbit(orbit, derivatives.scale.name, BRANCH_ERRORS.sensitivity_step * derivatives.tangent)

@@ -42,7 +42,7 @@ CURVE_STEPS = StepControl(
     max_solutions=400,
 )
 """Step length control along a curve of special points. Steps have four components: the three components of
-`Scale` and the rows' axis coordinate, from 0 to 1."""
+`Scale` and the position on the rows' axis, from 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,7 +113,7 @@ class SpecialCurveProblem:
 
     def step(self, behind: Sequence[SolvedPoint], length: float) -> StepResult[SolvedPoint]:
         """The point one step beyond the last point, with the prediction error and the cosine of the angle
-        between the last two steps; raises Unsolvable. behind: points so far, the last point last."""
+        between the last two steps; raises Unsolvable. behind: points so far, in order along the curve."""
         last = behind[-1]
         if len(behind) == 1:
             start = last.orbit
@@ -144,7 +144,8 @@ class SpecialCurveProblem:
         return CycleFamily.about(self.kind, self.rows, point, self.workspace)
 
     def _predicted(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
-        """(orbit, rows' axis coordinate) predicted a step beyond the last point; raises Unsolvable."""
+        """(orbit, position on the rows' axis) predicted at the distance `step` beyond the last point; raises
+        Unsolvable."""
         known = points[-CURVE_IDENTITY.max_interpolated_points :]
         return self._mixed(known, lagrange_weights(arc_lengths(known), step), mesh_of(known[-1].orbit))
 
@@ -169,15 +170,17 @@ class SpecialCurveProblem:
     def _mixed(
         self, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
     ) -> tuple[Orbit, float]:
-        """(orbit, rows' axis coordinate): sums over `points` with weights, (points,); raises Unsolvable."""
+        """(orbit on `mesh`, position on the rows' axis): weighted sums over `points`, weights: (points,);
+        raises Unsolvable."""
         values = np.dot(weights, [mesh.carry(point.orbit).values for point in points])
         at, place = (float(np.dot(weights, [getattr(p, n) for p in points])) for n in ("at", "place"))
         changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
         return orbit_with_parameters(replace(mesh.carry(points[-1].orbit), values=values), changed), place
 
     def margins(self, point: SolvedPoint) -> Array:
-        """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges and from
-        `crushing_margin`, smallest h1, and largest tip y minus `min_amplitude`."""
+        """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, relative
+        distance of F from k1 minus `crushing_margin`, smallest h1, and largest tip y minus
+        `min_amplitude`."""
         x = self.line.scaled(point.at)
         y = point.place
         rod = point.orbit.form.rod
@@ -235,7 +238,7 @@ class SpecialCurveProblem:
         return self._family(other).nearest(start, place, across, other.rates)
 
     def on_row(self, one: SolvedPoint, other: SolvedPoint, place: float) -> SolvedPoint:
-        """The point of the curve at the rows' axis coordinate `place` between two points; raises
+        """The point of the curve between two points, at the position `place` on the rows' axis; raises
         Unsolvable."""
         share = (place - one.place) / (other.place - one.place) if other.place != one.place else 0.0
         start, _ = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))

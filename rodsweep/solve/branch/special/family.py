@@ -1,9 +1,9 @@
 """Correction of a predicted point of a curve of folds or torus points over two parameters.
 
-Cycles near a special point form a two-parameter family: arc length along the branch (`bordered`), and the
-rows' axis coordinate. In the plane of these two variables the special points are the zeros of a test function
-on a smooth curve, also at a cusp, where both parameters turn back. The secant method across the curve finds
-the zero. All cycles and their test functions are corrected with the matrix factors of one cycle
+Cycles near a special point form a two-parameter family: arc length along the branch (`bordered`), and
+position on the rows' axis. In the plane of these two variables the special points form a smooth curve, the
+zeros of a test function, also at a cusp, where both parameters turn back. The secant method across the curve
+finds a zero. All cycles and their test functions are corrected with the matrix factors of one cycle
 (`augmented`). The first derivatives across the curve come from the previous point. The error is the
 difference between two meshes, measured at about every third point.
 """
@@ -67,8 +67,8 @@ class CycleFamily:
         return cls(kind, rows, point.scale, point.ahead, small, workspace)
 
     def placed(self, orbit: Orbit, place: float) -> Orbit:
-        """The orbit with unchanged values, for the rod whose rows' parameter has the axis coordinate `place`;
-        raises Unsolvable."""
+        """The orbit with unchanged values, for the rod at the position `place` on the rows' axis; raises
+        Unsolvable."""
         return orbit_with_parameters(orbit, {self.rows.name: self.rows.value(place)})
 
     def function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:
@@ -89,9 +89,9 @@ class CycleFamily:
         """The point of the curve near the orbit `start`, found by the secant method across the curve; raises
         Unsolvable.
 
-        place: rows' axis coordinate of `start`. across: direction of the search, (2,), in components (along
-        the branch, along the rows' axis). rates: approximate derivatives across the curve. same: whether
-        `rates` were computed at the same point on another mesh.
+        place: position of `start` on the rows' axis, from 0 to 1. across: direction of the search, (2,), in
+        components (along the branch, along the rows' axis). rates: approximate derivatives across the curve.
+        same: whether `rates` were computed at the same point on another mesh.
         """
         # Derivatives along another direction across the curve would mislead the secant method.
         known = rates if rates and rates.direction @ across >= ACROSS_CURVE.min_cosine else None
@@ -160,7 +160,8 @@ class _SecantAcross:
         self.before: _CycleAcross | None = None
         self.length = float(family.border @ family.scale.components(start))
         self.trusted = ACROSS_CURVE.max_linear_step if same else ACROSS_CURVE.max_carried_step
-        """Longest last secant step until the derivatives are computed from two cycles of this search."""
+        """Largest length of the last secant step, as long as `rates` are not from two cycles of this
+        search."""
         contraction = rates.contraction if rates and not family.small else inf
         self.near = NearbyCycleSolver(family, self.orbit, contraction)
 
@@ -204,7 +205,7 @@ class _SecantAcross:
 
     def _rates_since(self, present: _CycleAcross) -> NormalDerivatives | None:
         """Derivatives across the curve from the last cycle and the cycle `present`; None if `present` is the
-        first cycle or if the distance between the two cycles is too small."""
+        first cycle, or if the two cycles are too close or have equal test functions."""
         before = self.before
         if before is None or present.test == before.test:
             return None

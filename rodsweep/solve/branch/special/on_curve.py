@@ -1,5 +1,5 @@
-"""A solved point of a curve of special points: cycle, error, and derivatives by the distance from the
-curve."""
+"""A solved point of a curve of special points: cycle, error, and derivatives with respect to the distance
+from the curve."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -66,7 +66,7 @@ ACROSS_CURVE = AcrossCurveSettings()
 
 @dataclass(frozen=True, eq=False)
 class NormalDerivatives:
-    """Derivatives of cycles near a curve of special points by the distance from the curve."""
+    """Derivatives of cycles near a curve of special points with respect to the distance from the curve."""
 
     direction: Array
     """Unit direction across the curve, (2,): components along the branch and along the rows' axis."""
@@ -133,7 +133,7 @@ class SolvedPoint:
     """Direction of the branch along the row, (3,), a unit vector in components (deflection, log period,
     parameter)."""
     place: float
-    """Axis coordinate of the rows' parameter, from 0 to 1."""
+    """Position on the axis of the rows' parameter, from 0 to 1."""
     at: float
     """Value of the parameter along a row."""
     row: float
@@ -152,7 +152,7 @@ class SolvedPoint:
 
     def step_from(self, other: "SolvedPoint") -> Array:
         """Step from the point `other` to this point, (4,), in components (deflection, log period, parameter
-        along a row, rows' axis coordinate)."""
+        along a row, position on the rows' axis)."""
         moved = self.scale.components(self.orbit) - self.scale.components(other.orbit)
         return np.append(moved, self.place - other.place)
 
@@ -165,8 +165,8 @@ class SolvedPoint:
 
 
 def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
-    """The points of a curve, in order, with the field `error` set: the larger of the two errors that follow
-    from the last measurement before the point and the next measurement after the point."""
+    """The points of a curve, in order, with the field `error` set: the error at a measured point; at a point
+    between, the larger of the errors from the previous and, if on the same mesh, the next measurement."""
     found: list[SolvedPoint] = []
     behind: CurveErrors | None = None
     # In reverse order, so that the next measurement after each point is known.
@@ -184,7 +184,7 @@ def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
 
 def orbit_with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
     """The orbit with unchanged values, for a rod with changed parameters; raises Unsolvable if the new
-    parameters are not allowed. changed: new parameter values by name."""
+    parameters are not allowed or change the unknowns of a state. changed: new parameter values by name."""
     try:
         form = replace(orbit.form, rod=orbit.form.rod.changed(**changed))
     except (ValueError, ZeroDivisionError) as error:
@@ -207,7 +207,7 @@ def arc_lengths(points: Sequence[SolvedPoint]) -> Array:
 
 
 def chord_slope(one: SolvedPoint, other: SolvedPoint) -> float:
-    """Slope of the chord between two points of a curve: difference of the parameter along a row, divided by
-    the difference of the rows' axis coordinate; 0 if the axis coordinates are equal."""
+    """Slope of the chord between two points of a curve: difference of `at`, divided by the difference of
+    `place`; 0 if the places are equal."""
     apart = other.place - one.place
     return (other.at - one.at) / apart if apart else 0.0

@@ -56,8 +56,8 @@ AUGMENTED = AugmentedSettings()
 
 
 class FoldFunction:
-    """Test function of folds: derivative of the scaled parameter coordinate by the arc length in the
-    direction `border`, (3,). small: whether the derivative is divided by the deflection; without this
+    """Test function of folds: derivative of the scaled parameter coordinate with respect to the arc length in
+    the direction `border`, (3,). small: whether the derivative is divided by the deflection; without this
     division the derivative vanishes at a Hopf point too."""
 
     def __init__(self, matrix: BorderedMatrix, border: Array, small: bool) -> None:
