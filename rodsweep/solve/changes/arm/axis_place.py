@@ -1,4 +1,4 @@
-"""Eigenvalues near the imaginary axis at places, selected arms of a path, and the test whether a pair may
+"""Eigenvalues near the imaginary axis at selected arms of a path (places), and the test whether a pair may
 cross the axis twice between two places."""
 
 import math
@@ -42,8 +42,9 @@ class AxisPlace:
     unstable: int
 
     def nearest(self, growing: bool) -> tuple[float, float] | None:
-        """(distance from the imaginary axis, derivative by p of this distance) of the nearest pair to the
-        right (if `growing`) or to the left of the axis; None if no pair is known there."""
+        """(distance from the imaginary axis, derivative of this distance with respect to p) of the pair
+        nearest to the axis, on its right if `growing`, otherwise on its left; None if no pair is known
+        there."""
         pairs = [i for i, w in enumerate(self.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
         if not pairs:
             return None
@@ -66,12 +67,12 @@ class AxisPlaces:
         self.known: dict[float, AxisPlace] = {}
 
     def are_many(self, p: float) -> bool:
-        """Whether at p only the modes near the imaginary axis are computed, because many modes are expected
-        to grow."""
+        """Whether, at path variable p, only the modes near the imaginary axis are computed: many modes are
+        expected to grow, and `certify` is set."""
         return self.certify and self.problem.expected_growing(p) > AXIS_PLACES.many
 
     def at(self, p: float, beside: Complex | None = None) -> AxisPlace:
-        """The place at p; raises Unsolvable if the eigenvalues or the count cannot be computed.
+        """The place at path variable p; raises Unsolvable if the eigenvalues or the count cannot be computed.
 
         beside: approximate eigenvalues near the imaginary axis, (n,), one of each pair, if available.
         """

@@ -2,7 +2,7 @@
 
 The unstable modes are counted at places along the path. Between two places whose counts differ by one pair,
 Newton's method on D finds the crossing. Between two places with equal counts, the slopes of the pairs nearest
-to the axis must exclude two crossings; otherwise a place is added between the two.
+to the axis must exclude two crossings; otherwise a place is added between the two places.
 """
 
 import math
@@ -23,11 +23,12 @@ class ArmCrossingSettings:
 
     beyond_the_list: float = 2.0
     smallest_first: float = 1e-3
-    """An interval is halved before its search if more modes than `beyond_the_list` times the length of the
-    list are expected to grow at its right end, unless it is shorter than `smallest_first` times the path."""
+    """An interval is halved before its search if the number of pairs expected to grow at its right end
+    exceeds `beyond_the_list` times the maximum number of crossings, unless the interval is shorter than
+    `smallest_first` times the path."""
     most_at_once: int = 6
-    """All crossings between two places are searched at once if the counts differ by at most this many
-    pairs."""
+    """Where many modes grow, all crossings between two places are searched at once if the counts differ by at
+    most this many pairs."""
     higher: float = 4.0
     """Modes near the axis at a crossing are searched up to this multiple of the largest known |w|."""
     same_errors: float = 10.0
@@ -38,8 +39,8 @@ class ArmCrossingSettings:
     """Intervals shorter than this fraction of the path are not divided: whether two crossings lie inside
     remains undecided."""
     smallest_step: float = 1e-12
-    """An interval with a smaller length, relative to the larger of its ends, has no place between its ends:
-    some thousand rounding errors."""
+    """The search fails at an interval whose length, divided by the larger modulus of its ends, is at most
+    this (some thousand rounding errors), if its crossings are not located."""
     count_distance: float = 1e-5
     """Distance from a crossing, as a fraction of the path, at which the modes are counted on both sides."""
     max_steps: int = 20
@@ -91,14 +92,15 @@ class CrossingSearch:
 
     def _is_too_long(self, a: float, b: float, most: float, length: float) -> bool:
         """Whether the list of `most` crossings is likely to be full before b, where a count is expensive.
-        length: of the path."""
+        length: length of the path."""
         if b in self.places.known or b - a < ARM_CROSSINGS.smallest_first * length:
             return False
         expected = self.problem.expected_growing(b)
         return self.places.are_many(b) and expected > ARM_CROSSINGS.beyond_the_list * 2 * most
 
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> None:
-        """Searches the interval (a, b): stores the crossings found, or divides the interval."""
+        """Searches the interval (a, b): stores the crossings found, or divides the interval, or stores it as
+        a gap if it is too short to be divided; raises Unsolvable."""
         left = self.places.at(a)
         right = self.places.at(b)
         # Equal counts leave room for a pair that crosses and returns.
@@ -128,10 +130,10 @@ class CrossingSearch:
         self, crossings: list[Crossing], left: AxisPlace, right: AxisPlace, length: float
     ) -> list[tuple[float, float]] | None:
         """The intervals between crossings, in increasing order of p; None if the counts just before and just
-        after a crossing do not confirm the crossing. length: of the path.
+        after a crossing do not confirm the crossing. length: length of the path.
 
-        Where many modes grow, the modes near the axis at a crossing serve the counts before and after the
-        crossing.
+        Where many modes grow, the modes near the axis at a crossing are used for the counts before and after
+        the crossing.
         """
         parts: list[tuple[float, float]] = []
         start = left.p
@@ -152,7 +154,7 @@ class CrossingSearch:
 
     def _between(self, left: AxisPlace, right: AxisPlace) -> list[Crossing]:
         """Crossings between two places, in increasing order of p, that explain the change of the number of
-        unstable modes; empty if not all are found."""
+        unstable modes; empty if a crossing is not found or the change is too large for one search."""
         change = (right.unstable - left.unstable) // 2
         many = self.places.are_many(right.p)
         # Where modes are followed, bisection first separates several crossings.
@@ -175,8 +177,8 @@ class CrossingSearch:
         return []
 
     def _newton(self, start: AxisPlace, i: int, ends: tuple[float, float], grows: bool) -> Crossing | None:
-        """Newton's method for the p at which eigenvalue number i of the place `start` lies on the imaginary
-        axis; None without convergence.
+        """The crossing of the imaginary axis by eigenvalue number i of the place `start`, by Newton's method
+        for p; None if Newton's method does not converge within `ends`.
 
         ends: allowed interval of p. grows: whether the growth rate of the pair increases with p.
         """
@@ -202,8 +204,8 @@ class CrossingSearch:
         return None
 
     def _crossing(self, p: float, w: complex, slope: complex, blur: float, grows: bool) -> Crossing | None:
-        """The crossing of the pair w at p; None if the growth rate changes in the opposite direction, or if w
-        is no pair. slope: dw/dp. blur: error of p."""
+        """The crossing of the pair w at p; None if w is real, or if its growth rate changes in the direction
+        opposite to `grows`. slope: dw/dp. blur: error of p. grows: as in `_newton`."""
         # Newton's method may find another pair, which crosses in the opposite direction.
         if w.imag <= 0 or (slope.real > 0) != grows:
             return None
