@@ -1,9 +1,10 @@
 """Curves of generalised Hopf points over three parameters.
 
-Generalised Hopf points, D(i eta) = 0 and Re c = 0, are isolated in a plane of two parameters and form a curve
-over three parameters. Each step prescribes the parameter that changes fastest along the curve, so that folds
-in all parameters are possible. The line through the last two points is the predictor. The secant method then
-moves along the Hopf curve in the plane of the two free parameters, to Re c = 0.
+Generalised Hopf points, D(i eta) = 0 and Re c = 0 (D: determinant, eta: frequency, c: Landau coefficient),
+are isolated in a plane of two parameters and form a curve over three parameters. Each step prescribes the
+parameter that changes fastest along the curve, so that folds in all parameters are possible. The line through
+the last two points is the predictor. The secant method then moves along the Hopf curve in the plane of the
+two free parameters, to Re c = 0.
 """
 
 from collections.abc import Sequence
@@ -47,7 +48,8 @@ END_OTHERWISE = {
 class BautinCurvePoint:
     """A generalised Hopf point in the space of three parameters.
 
-    values, errors: the plane's two parameters, then the third one, (3,). landau_imag: Im c, in 1/(tau2 L^2).
+    values, errors: the plane's two parameters, then the third parameter, (3,). frequency: in 1/tau2.
+    landau_imag: Im c, c: Landau coefficient, in 1/(tau2 L^2).
     """
 
     values: Array
@@ -66,7 +68,8 @@ class BautinCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvePoint:
-    """Generalised Hopf point. v: coordinates for continuation, (4,): three scaled parameters and log eta."""
+    """Generalised Hopf point. v: coordinates for continuation, (4,): three scaled parameters and log
+    frequency."""
 
     v: Array
     point: BautinCurvePoint
@@ -76,8 +79,9 @@ class _CurvePoint:
 class BautinSpace:
     """Curve problem for the follower: generalised Hopf points over three parameters, each with a range.
 
-    rod: values of the fixed parameters. asked: values of the third parameter at which points are stored.
-    accuracy: relative accuracy of c. side: sign of the first step along the third parameter, 1 or -1.
+    rod: values of the fixed parameters. asked: values of the third parameter at which points are stored in
+    addition to the points of the steps. accuracy: relative accuracy of the Landau coefficient. side: sign of
+    the first step along the third parameter, 1 or -1.
     """
 
     rod: Rod
@@ -130,7 +134,8 @@ class BautinSpace:
         return StepResult(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
 
     def _within(self, here: Array, change: Array) -> tuple[_CurvePoint, bool]:
-        """(point near here + change, (4,), or where the step leaves the ranges; whether it lies on an end).
+        """(point near here + change, (4,), or, if the step leaves the ranges, the point on the end of the
+        range that it crosses first; whether the point lies on such an end).
 
         No point outside the ranges is solved: its parameters may describe no rod. Raises Unsolvable.
         """
@@ -146,13 +151,13 @@ class BautinSpace:
         return self.solved(guess, which), True
 
     def margins(self, place: _CurvePoint) -> Array:
-        """Distances of a point from both ends of the three ranges minus a tolerance, (6,)."""
+        """Distances of a point from both ends of each of the three ranges, minus a tolerance, (6,)."""
         return np.ravel([place.v[:3], 1 - place.v[:3]], order="F") - BAUTIN.on_edge
 
     def located_zero(
         self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int
     ) -> _CurvePoint | None:
-        """The point `outer` itself: `_within` has already shortened the step to end on the edge."""
+        """The point `outer` itself: `_within` has already shortened the step to end on the end of a range."""
         return outer
 
     def closes(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
@@ -216,7 +221,8 @@ def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> 
 
 
 def _followed(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
-    """(points from `start` to the side `space.side`, with the requested third values; why the curve ends)."""
+    """(points from `start` in the direction `space.side` of the third parameter, including points at its
+    requested values; why the curve ends)."""
     if not 0 < start.v[2] + space.side * BAUTIN_STEPS.min_length < 1:
         return [start], BautinEnd.range_end
     curve = follow_curve(space, start, BAUTIN_STEPS, _report)
@@ -237,7 +243,8 @@ def _report(places: Sequence[_CurvePoint]) -> None:
 
 
 def _asked_between(space: BautinSpace, here: _CurvePoint, there: _CurvePoint) -> list[_CurvePoint]:
-    """Points at the requested third values between `here` and `there`; raises Unsolvable or ValueError."""
+    """Points at the requested values of the third parameter between `here` and `there`; raises Unsolvable or
+    ValueError."""
     a = here.v[2]
     b = there.v[2]
     inner = [z for z in map(space.axes[2].scaled, space.asked) if min(a, b) < z < max(a, b)]

@@ -20,7 +20,7 @@ class SpectrumStatus(PointStatus):
     accuracy_not_reached = (
         3,
         "a number misses the requested accuracy, as its error estimate says; near a double eigenvalue "
-        "half of the digits are lost: request a lower accuracy there",
+        "half of the digits are lost: use a larger number for the accuracy there",
     )
     modes_missing = (
         4,

@@ -32,11 +32,12 @@ class TwoMeshSettings:
     spare_eigenvalues: int = 2
     """Number of eigenvalues requested first on a mesh, in addition to the wanted modes."""
     unchanged_tolerance: float = 1e-9
-    """The doubling ends if the leading eigenvalues change relatively by less than this after a doubled
-    request."""
+    """The number of requested eigenvalues is doubled until the leading eigenvalues change relatively by less
+    than this."""
     unchanged_rounding_tolerance: float = 3e-11
-    """The doubling also ends if the leading eigenvalues change by less than this times (shift + F^2). A
-    hundred times `rounding`, because rounding differs between releases of SLEPc and between processors."""
+    """The doubling also ends if the leading eigenvalues change by less than this times (|shift| + F^2). The
+    value is a hundred times `rounding`, because rounding differs between releases of SLEPc and between
+    processors."""
     mesh_error_factor: float = 3.0
     """Error of the finer mesh divided by the difference between the two meshes (safety factor)."""
     rounding: float = 3e-13
