@@ -33,7 +33,8 @@ ABSCISSA = AbscissaSettings()
 
 
 def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
-    """sup Re (xi, L xi)/(xi, xi) over the domain of L, in 1/tau2: the largest growth rate at t = 0+.
+    """sup Re (xi, L xi)/(xi, xi) over the domain of the operator L, in 1/tau2: the largest growth rate at
+    t = 0+.
 
     The largest eigenvalue of the Hermitian part (`rodsweep.model.adjoint`), approached by shifts from above.
     nan if no shift lies above this eigenvalue, which is possible only for a rod without rotational drag and

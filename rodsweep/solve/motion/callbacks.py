@@ -164,8 +164,8 @@ class Workspace:
         take_steps(self.context)
 
     def predict_as(self, variant: str) -> None:
-        """Sets the extrapolation points of the stages for the ARKIMEX type `variant`; no points if the type
-        is not in the table."""
+        """Sets the extrapolation points of the stages for the ARKIMEX type `variant`; no points if
+        `EXTRAPOLATION_POINTS` does not contain the type."""
         self._arrays["points"][:] = points_of(variant)
 
     def attach(self, ts: "PETSc.TS", matrix: "PETSc.Mat") -> None:

@@ -41,8 +41,8 @@ class OrbitMeshSettings:
     max_intervals: int = 256
     """Largest number of time intervals of a chosen mesh."""
     stage_accuracies: tuple[float, ...] = (2e-5, 3e-9, 3e-11)
-    """At accuracies up to these numbers, four stages cost less than three, five less than four, six less than
-    five."""
+    """At accuracies up to the first, second and third number, four stages cost less than three, five less
+    than four, and six less than five."""
     fewest_stages: int = 3
     """Number of collocation stages at accuracies above the largest of `stage_accuracies`."""
     max_more_orders: int = 12
@@ -160,7 +160,8 @@ def stages_for(accuracy: float) -> int:
 
 def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     """The coarsest mesh with `stages` stages that is expected to reach the relative accuracy `accuracy`, from
-    the tails of the nearby orbit `orbit`."""
+    the tails of the nearby orbit `orbit`; finer than the mesh of `orbit` at most by `max_more_orders` and
+    `max_interval_ratio`."""
     present = mesh_of(orbit)
     tails = tails_of(orbit)
     aim_space = (ORBIT_MESH.expected_share * accuracy / ORBIT_MESH.space_factor) ** 0.5
