@@ -109,8 +109,9 @@ class ArcPoint:
 
     @cached_property
     def partial_multipliers(self) -> Complex:
-        """Nontrivial Floquet multipliers, (rank - 1,). Asymmetric cycle: eigenvalues of the map over the
-        period. Symmetric cycle: eigenvalues of the map over half a period, composed with the reflection."""
+        """Nontrivial multipliers over the solved time interval, (rank - 1,). Asymmetric cycle: eigenvalues of
+        the map over the period. Symmetric cycle: eigenvalues of the map over half a period, composed with the
+        reflection."""
         values = bordered_matrix_of(self.cycle.converged).partial_multipliers
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 

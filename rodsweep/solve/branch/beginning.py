@@ -72,7 +72,7 @@ class HopfBranchStart:
     normal_form: NormalForm
     """Normal form on a mesh that suffices for the prediction of the first cycle."""
     coefficients: HopfCoefficients
-    """Coefficients of the normal form from a finer mesh, with error estimates."""
+    """Coefficients of the normal form with error estimates, from a comparison of meshes."""
 
     @property
     def period(self) -> float:
@@ -183,8 +183,8 @@ def _cycle_of(
     """The cycle near the cycle that the normal form predicts for the largest tip y `amplitude`, in L, solved
     to the relative `accuracy`; raises Unsolvable.
 
-    aim: accuracy for which the second mesh is chosen. finer: whether Newton's method starts on a mesh chosen
-    for `aim`, instead of the coarser mesh of the normal form.
+    The cycle is solved first on the starting mesh, then on a mesh chosen for the accuracy `aim`. finer:
+    whether the starting mesh is chosen for `aim` too; otherwise it is the coarser mesh of the normal form.
     """
     start = predicted_cycle(hopf, amplitude)
     if finer:

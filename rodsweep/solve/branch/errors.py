@@ -3,10 +3,10 @@ and the error of the parameter.
 
 The cycle is solved at the same arc length on two finer meshes, the first finer in space, the second finer in
 time; this system is regular at a fold. The three cycles have slightly different parameter values. The two
-finer cycles are therefore moved along the branch to the parameter value of the rough cycle. The remaining
-differences are the errors of period, extrema and multiplier at equal parameter. The error of the parameter is
-the parameter difference of the cycles at equal deflection. This error stays small near a Hopf point and near
-a fold, where all other quantities vary steeply with the parameter.
+cycles on finer meshes are therefore moved along the branch to the parameter value of the given cycle. The
+remaining differences are the errors of period, extrema and multiplier at equal parameter. The error of the
+parameter is the parameter difference of the cycles at equal deflection. This error stays small near a Hopf
+point and near a fold, where all other quantities vary steeply with the parameter.
 """
 
 from dataclasses import dataclass, replace

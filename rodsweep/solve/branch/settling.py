@@ -184,7 +184,8 @@ def _with_errors_between(
 
     share: fraction of the arc length from `last` to `end` at which `point` lies. The errors of `point` are
     measured instead if its coefficient tails are much larger than at `last` and `end`, or if the parameter
-    changes more slowly than at `last` and `end`, as near a fold: their errors are then no bound.
+    changes more slowly than at `last` and `end`, as near a fold: the errors at `last` and `end` are then no
+    bound.
     """
     ends = (last, end)
     slow = abs(point.parameter_rate) < BRANCH_MESH.min_rate_share * min(

@@ -190,7 +190,7 @@ def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, 
 
 
 def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, most: float) -> AxisCrossings:
-    """Crossings for path variables between both `ends`: by the covering, or for nonuniform arms by counts,
+    """Crossings for path variables between the two `ends`: by the covering, or for nonuniform arms by counts,
     which end after more than `most` crossings."""
     if not isinstance(problem, ArmPath):
         return _covered(problem.path, *ends)

@@ -33,7 +33,7 @@ class Anchor:
     (ANCHOR_MODES,) each.
 
     time: a relaxation time of the rod, smooth in p. lengthening: d time/dp. The product w time is of order
-    one; w alone grows without bound as the rod approaches crushing, if it has no shear and rotational drag.
+    one; w alone grows without bound near crushing for a rod that has neither shear nor rotational drag.
     """
 
     p: float

@@ -40,8 +40,7 @@ class LeaderSettings:
     """An anchor is added between two anchors only if their distance, as a fraction of the path's length,
     exceeds this."""
     smallest_hiding_interval: float = 1e-9
-    """Smallest interval, as `smallest_interval`, between two anchors with possibly two exchanges between
-    them."""
+    """Like `smallest_interval`, for two anchors between which two exchanges may lie."""
     max_overtaking_steps: int = 60
     """Maximum number of Newton steps to an overtaking."""
     carrying_steps: int = 8

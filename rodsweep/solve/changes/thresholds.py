@@ -93,8 +93,8 @@ def empty_thresholds(status: ThresholdStatus, end: float, message: str = "") -> 
 
 
 def judged(found: Transitions, accuracy: float, certify: bool, most: int) -> Thresholds:
-    """The result of a search with its status: the first of the problems tested below, or ok. accuracy,
-    certify: as requested. most: maximum number of thresholds in the list."""
+    """The result of a search with its status: the most serious problem, or ok. accuracy, certify: as
+    requested. most: maximum number of thresholds in the list."""
     status = ThresholdStatus.ok
     if found.ended_early:
         status = ThresholdStatus.ended_early

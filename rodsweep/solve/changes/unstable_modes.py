@@ -154,8 +154,8 @@ class ModeCounter:
 
     def _between(self, a: float, b: float, unstable: int) -> int:
         """Number of unstable modes just before b: `unstable`, the number just after a, compared with a count
-        between a and b if `certify`; a contradiction is added to `doubts`. If a gap lies between, the number
-        counted behind the gap; -1 if undecided."""
+        between a and b if `certify`; a contradiction is added to `doubts`. If a gap lies between a and b, the
+        result is the number counted behind the gap, or -1 if undecided."""
         inside = [gap for gap in self.gaps if gap[1] > a and gap[0] < b]
         if inside:
             # A gap may hide crossings, so the modes are counted again after the gap.

@@ -41,7 +41,8 @@ END_OTHERWISE = {
     CurveStop.lost: BautinEnd.not_found,
     CurveStop.full: BautinEnd.list_full,
 }
-"""`BautinEnd` for each `CurveStop` except `margin`: there the curve reaches an end of a parameter's range."""
+"""`BautinEnd` for each `CurveStop` except `margin`, for which the curve ends at an end of a parameter's
+range."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,7 +78,7 @@ class _CurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class BautinSpace:
-    """Curve problem for the follower: generalised Hopf points over three parameters, each with a range.
+    """Generalised Hopf points over three parameters, each with a range, as a problem for `follow_curve`.
 
     rod: values of the fixed parameters. asked: values of the third parameter at which points are stored in
     addition to the points of the steps. accuracy: relative accuracy of the Landau coefficient. side: sign of

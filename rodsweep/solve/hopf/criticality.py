@@ -145,8 +145,8 @@ def _nothing(end: float, cause: str) -> Criticality:
 def _judged(
     found: Transitions, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
 ) -> tuple[CriticalityStatus, str]:
-    """Returns (status, message) from the Hopf points `found` and their coefficients. status: the first of the
-    problems listed below, or ok."""
+    """Returns (status, message) from the Hopf points `found` and their coefficients. status: the most serious
+    problem, or ok."""
     failures = "; ".join(filter(None, (c.message for c in coefficients)))
     known = [c for c in coefficients if c.known]
     worse = any(c.error > request.accuracy * abs(c.at) for c in found.crossings) or any(

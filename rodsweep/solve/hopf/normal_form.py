@@ -59,7 +59,8 @@ class NormalFormSettings:
 NORMAL_FORM = NormalFormSettings()
 ITERATIONS_PER_SHIFT = 2
 """Number of inverse iterations with one shift. After two iterations the error of the mode is about the square
-of `NORMAL_FORM.found`, below rounding error; after one iteration it would exceed the stated error of c."""
+of `NORMAL_FORM.found`, below rounding error; after one iteration the error of the mode would exceed the
+stated error of c."""
 
 
 HARMONIC_WAVES = 2

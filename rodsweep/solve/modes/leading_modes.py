@@ -37,7 +37,7 @@ class LeadingModeSettings:
     """The mesh for the growth resolves at least this wave number, the wave number of the eighth mode without
     load, because growth at short times needs more modes than are requested."""
     significant_errors: float = 4.0
-    """A rod is unstable if a growth rate exceeds this multiple of its error estimate."""
+    """A rod is treated as unstable if a growth rate exceeds this multiple of its error estimate."""
 
 
 LEADING_MODES = LeadingModeSettings()

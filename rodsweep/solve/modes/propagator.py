@@ -69,7 +69,7 @@ class Propagator:
         self.overlap: Array = np.zeros((0, 0))
 
     def keep(self, k: int) -> int:
-        """From now on exp(L t) is represented by k leading modes, Q exp(L_k t) (Z^T Q)^-1 Z^T, with
+        """Represents exp(L t) from now on by k leading modes, as Q exp(L_k t) (Z^T Q)^-1 Z^T, with
         orthonormal real Q, Z.
 
         Q and Z are bases of the right and left invariant subspaces: at a double eigenvalue the eigenvectors

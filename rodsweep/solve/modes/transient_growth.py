@@ -65,7 +65,7 @@ class Growth:
     growth_error: float = nan
     """Relative error of `transient_growth`."""
     numerical_abscissa: float = nan
-    """Growth rate at t = 0+, sup Re (xi, L xi)/(xi, xi), in 1/tau2."""
+    """Growth rate at t = 0+, sup Re (xi, L xi)/(xi, xi), L: operator of the rod, in 1/tau2."""
     abscissa_error: float = nan
     """Absolute error of `numerical_abscissa`."""
 

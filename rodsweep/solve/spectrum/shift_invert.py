@@ -30,16 +30,16 @@ class KrylovSettings:
     """Matrices with up to this number of unknowns are factorised as dense: as fast as the sparse
     factorisation, with smaller rounding errors."""
     loose_tolerance: float = 1e-4
-    """Krylov tolerance for eigenvalues that are refined on D."""
+    """Krylov tolerance for eigenvalues that Newton's method on the determinant D refines."""
     loose_spare_vectors: int = 5
-    """Number of Krylov vectors in addition to the wanted eigenvalues, for eigenvalues that are refined on
-    D."""
+    """Number of Krylov vectors in addition to the wanted eigenvalues, if Newton's method on the determinant D
+    refines the eigenvalues."""
     tight_tolerance: float = 1e-14
-    """Krylov tolerance for eigenvalues and eigenvectors that are not refined on D: only the error of the mesh
+    """Krylov tolerance for eigenvalues and eigenvectors that are not refined: only the error of the mesh
     remains."""
     tight_spare_vectors: int = 13
-    """Number of Krylov vectors in addition to the wanted eigenvalues, for eigenvalues and eigenvectors that
-    are not refined on D."""
+    """Number of Krylov vectors in addition to the wanted eigenvalues, if eigenvalues and eigenvectors are not
+    refined."""
     max_restarts: int = 200
     """Maximum number of restarts of the Krylov space."""
     vectors_for_infinity: int = 2

@@ -32,7 +32,7 @@ class SpectrumRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpectrumErrorSettings:
-    """Settings for the rounding errors of eigenvalues, which are added to the error from D."""
+    """Settings for the rounding errors of eigenvalues, which are added to the error from the determinant."""
 
     rounding: float = 6.0
     """Rounding error of an eigenvalue of a uniform rod, divided by the spacing of doubles at |w|: the

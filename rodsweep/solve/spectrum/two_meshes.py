@@ -41,7 +41,7 @@ class TwoMeshSettings:
     mesh_error_factor: float = 3.0
     """Error of the finer mesh divided by the difference between the two meshes (safety factor)."""
     rounding: float = 3e-13
-    """Rounding error of an eigenvalue, divided by |w| + shift + F^2. F^2 is included because the first
+    """Rounding error of an eigenvalue w, divided by |w| + |shift| + F^2. F^2 is included because the first
     eigenvalue of a pulled rod is exponentially small compared with F^2."""
     min_unknowns_per_mode: int = 3
     """Minimum number of unknowns of a mesh per requested eigenvalue: a third of the unknowns have no time
@@ -138,9 +138,9 @@ def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
     """Absolute errors of the sorted eigenvalues w, (k,), from the unsorted eigenvalues `coarser`, (l,), of a
     coarser mesh.
 
-    scale: `_scale`. Two meshes may agree on one eigenvalue by chance. Each eigenvalue therefore gets the
-    largest relative difference of itself and its two neighbours. Near a double eigenvalue the stated rounding
-    errors are larger.
+    scale: result of `_scale`. Two meshes may agree on one eigenvalue by chance. Each eigenvalue therefore
+    gets the largest relative difference among itself and its two neighbours. Near a double eigenvalue the
+    stated rounding errors are larger than elsewhere.
     """
     apart = np.abs(w[:, None] - coarser).min(axis=1) / np.abs(w)
     padded = np.pad(apart, 1)

@@ -232,7 +232,8 @@ class SpecialCurveProblem:
         return len(behind) > CYCLE_CURVES.min_loop_points and 0 <= passed <= 1 and near
 
     def between(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
-        """The point near the fraction `share` of the chord from `one` to `other`; raises Unsolvable."""
+        """The point of the curve near the fraction `share` of the chord from `one` to `other`; raises
+        Unsolvable."""
         start, place = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.across(other.step_from(one))
         return self._family(other).nearest(start, place, across, other.rates)

@@ -114,8 +114,8 @@ class CycleFamily:
         """The point of the curve near `start` with an error estimate, on a finer mesh if necessary; raises
         Unsolvable.
 
-        start, place, across, rates: as in `nearest`. slope: `chord_slope` of the curve, by which a
-        displacement along the curve is not counted as an error. before: previous point of the curve, whose
+        start, place, across, rates: as in `nearest`. slope: `chord_slope` of the curve, with which a
+        displacement along the curve is removed from the error. before: previous point of the curve, whose
         measured error is used if it still applies.
         """
         last = self.nearest(start, place, across, rates)

@@ -57,7 +57,7 @@ class BranchSegment:
     @property
     def known(self) -> tuple[float, Orbit, Array]:
         """(arc length from `start`, orbit, derivative of orbit values and parameter coordinate with respect
-        to arc length, (N + 1,)) of the last cycle that `at` solved; raises ValueError before the first."""
+        to arc length, (N + 1,)) of the last cycle that `at` solved; raises ValueError if there is none."""
         if self._known is None:
             raise ValueError("no cycle was solved on this segment and mesh yet")
         return self._known

@@ -85,8 +85,8 @@ class AxisPlaces:
         return self.known[p]
 
     def modes_beside(self, p: float, highest: float, known: Complex) -> Complex:
-        """Eigenvalues near the imaginary axis at p with Im w up to `highest`, (n,), as `ArmPath.beside_axis`.
-        known: some of these eigenvalues, (k,).
+        """Eigenvalues near the imaginary axis at path variable p, with |Im w| up to `highest`, (n,), one of
+        each pair. known: some of these eigenvalues, (k,), which come first.
 
         Raises Unsolvable if no elements resolve the arm.
         """
@@ -128,15 +128,15 @@ class AxisPlaces:
 
 
 def _needed(found: Spectrum) -> int:
-    """Number of modes to be computed: two more than the unstable modes, or, without a count, than the growing
-    modes found."""
+    """Number of modes to be computed: two more than the number of unstable modes counted or the number of
+    growing modes found, whichever is larger."""
     growing = int((found.eigenvalues.real > 0).sum())
     return 2 + max(found.unstable_count, growing)
 
 
 def next_count_place(left: AxisPlace, right: AxisPlace) -> float:
-    """Position of the next count as a fraction of the interval from `left` to `right`, because a pair may
-    touch the axis between; 0 if no pair can touch the axis."""
+    """Position of the next count as a fraction of the interval from `left` to `right`; 0 if no count is
+    needed, because no pair can touch the imaginary axis in the interval."""
     h = right.p - left.p
     for growing in (False, True):
         a = left.nearest(growing)

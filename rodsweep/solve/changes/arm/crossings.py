@@ -67,8 +67,8 @@ class CrossingSearch:
         self.gaps: list[tuple[float, float]] = []
 
     def crossings(self, edges: list[float], most: float) -> tuple[list[Crossing], SearchEnd]:
-        """Returns (crossings, end of the search): all crossings from the first of `edges` to that end, in
-        increasing order of p.
+        """Returns (crossings, end). crossings: all crossings from the first of `edges` to the end of the
+        search, in increasing order of p. end: end of the search.
 
         The search ends after the first crossing beyond `most`: where dozens of modes grow, each further
         crossing takes longer than all earlier crossings. Raises Unsolvable if the search ends at the first
@@ -91,8 +91,8 @@ class CrossingSearch:
         return [self.found[p] for p in sorted(self.found)], intervals.reach
 
     def _is_too_long(self, a: float, b: float, most: float, length: float) -> bool:
-        """Whether the list of `most` crossings is likely to be full before b, where a count is expensive.
-        length: length of the path."""
+        """Whether the interval (a, b) must be halved before its search: the list of `most` crossings is
+        likely to be full before b, where a count is expensive. length: length of the path."""
         if b in self.places.known or b - a < ARM_CROSSINGS.smallest_first * length:
             return False
         expected = self.problem.expected_growing(b)

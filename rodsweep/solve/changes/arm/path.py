@@ -37,7 +37,8 @@ class ArmPathSettings:
     """Number of leading eigenvalues that are proved complete at each step, together with all unstable
     eigenvalues."""
     spare_pair: int = 2
-    """Number of modes solved for in addition to the requested modes, for an arm with many unstable modes."""
+    """Number of modes solved for in addition to the requested modes, if more than `followed_modes` modes are
+    requested."""
     most_growing: float = 16.0
     """No modes are followed where more unstable modes than this are expected, because at most 13 modes can be
     followed."""

@@ -1,7 +1,7 @@
-"""A boundary of the spectrum in a plane of rods as a curve problem for the follower.
+"""A boundary of the spectrum in a plane of rods, as a problem for `continuation.follower.follow_curve`.
 
-Each point of the curve has a unit tangent. A curve ends at an edge of the plane, at a crushed rod, or where
-it closes.
+Each point of the curve has a unit tangent. A curve ends at an edge of the plane, at a crushed rod, where it
+closes, or where it cannot be followed.
 """
 
 from collections.abc import Sequence
@@ -86,7 +86,7 @@ class BoundaryPoint(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ChangeCurveProblem:
-    """A boundary of the spectrum as a curve problem for the follower."""
+    """A boundary of the spectrum, as a problem for `follow_curve`."""
 
     boundary: Boundary
 
@@ -145,8 +145,8 @@ class ChangeCurveProblem:
     def end_of(self, followed: Curve[BoundaryPoint]) -> BoundaryEnd:
         """The reason for the end of a followed curve.
 
-        No solution is found beyond a point on an edge where the range of a parameter ends, such as gamma3 =
-        0, nor for a crushed rod, which may be closer than the shortest step.
+        If no further solution was found, the reason is `edge` if the last point lies on an edge, such as
+        gamma3 = 0, `crushed` if a rod just beyond the last point is crushed, otherwise `not_followed`.
         """
         if followed.end is CurveStop.closed:
             return BoundaryEnd.closed

@@ -100,8 +100,8 @@ def _is_better(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
 
 
 def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, further: int) -> bool:
-    """Whether following `further` additional modes would prove completeness at the middle one of the points
-    without a proof."""
+    """Whether following `further` additional modes would prove completeness at the middle point among the
+    points without a proof."""
     left = np.flatnonzero(found.proved_modes < request.modes)
     return proves_point(path, found, float(found.p[left[len(left) // 2]]), request, further)
 
@@ -123,7 +123,8 @@ def proves_point(path: Path, found: ArmInterval, p: float, request: SpectrumRequ
 def follow_with(
     path: Path, p: Array, request: SpectrumRequest, further: int, before: ArmInterval | None
 ) -> ArmInterval | None:
-    """Like `follow_interval`, with exactly `further` modes followed in addition to the wanted modes."""
+    """The first points of p, (n,), that are reached as in `follow_interval`, with exactly `further` modes
+    followed in addition to the wanted modes; None if the first point fails."""
     first = _carried(before, float(p[0]), request, further)
     if first is None:
         first = first_eigenvalues(path, float(p[0]), request, further)
@@ -158,7 +159,7 @@ def follow_with(
 
 
 def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmFamily, PathHulls] | None:
-    """(family of the arms at all p, (n,); hulls that contain their spectra), or None.
+    """(family of the arms at all p, (n,); hulls that contain the spectra of these arms), or None.
 
     first: eigenvalues at the first point, (m,), in descending order. modes: number of requested modes. None
     if all p are equal, if the arms are not smooth in p, or if no elements resolve an arm.

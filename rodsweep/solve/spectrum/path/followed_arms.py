@@ -19,10 +19,11 @@ from .prediction import KnownRoots, Track, slice_track, start_track
 
 
 class FollowedArms:
-    """Leading eigenvalues of arms along a path; eigenvalues at any p are followed from the nearest point.
+    """Leading eigenvalues of arms along a path; eigenvalues at any path variable p are followed from the
+    nearest point.
 
-    Points are followed only as far as the largest requested p. If following fails at a point, a new interval
-    starts at a later point.
+    Eigenvalues are followed from point to point only as far as the largest requested p. If following fails at
+    a point, a new interval starts at a later point.
     """
 
     def __init__(self, path: Path, p: Array, modes: int):
