@@ -51,8 +51,7 @@ class BranchLimits:
 
 
 def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
-    """The branch from the Hopf point `limits.hopfs[number]`; a failure is stored in its last special
-    point."""
+    """The branch from the Hopf point `limits.hopfs[number]`; its last special point stores a failure."""
     hopf = limits.hopfs[number]
     curve = BranchCurve(start_hopf=number)
     curve.add(hopf_as_special_point(hopf))
@@ -211,9 +210,8 @@ def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
 
 
 def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """The end of a branch at a Hopf point between two cycles (a failure if no known Hopf point is near); or
-    `start` with half the step length, if its amplitude is too large for an extrapolation to zero amplitude.
-    Raises Unsolvable if the step is too short to be halved."""
+    """The end of a branch at a Hopf point between two cycles (a failure if no known Hopf point is near), or
+    `start` with half the step length, if its amplitude is too large to extrapolate. Raises Unsolvable."""
     shorter = arc_length_between(start, end) / 2
     if start.cycle.measures.tip_y_max > BRANCH_END.max_last_amplitude:
         if shorter < ARC_STEPS.min_length:
@@ -239,9 +237,8 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
 
 
 def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """The end of an asymmetric branch at a symmetry breaking between two cycles (a failure if no known
-    symmetry breaking is near); or `start` with half the step length, if the cycles are too asymmetric for an
-    extrapolation."""
+    """The end of an asymmetric branch at a symmetry breaking between two cycles (a failure if none is known
+    there), or `start` with half the step length, if the cycles are too asymmetric to extrapolate."""
     which = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
     if which is None:
         return replace(start, length=arc_length_between(start, end) / 2)

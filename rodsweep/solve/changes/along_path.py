@@ -1,10 +1,9 @@
 """Search for all thresholds along a path of rods (`unstable_modes`): pairs that cross the imaginary axis, and
 exchanges of the leading eigenvalue.
 
-The crossings come from `rodsweep.determinant.certificate.covering`, which proves that the list is complete,
-or for nonuniform arms from `arm.crossings`; the exchanges come from `leading_eigenvalue`. Both lists are
-merged into one list in increasing order of the parameter. The winding number confirms the number of unstable
-modes at both ends and between the crossings.
+The crossings come from `determinant.certificate.covering`, which proves that the list is complete, or for
+nonuniform arms from `arm.crossings`; the exchanges come from `leading_eigenvalue`. The winding number
+confirms the number of unstable modes at both ends and between the crossings.
 """
 
 import math
@@ -48,8 +47,7 @@ class Transitions:
     ended_early: bool = False
     """Whether the searched interval is shorter than the requested interval; the reason is in `why_not`."""
     open_range: tuple[float, float] = (math.nan, math.nan)
-    """Smallest interval that contains all parameter values at which further crossings are possible; (nan,
-    nan) if none are possible."""
+    """Smallest interval that contains all possible further crossings; (nan, nan) if none are possible."""
     unstable_at_start: int = -1
     unstable_at_end: int = -1
     oscillates_at_start: bool = False
@@ -161,8 +159,7 @@ def pair_crossings(
 
 
 def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...], at_end: int) -> Transitions:
-    """`Transitions` of the thresholds `crossings`, proved if every count in `counts` is decided and agrees.
-    unstable, at_end: numbers of unstable modes at the two ends."""
+    """`Transitions` of counted thresholds. unstable, at_end: numbers of unstable modes at the two ends."""
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
     return Transitions(
         crossings=crossings,
@@ -190,8 +187,7 @@ def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, 
 
 
 def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, most: float) -> AxisCrossings:
-    """Crossings for path variables between the two `ends`: by the covering, or for nonuniform arms by counts,
-    which end after more than `most` crossings."""
+    """Crossings between path variables `ends`: by the covering; for arms by counts, about `most` at most."""
     if not isinstance(problem, ArmPath):
         return _covered(problem.path, *ends)
     search = CrossingSearch(problem, certify)
@@ -202,8 +198,7 @@ def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, m
 
 
 def _covered(path: Path, low: float, high: float) -> AxisCrossings:
-    """Crossings for path variables from `low` to `high`, by the covering; raises Unsolvable if no a-priori
-    bound applies."""
+    """Crossings for path variables `low` to `high`, by the covering; raises Unsolvable without a bound."""
     boxes = first_boxes(path, low, high)
     if boxes is None:
         raise Unsolvable("no a-priori bound on the eigenvalues applies to this rod")
@@ -234,8 +229,7 @@ def _pairs_missed_as_leaders(
 
 
 def _hopf(path: Path, zero: LocatedZero) -> Crossing:
-    """The crossing at a zero of D on the imaginary axis; of kind hopf if Re w grows with the parameter,
-    otherwise hopf_reverse."""
+    """Crossing at a zero of D on the axis: hopf if Re w grows with the parameter, otherwise hopf_reverse."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
     there = determinant_along(complex(0.0, zero.eta_or_x), coefficients, path.direction)
     # dw/dp = -D_p/D_w; along a stiffness p = 1/k falls as the parameter rises.

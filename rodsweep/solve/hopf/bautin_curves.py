@@ -1,10 +1,9 @@
 """Curves of generalised Hopf points over three parameters.
 
-Generalised Hopf points, D(i eta) = 0 and Re c = 0 (D: determinant, eta: frequency, c: Landau coefficient),
-are isolated in a plane of two parameters and form a curve over three parameters. Each step prescribes the
-parameter that changes fastest along the curve, so that folds in all parameters are possible. The line through
-the last two points is the predictor. The secant method then moves along the Hopf curve in the plane of the
-two free parameters, to Re c = 0.
+Generalised Hopf points, D(i eta) = 0 and Re c = 0 (D: determinant, c: Landau coefficient), are isolated in a
+plane of two parameters and form a curve over three parameters. Each step prescribes the parameter that
+changes fastest along the curve, so that folds in all parameters are possible. The predictor is the line
+through the last two points; the corrector moves along the Hopf curve of the two free parameters to Re c = 0.
 """
 
 from collections.abc import Sequence
@@ -41,16 +40,13 @@ END_OTHERWISE = {
     CurveStop.lost: BautinEnd.not_found,
     CurveStop.full: BautinEnd.list_full,
 }
-"""`BautinEnd` for each `CurveStop` except `margin`, for which the curve ends at an end of a parameter's
-range."""
+"""`BautinEnd` for each `CurveStop` except `margin`, which means an end of a parameter's range."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BautinCurvePoint:
-    """A generalised Hopf point in the space of three parameters.
-
-    values, errors: the plane's two parameters, then the third parameter, (3,). frequency: in 1/tau2.
-    landau_imag: Im c, c: Landau coefficient, in 1/(tau2 L^2).
+    """A generalised Hopf point in the space of three parameters. values, errors: both parameters of the plane,
+    then the third parameter, (3,). frequency in 1/tau2, landau_imag = Im c in 1/(tau2 L^2).
     """
 
     values: Array
@@ -69,8 +65,7 @@ class BautinCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvePoint:
-    """Generalised Hopf point. v: coordinates for continuation, (4,): three scaled parameters and log
-    frequency."""
+    """Generalised Hopf point. v: continuation coordinates, (4,): three scaled parameters, log frequency."""
 
     v: Array
     point: BautinCurvePoint
@@ -80,9 +75,8 @@ class _CurvePoint:
 class BautinSpace:
     """Generalised Hopf points over three parameters, each with a range, as a problem for `follow_curve`.
 
-    rod: values of the fixed parameters. asked: values of the third parameter at which points are stored in
-    addition to the points of the steps. accuracy: relative accuracy of the Landau coefficient. side: sign of
-    the first step along the third parameter, 1 or -1.
+    rod: values of the fixed parameters. asked: values of the third parameter at which points are added.
+    accuracy: relative accuracy of c. side: sign of the first step along the third parameter, 1 or -1.
     """
 
     rod: Rod
@@ -135,8 +129,7 @@ class BautinSpace:
         return StepResult(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
 
     def _within(self, here: Array, change: Array) -> tuple[_CurvePoint, bool]:
-        """(point near here + change, (4,), or, if the step leaves the ranges, the point on the end of the
-        range that it crosses first; whether the point lies on such an end).
+        """(point near here + change, (4,), or on the range end that the step crosses; whether on such an end).
 
         No point outside the ranges is solved: its parameters may describe no rod. Raises Unsolvable.
         """
@@ -244,8 +237,7 @@ def _report(places: Sequence[_CurvePoint]) -> None:
 
 
 def _asked_between(space: BautinSpace, here: _CurvePoint, there: _CurvePoint) -> list[_CurvePoint]:
-    """Points at the requested values of the third parameter between `here` and `there`; raises Unsolvable or
-    ValueError."""
+    """Points at requested values of the third parameter between two points; raises Unsolvable, ValueError."""
     a = here.v[2]
     b = there.v[2]
     inner = [z for z in map(space.axes[2].scaled, space.asked) if min(a, b) < z < max(a, b)]

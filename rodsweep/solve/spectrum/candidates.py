@@ -101,8 +101,8 @@ def candidates_on(
     eigenvalues are dropped.
 
     wanted: number of eigenvalues requested. vectors: whether eigenvectors are returned. tight: whether the
-    eigenvalues of the mesh converge to rounding error before the refinement on D. After an error inside
-    PETSc, SLEPc or LAPACK no eigenvalue is returned; the solver may succeed on another mesh.
+    eigenvalues of the mesh converge to rounding error before they are refined. After an error inside PETSc,
+    SLEPc or LAPACK no eigenvalue is returned; the solver may succeed on another mesh.
     """
     raw: Complex = np.empty(0, complex)
     kept = None

@@ -1,8 +1,7 @@
 """Curves through the folds and torus points on all rows of a phase diagram; each curve is followed only once.
 
 `changes.diagram.boundaries` has the same task for the straight rod. A curve is followed in two halves from a
-special point of a row. Each half curve is a unit of work, whose result depends only on the special points of
-the rows: the order in which processes follow the half curves does not change the curves.
+special point of a row. Each half curve is a unit of work; its result does not depend on other half curves.
 """
 
 import math
@@ -39,9 +38,8 @@ class RowSpecialPoint:
 class SpecialBoundaries:
     """Curves through all folds and torus points of the rows of a parameter plane, traced as half curves.
 
-    line: axis of the parameter along a row. rows: axis of the rows' parameter. Half curve 2 i starts at
-    special point i in the direction of larger values of the rows' parameter, half curve 2 i + 1 in the
-    direction of smaller values; in names, a half curve is a unit (of work).
+    line: axis of the parameter along a row. rows: axis of the rows' parameter. Half curve (unit) 2 i leads
+    from special point i to larger values of the rows' parameter, half curve 2 i + 1 to smaller values.
     """
 
     line: PlaneAxis
@@ -49,9 +47,8 @@ class SpecialBoundaries:
     special: Sequence[RowSpecialPoint]
 
     def wanted(self, results: Mapping[int, Arrays]) -> list[int]:
-        """Numbers of the half curves to follow next: first the half curves needed now, then half curves that
-        may be needed later; empty if the curves are complete. results: results by number of the half
-        curve."""
+        """Numbers of the half curves needed now, then of half curves that may be needed later; empty if the
+        curves are complete. results: results of half curves, by number."""
         needed: list[int] = []
         likely: list[int] = []
         for curves, search in self._searches(results):
@@ -68,8 +65,7 @@ class SpecialBoundaries:
     def _searches(
         self, results: Mapping[int, Arrays]
     ) -> "Iterator[tuple[_CurvesOfKind, BoundarySearch[_TracedCurve]]]":
-        """Yields (curves, search) for each kind of special points. curves: the curves of this kind, with
-        `results`. search: state of the search for these curves."""
+        """Yields (curves with `results`, state of the search for these curves) for each kind of points."""
         for kind in FOLLOWED_KINDS:
             curves = _CurvesOfKind(kind, self.line, self.rows, self.special, results)
             seeds = (i for i, one in enumerate(self.special) if one.kind == kind)
@@ -78,9 +74,8 @@ class SpecialBoundaries:
     def solve(
         self, unit: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
     ) -> Arrays:
-        """The result of the half curve number `unit`, as `TracedHalfCurve.arrays`. located: function that
-        returns the special points, with cycles, of the row with a given index. workspace: memory of Newton's
-        matrices."""
+        """The result of half curve number `unit`, as `TracedHalfCurve.arrays`. located: function that returns
+        the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
         # A unit is twice the index of its special point, plus one for the half to smaller values.
         place, behind = divmod(unit, 2)
         one = self.special[place]
@@ -92,8 +87,7 @@ class SpecialBoundaries:
         return self.special[unit // 2].number
 
     def where(self, unit: int) -> str:
-        """Text for the half curve number `unit` in the progress display: kind of the curve, starting row and
-        direction."""
+        """Text for half curve `unit` in the progress display: kind of curve, starting row, direction."""
         place, behind = divmod(unit, 2)
         one = self.special[place]
         way = "down" if behind else "up"
@@ -102,8 +96,7 @@ class SpecialBoundaries:
 
 @dataclass(frozen=True, slots=True)
 class _TracedCurve:
-    """Curve joined from two halves. distances: distance along the row, in row lengths, of each special point
-    near the curve, by index."""
+    """Curve joined from two halves. distances: distances of nearby special points in row lengths, by index."""
 
     curve: CycleCurve
     distances: Mapping[int, float]
@@ -111,8 +104,7 @@ class _TracedCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvesOfKind:
-    """Problem of `trace_boundaries` for one kind of special points, with the results of the half curves
-    followed so far."""
+    """Problem of `trace_boundaries` for one kind of special points, with results of half curves so far."""
 
     kind: SpecialKind
     line: PlaneAxis
@@ -125,8 +117,7 @@ class _CurvesOfKind:
         return sorted(left, key=self._place)[len(left) // 2]
 
     def missing_units(self, seed: int) -> list[int]:
-        """Numbers of the half curves that must still be followed for the curve through the special point
-        `seed`."""
+        """Numbers of the half curves still to be followed for the curve through special point `seed`."""
         ahead = 2 * seed
         behind = 2 * seed + 1
         if ahead not in self.results:
@@ -209,9 +200,8 @@ def _traced(
     located: Iterable[SpecialPoint],
     special: Sequence[RowSpecialPoint],
 ) -> TracedHalfCurve:
-    """One half of a curve, followed from the special point `one` of a row; without a curve if this fails.
-    located: special points of this row, with cycles. special: special points of all rows, whose distances
-    from this half are computed."""
+    """One half of a curve, from the special point `one` of a row; `half` is None after a failure. located:
+    special points of this row, with cycles. special: all special points, whose distances are computed."""
     width = abs(limits.line.parameter_slope(one.at))
     same = [
         point
@@ -232,8 +222,7 @@ def _traced(
 
 
 def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
-    """Distance along the row from the special point `one` to a curve, in row lengths; inf if the point is not
-    near."""
+    """Distance along the row from special point `one` to a curve, in row lengths; inf if it is not near."""
     if limits.kind != one.kind:
         return math.inf
     place = limits.rows.scaled(one.row)

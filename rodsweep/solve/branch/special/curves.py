@@ -144,8 +144,7 @@ class SpecialCurveProblem:
         return CycleFamily.about(self.kind, self.rows, point, self.workspace)
 
     def _predicted(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
-        """(orbit, position on the rows' axis) predicted at the distance `step` beyond the last point; raises
-        Unsolvable."""
+        """(orbit, position on the rows' axis) predicted a step beyond the last point; raises Unsolvable."""
         known = points[-CURVE_IDENTITY.max_interpolated_points :]
         return self._mixed(known, lagrange_weights(arc_lengths(known), step), mesh_of(known[-1].orbit))
 
@@ -170,17 +169,15 @@ class SpecialCurveProblem:
     def _mixed(
         self, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
     ) -> tuple[Orbit, float]:
-        """(orbit on `mesh`, position on the rows' axis): weighted sums over `points`, weights: (points,);
-        raises Unsolvable."""
+        """(orbit, place on the rows' axis): sums of `points` with weights, (points,); raises Unsolvable."""
         values = np.dot(weights, [mesh.carry(point.orbit).values for point in points])
         at, place = (float(np.dot(weights, [getattr(p, n) for p in points])) for n in ("at", "place"))
         changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
         return orbit_with_parameters(replace(mesh.carry(points[-1].orbit), values=values), changed), place
 
     def margins(self, point: SolvedPoint) -> Array:
-        """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, relative
-        distance of F from k1 minus `crushing_margin`, smallest h1, and largest tip y minus
-        `min_amplitude`."""
+        """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 - F/k1
+        minus `crushing_margin`, smallest h1, and largest tip y minus `min_amplitude`."""
         x = self.line.scaled(point.at)
         y = point.place
         rod = point.orbit.form.rod
@@ -232,8 +229,7 @@ class SpecialCurveProblem:
         return len(behind) > CYCLE_CURVES.min_loop_points and 0 <= passed <= 1 and near
 
     def between(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
-        """The point of the curve near the fraction `share` of the chord from `one` to `other`; raises
-        Unsolvable."""
+        """Point of the curve near the fraction `share` from `one` to `other`; raises Unsolvable."""
         start, place = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.across(other.step_from(one))
         return self._family(other).nearest(start, place, across, other.rates)

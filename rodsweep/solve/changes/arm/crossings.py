@@ -1,8 +1,8 @@
 """Crossings of the imaginary axis along a path of arms. No covering proves that the list is complete.
 
 The unstable modes are counted at places along the path. Between two places whose counts differ by one pair,
-Newton's method on D finds the crossing. Between two places with equal counts, the slopes of the pairs nearest
-to the axis must exclude two crossings; otherwise a place is added between the two places.
+Newton's method on the determinant D finds the crossing. Between two places with equal counts, the slopes of
+the pairs nearest to the axis must exclude two crossings; otherwise a place is added between the two places.
 """
 
 import math

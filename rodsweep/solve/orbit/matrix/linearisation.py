@@ -1,5 +1,4 @@
-"""Newton's matrix at an orbit: Newton's step, the derivative with respect to a parameter, and all Floquet
-multipliers.
+"""Newton's matrix at an orbit: Newton's step, derivative along a parameter, and all Floquet multipliers.
 
 After the elimination of the intervals (`elimination`) a system for the state at t = 0 and the period remains.
 Its last row is the phase condition. N: orbit values. K: intervals, s: stages each, n: unknowns of a state.
@@ -69,8 +68,7 @@ def partial_multipliers(propagator: Array, orbit: Orbit) -> Complex:
 
 
 def over_period(partial: Complex, orbit: Orbit) -> Complex:
-    """Floquet multipliers over the period, by descending modulus. partial: multipliers over the solved part
-    of the period, (rank,)."""
+    """Floquet multipliers, by descending modulus. partial: multipliers over the solved part, (rank,)."""
     values: Complex = partial**orbit.symmetry.parts
     return values[np.argsort(-np.abs(values), kind="stable")]
 
@@ -125,8 +123,7 @@ def linearise(
 
 @compiled_for_vectors
 def jump_of(points: Array, p: Semidiscrete) -> Array:
-    """Residual S x(0) - x(end of the solved part) of the closing condition, (n,), S: symmetry. points: states
-    of the orbit, (1 + K s, n)."""
+    """Residual S x(0) - x(end) of the closing condition, (n,). points: states of the orbit, (1 + K s, n)."""
     jump = -points[-1]
     for i in range(len(jump)):
         for j in range(len(jump)):

@@ -25,8 +25,8 @@ class CarriedCountSettings(CompiledSettings):
     """Settings for a count that is carried from point to point of a path."""
 
     base_rectangles: int = 60
-    """The number of rectangles of one proof is at most this number plus `rectangles_per_point` times the
-    number of points covered."""
+    """The number of rectangles (`moving_line`) of one proof is at most this number plus
+    `rectangles_per_point` times the number of points covered."""
     rectangles_per_point: int = 20
     """Number of rectangles allowed in a proof for each point covered: a new count at a point costs as much as
     twenty rectangles."""
