@@ -45,8 +45,8 @@ END_OTHERWISE = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BautinCurvePoint:
-    """A generalised Hopf point in the space of three parameters. values, errors: both parameters of the plane,
-    then the third parameter, (3,). frequency in 1/tau2, landau_imag = Im c in 1/(tau2 L^2).
+    """A generalised Hopf point in the space of three parameters. values, errors: both parameters of the
+    plane, then the third parameter, (3,). frequency in 1/tau2, landau_imag = Im c in 1/(tau2 L^2).
     """
 
     values: Array
@@ -129,7 +129,7 @@ class BautinSpace:
         return StepResult(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
 
     def _within(self, here: Array, change: Array) -> tuple[_CurvePoint, bool]:
-        """(point near here + change, (4,), or on the range end that the step crosses; whether on such an end).
+        """(point near here + change, (4,), or on the range end that the step crosses; whether on an end).
 
         No point outside the ranges is solved: its parameters may describe no rod. Raises Unsolvable.
         """

@@ -96,7 +96,7 @@ class SpecialBoundaries:
 
 @dataclass(frozen=True, slots=True)
 class _TracedCurve:
-    """Curve joined from two halves. distances: distances of nearby special points in row lengths, by index."""
+    """Curve joined from two halves. distances: distance of each nearby special point, in row lengths."""
 
     curve: CycleCurve
     distances: Mapping[int, float]
