@@ -48,7 +48,8 @@ class BranchErrorSettings:
     min_error: float = 1e-16
     """Lower limit of an error before its logarithm is interpolated; smaller errors are rounding errors."""
     newton_tolerance_share: float = 0.01
-    """Tolerance of Newton's method on the two finer meshes, divided by the accuracy."""
+    """Tolerance of Newton's method on the two finer meshes of an error measurement, divided by the
+    accuracy."""
     sensitivity_step: float = 1e-4
     """Arc length of the difference quotient for the sensitivity of the largest tip y."""
 

@@ -169,7 +169,7 @@ def with_errors_in_accuracy(
 
 def _on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
     """The cycle `point` solved again on the mesh of the later cycle `end`, with the errors of `end`, and on a
-    better mesh if these errors are too large; raises Unsolvable."""
+    sufficient mesh if these errors are too large; raises Unsolvable."""
     solved = solved_on_mesh(point, mesh_of(end.orbit), point.condition(0.0), accuracy)
     # With share 1 the errors are the errors of `end`, because the cycle now has the mesh of `end`.
     solved = _with_errors_between(end, solved, end, 1.0, accuracy)

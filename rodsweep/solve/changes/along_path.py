@@ -215,7 +215,7 @@ def _range_of(gaps: list[tuple[float, float]]) -> tuple[float, float]:
 def _pairs_missed_as_leaders(
     path: Path, crossings: tuple[Crossing, ...], oscillates: bool, unstable: int
 ) -> list[float]:
-    """Path variables of the crossings at which the pair must lead, but by the exchanges in the list does not.
+    """Path variables of the crossings whose pair must lead, but does not lead by the listed exchanges.
     oscillates: whether a pair leads at the start. unstable: number of unstable modes at the start."""
     missed = []
     for crossing in crossings:

@@ -149,8 +149,8 @@ class Workspace:
         """Sets the rod and the two tolerances of Newton's method, both rms values over the unknowns of a
         stage.
 
-        error: Newton's method stops when the estimated error of a stage is at most this. floor: if a Newton
-        step smaller than this stagnates, the stagnation is attributed to rounding errors.
+        error: Newton's method stops when the estimated error of a stage is at most this. floor: if the Newton
+        steps stagnate below this size, the stagnation is attributed to rounding errors.
         """
         self._rod = arrays_of(beam)  # the callbacks read these arrays by address as well
         self._set({name: array.ctypes.data for name, array in self._rod.items()})

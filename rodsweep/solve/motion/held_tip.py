@@ -29,8 +29,8 @@ class HeldTipSettings:
     """Largest distance of the tip from the clamp, divided by the length of the straight rod: at 1 the rod
     cannot be bent."""
     first_angle: float = 0.8
-    """Polar angle of the tip, in rad, at the start of the path of targets: the tip of a straight rod cannot
-    move towards the clamp."""
+    """Angle theta of the tip, in rad, at the start of the path of targets; not 0, because the tip of a
+    straight rod cannot move towards the clamp."""
     first_step: float = 0.1
     """First step of the target, as a fraction of the path of targets."""
     least_step: float = 1e-3

@@ -40,8 +40,8 @@ class CandidateSettings(CompiledSettings):
     |w|."""
     leader_line_distance: float = 0.5
     """Distance from a followed leading eigenvalue w to the first line for a count, to the left of w, divided
-    by |w|. A distant line needs fewer nodes. A line at `last_line_distance` follows in case another
-    eigenvalue lies between w and the first line."""
+    by |w|. A count at a distant line needs fewer nodes than at a near line. A line at `last_line_distance`
+    follows in case another eigenvalue lies between w and the first line."""
     min_gap: float = 1e-6
     """Two real parts are treated as equal if the relative gap between them is at most this: no line is drawn
     between them."""

@@ -24,6 +24,7 @@ class SpectrumStatus(PointStatus):
     )
     modes_missing = (
         4,
-        "fewer eigenvalues are found than the winding number counts, so none are stored; request more modes",
+        "fewer eigenvalues are found than the winding number counts, so no eigenvalue is stored; request "
+        "more modes",
     )
     failed = 5, "the solver failed and nothing is stored; the message says why"

@@ -39,7 +39,8 @@ class TwoMeshSettings:
     value is a hundred times `rounding`, because rounding differs between releases of SLEPc and between
     processors."""
     mesh_error_factor: float = 3.0
-    """Error of the finer mesh divided by the difference between the two meshes (safety factor)."""
+    """Safety factor on the difference between the eigenvalues of two meshes, which estimates the error on
+    the finer mesh."""
     rounding: float = 3e-13
     """Rounding error of an eigenvalue w, divided by |w| + |shift| + F^2. F^2 is included because the first
     eigenvalue of a pulled rod is exponentially small compared with F^2."""

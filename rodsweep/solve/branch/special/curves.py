@@ -60,7 +60,7 @@ class CycleCurveSettings:
     crushing_accuracy: float = 1e-6
     """Relative tolerance of the length of a step that is shortened to end at half of `crushing_margin`."""
     min_amplitude: float = 0.01
-    """At a smaller largest tip y, in L, a curve ends and is extrapolated to a Hopf point."""
+    """A curve ends, and is extrapolated to a Hopf point, where the largest tip y, in L, falls below this."""
     min_sine_at_resonance: float = 0.2
     """A lost curve of torus points has ended at a resonance (the complex pair becomes real) if the sine of
     the angle between multiplier and real axis is below this number at the last point."""

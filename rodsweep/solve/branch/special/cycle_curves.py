@@ -174,7 +174,8 @@ class CycleCurve:
 
 def with_located_ends(curve: CycleCurve, plane: Plane, known: Sequence[GeneralisedHopfPoint]) -> CycleCurve:
     """The curve of folds with each extrapolated end replaced by the identical generalised Hopf point in
-    `known`, which is more accurate. A curve of torus points, and an end without such a point, are unchanged.
+    `known`, which is more accurate than the extrapolation. A curve of torus points, and an end without an
+    identical point, are unchanged.
     """
 
     def located(end: VanishingPoint | None) -> VanishingPoint | None:

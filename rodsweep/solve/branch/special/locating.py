@@ -76,9 +76,9 @@ def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> f
 
 
 def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
-    """The special point of a kind between two cycles, to a relative accuracy; its error is larger if no
-    allowed mesh reaches the accuracy. If the point cannot be located, its message gives the reason, and its
-    error is the parameter difference of the two cycles."""
+    """The special point of a kind between two cycles, to a relative accuracy; its error exceeds the accuracy
+    if no allowed mesh suffices. If the point cannot be located, its message gives the reason, and its error
+    is the parameter difference of the two cycles."""
     aim = min(accuracy, SPECIAL_POINT.accuracy)
     try:
         segment = BranchSegment(start, end)

@@ -58,7 +58,7 @@ class AcrossCurveSettings:
     more_intervals: float = 1.2
     """Ratio of the numbers of time intervals on the next finer mesh and on the present mesh."""
     max_finer_meshes: int = 5
-    """Maximum number of finer meshes for one point."""
+    """Maximum number of meshes tried for one point after the first mesh, each finer than the mesh before."""
 
 
 ACROSS_CURVE = AcrossCurveSettings()
