@@ -27,8 +27,8 @@ class TransitionSettings:
     """Settings of the search for all thresholds along a path."""
 
     anchor_distance: float = 1e-4
-    """If a pair that crosses the axis must lead but by the list another eigenvalue leads, anchors are added
-    at this distance on both sides of the crossing, as a fraction of the path's length."""
+    """If a pair that crosses the imaginary axis must lead, but another eigenvalue leads in the list, anchors
+    are added at this distance on both sides of the crossing, as a fraction of the path's length."""
     merge_distance: float = 1e-5
     """Undecided boxes of the covering are merged if the relative gap between them is at most this."""
 
@@ -187,7 +187,7 @@ def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, 
 
 
 def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, most: float) -> AxisCrossings:
-    """Crossings between path variables `ends`: by the covering; for arms by counts, about `most` at most."""
+    """Crossings between path variables `ends`, by the covering, for arms by counts; most: maximum number."""
     if not isinstance(problem, ArmPath):
         return _covered(problem.path, *ends)
     search = CrossingSearch(problem, certify)
@@ -198,7 +198,7 @@ def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, m
 
 
 def _covered(path: Path, low: float, high: float) -> AxisCrossings:
-    """Crossings for path variables `low` to `high`, by the covering; raises Unsolvable without a bound."""
+    """Crossings for path variables `low` to `high` by the covering; raises Unsolvable if no bound applies."""
     boxes = first_boxes(path, low, high)
     if boxes is None:
         raise Unsolvable("no a-priori bound on the eigenvalues applies to this rod")
@@ -215,7 +215,7 @@ def _range_of(gaps: list[tuple[float, float]]) -> tuple[float, float]:
 def _pairs_missed_as_leaders(
     path: Path, crossings: tuple[Crossing, ...], oscillates: bool, unstable: int
 ) -> list[float]:
-    """Path variables of the crossings whose pair must lead, but does not lead by the listed exchanges.
+    """Path variables of the crossings whose pair must lead, but does not lead according to the exchanges.
     oscillates: whether a pair leads at the start. unstable: number of unstable modes at the start."""
     missed = []
     for crossing in crossings:

@@ -38,8 +38,8 @@ CHANGE_COUNTS = ChangeCountSettings()
 
 
 def end_below_crushing(rod: Rod, F: float) -> float:
-    """Largest force of a search up to F, in k3/L^2: F, but at most slightly below the crushing force of
-    `rod`."""
+    """Largest force of a search up to F, in k3/L^2: the smaller of F and a force just below the crushing
+    force of `rod`."""
     return min(F, rod.crushing_force * (1 - CHANGE_COUNTS.crushing_margin))
 
 

@@ -75,8 +75,8 @@ class HopfCoefficients:
 
     @property
     def criticality(self) -> float:
-        """-1 if supercritical, 1 if subcritical, 0 if |Re c| is not larger than the error of c; nan if the
-        coefficients are not known."""
+        """Sign of Re c, c: Landau coefficient: -1 (supercritical) or 1 (subcritical); 0 if |Re c| is not
+        larger than the error of c; nan if the coefficients are not known."""
         if not self.known:
             return math.nan
         if abs(self.landau.real) <= self.landau_error * abs(self.landau):

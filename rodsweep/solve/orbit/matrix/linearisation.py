@@ -123,7 +123,7 @@ def linearise(
 
 @compiled_for_vectors
 def jump_of(points: Array, p: Semidiscrete) -> Array:
-    """Residual S x(0) - x(end) of the closing condition, (n,). points: states of the orbit, (1 + K s, n)."""
+    """Residual S x(0) - x(end) of the closing condition, (n,), S: symmetry. points: states, (1 + K s, n)."""
     jump = -points[-1]
     for i in range(len(jump)):
         for j in range(len(jump)):

@@ -56,7 +56,7 @@ class CorrectedEigenvalue(NamedTuple):
 def correct_eigenvalue(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> CorrectedEigenvalue:
-    """One Newton step on D from w, for a uniform rod; a real w stays real. direction: d(F, nu, c2,
+    """One Newton step for a root of D from w, for a uniform rod; a real w stays real. direction: d(F, nu, c2,
     gamma3)/dp.
     """
     D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
