@@ -35,12 +35,12 @@ class BranchMeshSettings:
     times the smaller of the two values at the measured cycles. Near a fold the derivative tends to 0, and
     errors measured away from the fold are no bound."""
     max_tail_growth: float = 2.0
-    """Errors are measured, not interpolated, if the coefficient tails predict that they have grown by more
-    than this factor since each of the two measured cycles."""
+    """Errors are measured, not interpolated, if the coefficient tails predict that the errors have grown by
+    more than this factor since each of the two measured cycles."""
     max_unmeasured: int = 3
     """Maximum number of steps between two cycles with measured errors."""
     remeasure_growth: float = 4.0
-    """Errors are measured again if the coefficient tails predict that they have grown by more than this
+    """Errors are measured again if the coefficient tails predict that the errors have grown by more than this
     factor since the last measurement."""
 
 

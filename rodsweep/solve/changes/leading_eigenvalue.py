@@ -25,7 +25,7 @@ from .unstable_modes import ChangeKind, Crossing
 
 ANCHOR_MODES = 4
 """Number of leading eigenvalues computed at an anchor: the first two, and two that may overtake the first
-two. The number is a constant, because with fewer eigenvalues it would be unknown which of them become
+two. The number is a constant, because with fewer eigenvalues it would be unknown which eigenvalues become
 equal."""
 
 

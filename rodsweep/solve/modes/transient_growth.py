@@ -173,7 +173,7 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
 
 def _end(propagator: Propagator, first: float, patience: float) -> tuple[float, float]:
     """Returns (end, excess). end: a time after which |exp(L t)| does not exceed its earlier values. excess:
-    relative amount by which a later norm may nevertheless exceed them. first: earliest end.
+    relative amount by which a later norm may nevertheless exceed these values. first: earliest end.
 
     Since |exp(L (t + r))| <= |exp(L t)| |exp(L r)|, any time with |exp(L t)| < 1 is an end. Near a threshold
     such a time is very late. But once the leading pair dominates, the motion repeats itself and shrinks every

@@ -1,7 +1,7 @@
 """The rod bent until its tip is at a given point (x, y): a start of a motion chosen by the user.
 
-Of all curvatures Pi for which the tip is at (x, y), the bent rod has the one with the smallest integral of
-Pi^2. A rod of constant bending stiffness under a force at the tip, without moment, has this shape (an
+Of all curvatures Pi for which the tip is at (x, y), the bent rod has the curvature with the smallest integral
+of Pi^2. A rod of constant bending stiffness under a force at the tip, without moment, has this shape (an
 elastica). Stretch and shear are as in the straight rod under its follower force. Pi vanishes at the tip, so
 the state satisfies the boundary conditions there. Newton's method solves for the curvatures and the force f,
 with W the weights of the quadrature,

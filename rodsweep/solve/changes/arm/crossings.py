@@ -99,8 +99,8 @@ class CrossingSearch:
         return self.places.are_many(b) and expected > ARM_CROSSINGS.beyond_the_list * 2 * most
 
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> None:
-        """Searches the interval (a, b): stores the crossings found, or divides the interval, or stores it as
-        a gap if it is too short to be divided; raises Unsolvable."""
+        """Searches the interval (a, b): stores the crossings found, or divides the interval, or stores an
+        interval that is too short to be divided as a gap; raises Unsolvable."""
         left = self.places.at(a)
         right = self.places.at(b)
         # Equal counts leave room for a pair that crosses and returns.

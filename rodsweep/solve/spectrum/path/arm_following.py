@@ -42,7 +42,7 @@ variable p); both arrays: (elements, terms, PADDED)."""
 
 @compiled
 def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes) -> CorrectedEigenvalue:
-    """One Newton step for a root of D from w, for an arm with the propagators `level`; a real w stays real."""
+    """One Newton step for a root of D from w, for an arm with propagators `level`; a real w stays real."""
     D, D_w, D_p, _, noise = chain_along(w, level[0], level[1], level[2])
     return newton_step(w, D, D_w, D_p, ARM_VALUE.root_noise * noise)
 
