@@ -1,5 +1,5 @@
-"""Interpolation of the leading eigenvalues between two neighbouring anchors, rods of a path whose spectra are
-solved."""
+"""Anchors (rods of a path whose spectra are solved), and interpolation of the leading eigenvalues between two
+neighbouring anchors."""
 
 import math
 from dataclasses import dataclass

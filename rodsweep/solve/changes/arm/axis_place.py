@@ -59,7 +59,7 @@ class AxisPlace:
 
 
 class AxisPlaces:
-    """The places of a path at which eigenvalues have been computed; known: the places by p."""
+    """The places of a path at which eigenvalues have been computed. known: the places, by path variable p."""
 
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem

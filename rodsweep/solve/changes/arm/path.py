@@ -65,7 +65,7 @@ class ArmPath(PathProblem):
         super().__init__(path)
         self._followed: FollowedArms | None = None
         self._solutions: dict[float, Spectrum] = {}
-        """Spectra that were solved, not followed, by p; for each p the last spectrum solved."""
+        """Spectra that were solved, not followed: for each path variable p, the last spectrum solved."""
         self._counts: dict[float, int] = {}
         """Proved numbers of unstable modes, by p."""
         self._families: list[ArmFamily] = []
