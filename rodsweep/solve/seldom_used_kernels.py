@@ -28,7 +28,7 @@ from .spectrum.spectrum import SpectrumRequest
 
 SAMPLE_ROD = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2)
 SAMPLE_CONE = Rod(F=6.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5)
-"""An arm whose properties vary smoothly."""
+"""An arm whose properties vary smoothly along its length."""
 SAMPLE_SEGMENTS = Rod(
     F=30.0,
     k1=1e4,
@@ -52,7 +52,8 @@ def warm_up() -> None:
 
 
 def warm_up_arms() -> None:
-    """Solves spectra along a sweep, stability changes and a cycle of arms that vary along their length."""
+    """Solves spectra along a stretch of a sweep, thresholds and a cycle of arms that vary along their
+    length."""
     path = Path(SAMPLE_CONE, "F")
     spectra = SpectrumRequest(2, SAMPLE_ACCURACY, certify=True)
     solve_stretch(Stretch(path, np.linspace(SAMPLE_CONE.F, 1.2 * SAMPLE_CONE.F, 12)), spectra)

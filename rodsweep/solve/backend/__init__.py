@@ -1,1 +1,1 @@
-"""Interfaces to PETSc, SLEPc, BLAS and LAPACK, without knowledge of the rod."""
+"""Interfaces to PETSc, SLEPc, BLAS and LAPACK, and pools of solvers, without knowledge of the rod."""

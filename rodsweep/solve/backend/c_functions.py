@@ -68,7 +68,7 @@ def floats(address: int, size: int) -> Any:
 @compiled
 def double_array_at(address: int, shape: Any) -> Any:
     """Array of doubles at the memory address `address`, of the given `shape`. `floats(...).reshape` would
-    take as long as the evaluation of f for a rod with ten nodes."""
+    take as long as one evaluation of the rod's equations with ten nodes."""
     return numba.carray(pointer(address), shape, np.float64)
 
 

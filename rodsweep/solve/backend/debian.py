@@ -17,8 +17,8 @@ LIBRARIES = Path("/usr/lib")
 def add_debian_modules(libraries: Path = LIBRARIES) -> None:
     """Appends to `sys.path` the directories of Debian's newest petsc4py and slepc4py built for real numbers.
 
-    Nothing is appended for a module that Python already finds, or if the module's variable PETSC_DIR or
-    SLEPC_DIR is set.
+    Nothing is appended for a module that Python already finds, or whose environment variable, PETSC_DIR or
+    SLEPC_DIR, is set.
     """
     for name in ("petsc", "slepc"):
         if f"{name.upper()}_DIR" in os.environ or is_found(f"{name}4py"):
@@ -36,6 +36,6 @@ def is_found(module: str) -> bool:
 
 
 def _version(directory: Path) -> list[int]:
-    """Version numbers in the name of the third parent directory: [3, 18] for
+    """Version numbers in the name of the fourth parent directory: [3, 18] for
     petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages."""
     return [int(number) for number in re.findall(r"\d+", directory.parents[3].name)]

@@ -26,8 +26,8 @@ def product(a: Any, b: Any, c: Any, extents: Any, factors: Array) -> None:
     """Matrix product C = factors[0] A B + factors[1] C by dgemm, written to C, for matrices stored by rows.
 
     a, b, c: memory addresses of the first entries of A, B and C. extents: int32 (m, n, k, lda, ldb, ldc) for
-    A (m, k) and B (k, n); lda, ldb, ldc are the distances between rows of A, B and C in memory. (BLAS: C^T =
-    B^T A^T.)
+    A (m, k), B (k, n) and C (m, n); lda, ldb, ldc: distances between the rows of A, B and C in memory, in
+    entries.
     """
     plain = np.full(1, 78, np.uint8)  # "N"
     no = plain.ctypes.data

@@ -15,8 +15,8 @@ class SolverPoolSettings:
     """Memory limit of a pool."""
 
     max_bytes: int = 100_000_000
-    """If the objects of a pool use more memory than this, in bytes, the pool destroys objects before it
-    creates the next: enough for dozens of solvers for a few modes, or three solvers for 300 modes."""
+    """Above this memory, in bytes, a pool destroys its least recently used objects before it creates an
+    object. The limit allows dozens of solvers for a few modes, or three solvers for 300 modes."""
 
 
 SOLVER_POOLS = SolverPoolSettings()

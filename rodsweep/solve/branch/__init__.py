@@ -1,1 +1,2 @@
-"""Branches of stable and unstable cycles, followed through folds, with the special points on each branch."""
+"""Branches of stable and unstable cycles, followed through folds, with their special points; stable states
+of the rod along the rows of a phase diagram."""

@@ -57,8 +57,8 @@ class ArcPoint:
     length: float
     """Arc length of the step to the next cycle."""
     calibration: BranchCalibration
-    """Measured errors of the last cycle with measured errors, from which the errors of this cycle are
-    estimated."""
+    """Error measurement at this cycle, or else at the last cycle where errors were measured; the errors of
+    this cycle are estimated from it."""
     unmeasured: int = 0
     """Number of steps since the last cycle with measured errors; 0 if the errors of this cycle are
     measured."""
@@ -98,7 +98,8 @@ class ArcPoint:
 
     @property
     def parameter_rate(self) -> float:
-        """Derivative of the scaled parameter coordinate by arc length; it changes sign at a fold."""
+        """Derivative of the scaled parameter coordinate with respect to arc length; changes sign at a
+        fold."""
         return self.derivatives.parameter_slope
 
     @property
@@ -108,8 +109,9 @@ class ArcPoint:
 
     @cached_property
     def partial_multipliers(self) -> Complex:
-        """Nontrivial Floquet multipliers, (rank - 1,). Asymmetric cycle: eigenvalues of the map over the
-        period. Symmetric cycle: eigenvalues of the map over half a period, composed with the reflection."""
+        """Nontrivial multipliers over the solved time interval, (rank - 1,). Asymmetric cycle: eigenvalues of
+        the map over the period. Symmetric cycle: eigenvalues of the map over half a period, composed with the
+        reflection."""
         values = bordered_matrix_of(self.cycle.converged).partial_multipliers
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
@@ -181,7 +183,8 @@ def cycle_at_length(start: ArcPoint, length: float, accuracy: float) -> ArcPoint
 
 def _step_to_length(start: ArcPoint, accuracy: float, length: float) -> StepResult[ArcPoint]:
     """The cycle at the arc length `length` from `start`, with the prediction error and the cosine of the
-    angle between the tangents; raises Unsolvable. The next step is given the same length."""
+    angle between the tangents; raises Unsolvable. On the first step of a branch an allowed prediction error
+    is replaced by `target_error`."""
     condition = start.condition(length)
     predicted = start.predicted(length)
     tolerance = newton_tolerance(accuracy)

@@ -99,7 +99,7 @@ class BranchCurve:
     """Whether special points explain every multiplier that crosses the unit circle along the branch."""
 
     def add(self, special: SpecialPoint) -> None:
-        """Appends a special point that lies behind the present last cycle."""
+        """Appends a special point that lies beyond the present last cycle."""
         self.special.append(replace(special, after=len(self.points) - 1))
 
     def add_special_points(self, between: Sequence[SpecialPoint], explained: bool) -> None:
@@ -115,7 +115,7 @@ class BranchCurve:
         self.points[-len(points) :] = points
 
     def remove_last_cycles(self, count: int) -> None:
-        """Removes the last `count` cycles, and all special points behind the first removed cycle."""
+        """Removes the last `count` cycles, and all special points beyond the first removed cycle."""
         del self.points[-count:]
         self.special[:] = [point for point in self.special if point.after < len(self.points)]
 

@@ -49,8 +49,9 @@ class BranchRecord:
         self.curve.points.append(BranchPoint.of(point, self.accuracy))
 
     def assign_errors(self, condition: BorderCondition | None = None) -> ArcPoint:
-        """Measures or interpolates the errors of all cycles appended since the last measurement, and returns
-        the last cycle; raises Unsolvable.
+        """Measures or interpolates the errors of all cycles appended since the last measurement, and solves
+        cycles again on other meshes until all errors are within the accuracy. Returns the last cycle; raises
+        Unsolvable.
 
         condition: equation that defines the last cycle on every mesh; by default the condition that its arc
         length is unchanged.
@@ -63,8 +64,8 @@ class BranchRecord:
         return self._last_measured
 
     def end(self, end: BranchEnd) -> None:
-        """Appends the end of the branch, with errors. If the errors of the last cycles cannot be measured,
-        these cycles are removed and the branch ends at the last measured cycle."""
+        """Appends the end of the branch, with errors. If the errors of the last cycles cannot be brought
+        within the accuracy, these cycles are removed and the branch ends at the last measured cycle."""
         curve = self.curve
         try:
             self.assign_errors()

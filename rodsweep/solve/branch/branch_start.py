@@ -46,7 +46,8 @@ class BranchStartSettings:
     """Smallest and largest allowed ratio of the solved amplitude of the first cycle to the amplitude
     predicted by the normal form."""
     frequency_rounding: float = 1e-14
-    """Relative rounding error of the frequency of a Hopf point, a root of D."""
+    """Relative rounding error of the frequency at a Hopf point, which is computed as a root of the
+    determinant D."""
 
 
 BRANCH_START = BranchStartSettings()
@@ -71,7 +72,7 @@ class HopfBranchStart:
     normal_form: NormalForm
     """Normal form on a mesh that suffices for the prediction of the first cycle."""
     coefficients: HopfCoefficients
-    """Coefficients of the normal form from a finer mesh, with error estimates."""
+    """Coefficients of the normal form with error estimates, from a comparison of meshes."""
 
     @property
     def period(self) -> float:
@@ -112,8 +113,8 @@ class HopfBranchStart:
         return abs(self.slope) * place / self.crossing.frequency + BRANCH_START.frequency_rounding
 
     def parameter_change_and_frequency(self, amplitude: float) -> tuple[float, float]:
-        """(change of the parameter coordinate from the Hopf point, frequency in 1/tau2) of the cycle with the
-        largest tip y `amplitude`, in L, by the normal form."""
+        """(change of the parameter coordinate from the Hopf point, frequency in 1/tau2), by the normal form,
+        of the cycle whose largest tip y is `amplitude`, in L."""
         c = self.normal_form.c
         # The growth rate of the cycle vanishes: Re slope dp + Re c a^2 = 0.
         change = -c.real * amplitude**2 / self.slope.real
@@ -179,11 +180,11 @@ def _cycle_of(
     accuracy: float,
     workspace: NewtonWorkspace,
 ) -> ArcPoint:
-    """The cycle near the normal form's cycle with the largest tip y `amplitude`, in L, to a relative
-    accuracy; raises Unsolvable.
+    """The cycle near the cycle that the normal form predicts for the largest tip y `amplitude`, in L, solved
+    to the relative `accuracy`; raises Unsolvable.
 
-    aim: accuracy for which the second mesh is chosen. finer: whether Newton's method starts on a mesh chosen
-    for `aim`, instead of the coarser mesh of the normal form.
+    The cycle is solved first on the starting mesh, then on a mesh chosen for the accuracy `aim`. finer:
+    whether the starting mesh is chosen for `aim` too; otherwise it is the coarser mesh of the normal form.
     """
     start = predicted_cycle(hopf, amplitude)
     if finer:
@@ -207,8 +208,8 @@ def _cycle_of(
 
 
 def predicted_cycle(hopf: HopfBranchStart, amplitude: float) -> Orbit:
-    """The normal form's cycle with the largest tip y `amplitude`, in L, on the normal form's mesh in space
-    and a coarse mesh in time; raises Unsolvable."""
+    """The cycle that the normal form predicts for the largest tip y `amplitude`, in L, on the normal form's
+    mesh in space and a coarse mesh in time; raises Unsolvable."""
     change, frequency = hopf.parameter_change_and_frequency(amplitude)
     form = StressForm(hopf.rod, hopf.normal_form.form.mesh)
     try:

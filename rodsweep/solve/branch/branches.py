@@ -54,7 +54,7 @@ class BranchStatus(PointStatus):
         "no further cycle was found on a branch before its end; the message says where; all other branches "
         "are complete; use a smaller or larger number for the accuracy, or shorten the range",
     )
-    list_full = 2, "there are more cycles or special points than the file holds; raise cycles or special"
+    list_full = 2, "there are more cycles or special points than the file holds; raise `cycles` or `special`"
     special_undecided = (
         3,
         "the error of a special point exceeds the requested accuracy, or multipliers cross the unit circle "

@@ -30,8 +30,8 @@ def _shared_status(status: ThresholdStatus) -> tuple[int, str, bool]:
 
 
 class CoexistenceStatus(PointStatus):
-    """Outcome of a row with cycles: the status of the search for stability changes if this search has a
-    problem, otherwise the status of the branches."""
+    """Outcome of a row with cycles: the status of the search for thresholds of the straight rod if this
+    search has a problem, otherwise the status of the branches."""
 
     ok = _shared_status(ThresholdStatus.ok)
     not_certified = _shared_status(ThresholdStatus.not_certified)
@@ -42,9 +42,9 @@ class CoexistenceStatus(PointStatus):
     ended_early = _shared_status(ThresholdStatus.ended_early)
     branches_stopped = (
         6,
-        "the changes are found, but a branch of cycles is incomplete or a Hopf point may be missing: the "
-        "stable states are undecided where no stable cycle is known; the message says where the branch "
-        "stopped",
+        "the thresholds of the straight rod are found, but a branch of cycles is incomplete or a Hopf point "
+        "may be missing: the stable states are undecided where no stable cycle is known; the message says "
+        "where",
     )
     special_undecided = (
         7,
@@ -57,7 +57,8 @@ class CoexistenceStatus(PointStatus):
 
 class StableStates(IntEnum):
     """Stable states of a rod at one parameter value: straight state, cycle, or both. neither_known: the
-    straight rod is unstable and no branch has a stable cycle. crushed: the force crushes the rod."""
+    straight rod is unstable and no branch has a stable cycle. undecided: the stability of the straight rod or
+    the existence of a stable cycle is not known. crushed: the force crushes the rod."""
 
     neither_known = 0
     straight = 1
@@ -141,11 +142,11 @@ def _undecided(name: str, values: Array) -> str:
 def _judged(
     row: DiagramRow, branches: BranchesOfRod, special: int, undecided: Array
 ) -> tuple[CoexistenceStatus, str]:
-    """(status, message) of a row: status of the search for stability changes if this search has a problem,
+    """(status, message) of a row: status of the search for thresholds if this search has a problem,
     otherwise status of the branches. special: maximum number of stored special points. undecided: parameter
     values, (n,), at which the stable states are undecided because of the cycles."""
     message = "; ".join(filter(None, [row.message, branches.message]))
-    # The most serious problem first: without all changes of the straight rod, branches may be missing.
+    # The most serious problem first: without all thresholds of the straight rod, branches may be missing.
     if row.status is not ThresholdStatus.ok:
         return CoexistenceStatus[row.status.name], message
     if len(special_points_of(branches)) > special:

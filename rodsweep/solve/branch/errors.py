@@ -3,10 +3,10 @@ and the error of the parameter.
 
 The cycle is solved at the same arc length on two finer meshes, the first finer in space, the second finer in
 time; this system is regular at a fold. The three cycles have slightly different parameter values. The two
-finer cycles are therefore moved along the branch to the parameter value of the rough cycle. The remaining
-differences are the errors of period, extrema and multiplier at equal parameter. The error of the parameter is
-the parameter difference of the cycles at equal deflection. This error stays small near a Hopf point and near
-a fold, where all other quantities vary steeply with the parameter.
+cycles on finer meshes are therefore moved along the branch to the parameter value of the given cycle. The
+remaining differences are the errors of period, extrema and multiplier at equal parameter. The error of the
+parameter is the parameter difference of the cycles at equal deflection. This error stays small near a Hopf
+point and near a fold, where all other quantities vary steeply with the parameter.
 """
 
 from dataclasses import dataclass, replace
@@ -48,7 +48,8 @@ class BranchErrorSettings:
     min_error: float = 1e-16
     """Lower limit of an error before its logarithm is interpolated; smaller errors are rounding errors."""
     newton_tolerance_share: float = 0.01
-    """Tolerance of Newton's method on the two finer meshes, divided by the accuracy."""
+    """Tolerance of Newton's method on the two finer meshes of an error measurement, divided by the
+    accuracy."""
     sensitivity_step: float = 1e-4
     """Arc length of the difference quotient for the sensitivity of the largest tip y."""
 
@@ -58,7 +59,7 @@ BRANCH_ERRORS = BranchErrorSettings()
 
 @dataclass(frozen=True, eq=False)
 class BranchDerivatives:
-    """Derivatives of a branch by arc length at a cycle, in the units of `scale`."""
+    """Derivatives of a branch with respect to arc length at a cycle, in the units of `scale`."""
 
     scale: Scale
     tangent: Array
@@ -67,13 +68,13 @@ class BranchDerivatives:
     ahead: Array
     """The tangent in components (deflection, log period, parameter), (3,), a unit vector."""
     curvature: float
-    """Second derivative of the scaled parameter coordinate by arc length."""
+    """Second derivative of the scaled parameter coordinate with respect to arc length."""
     multiplier_rate: float
-    """Modulus of the derivative of the largest multiplier by arc length."""
+    """Modulus of the derivative of the largest multiplier with respect to arc length."""
 
     @property
     def parameter_slope(self) -> float:
-        """Derivative of the scaled parameter coordinate by arc length; 0 at a fold."""
+        """Derivative of the scaled parameter coordinate with respect to arc length; 0 at a fold."""
         return float(self.ahead[2])
 
     def arc_length_for_change(self, off: float) -> float:
@@ -117,8 +118,8 @@ class BranchCalibration:
         )
 
     def largest(self, accuracy: float) -> float:
-        """The error that must not exceed the relative accuracy: the largest error, divided by
-        sensitivity/`max_sensitivity` if this ratio exceeds 1."""
+        """The error that must not exceed the relative accuracy: the largest error at equal parameter, divided
+        by sensitivity/`max_sensitivity` if this ratio exceeds 1, or the parameter error if larger."""
         return self._limiting.errors(accuracy).largest
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
@@ -183,8 +184,8 @@ def measured_errors(
     found: ConvergedOrbit, derivatives: BranchDerivatives, accuracy: float, before: Calibration | None
 ) -> BranchCalibration:
     """Errors of the mesh of the cycle `found`, measured by comparison with two finer meshes; raises
-    Unsolvable. derivatives: of the branch at `found`. before: calibration at a previous cycle, from which
-    convergence rates are estimated; None if there is no such cycle."""
+    Unsolvable. derivatives: derivatives of the branch at `found`. before: calibration at a previous cycle,
+    from which convergence rates are estimated; None if there is no such cycle."""
     mesh = mesh_of(found.orbit)
     orbit = found.orbit
     finer, share = finer_meshes(mesh)
@@ -208,8 +209,8 @@ def _difference(
 ) -> Array:
     """Differences, (6,), between a cycle on a rough mesh and the same cycle on a fine mesh. The first five
     differences are at the parameter value of the rough cycle, in the order of `Calibration.space`. The last
-    is the parameter difference at equal deflection. rough, multipliers: path and nontrivial multipliers,
-    (rank - 1,), of the rough cycle. derivatives: of the branch at the rough cycle."""
+    difference is the parameter difference at equal deflection. rough, multipliers: path and nontrivial
+    multipliers, (rank - 1,), of the rough cycle. derivatives: derivatives of the branch at this cycle."""
     orbit = rough.orbit
     scale = derivatives.scale
     deflection, _, off = scale.components(orbit) - scale.components(fine.orbit)
@@ -231,7 +232,7 @@ def _difference(
 
 def sensitivity_of(path: CyclePath, derivatives: BranchDerivatives) -> float:
     """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch at the cycle `path`.
-    derivatives: of the branch at this cycle."""
+    derivatives: derivatives of the branch at this cycle."""
     orbit: Orbit = path.orbit
     ahead = CyclePath(
         moved_orbit(orbit, derivatives.scale.name, BRANCH_ERRORS.sensitivity_step * derivatives.tangent)

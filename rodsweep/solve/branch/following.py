@@ -72,7 +72,8 @@ def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> Bra
 
 
 def _follow_to_end(curve: BranchCurve, limits: BranchLimits, first: Callable[[], ArcPoint]) -> BranchCurve:
-    """The branch `curve` with its first special point, followed to its end. first: solves the first cycle."""
+    """The branch `curve`, which has only its first special point, followed to its end. first: function that
+    solves the first cycle."""
     if limits.max_cycles < 1:
         curve.end(BranchEnd(_end_without_cycle(curve, EndReason.list_full), complete=False, list_full=True))
         return curve
@@ -128,7 +129,7 @@ def _end_without_cycle(curve: BranchCurve, reason: EndReason, message: str = "")
 
 
 def _passed_range_end(point: ArcPoint, limits: BranchLimits) -> int:
-    """0 if a cycle lies below the parameter range, 1 if it lies above, -1 if it lies within."""
+    """Position of a cycle relative to the parameter range: 0 below, 1 above, -1 within the range."""
     low, high = limits.ends
     if point.coordinate < low:
         return 0
@@ -136,8 +137,8 @@ def _passed_range_end(point: ArcPoint, limits: BranchLimits) -> int:
 
 
 def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """Returns the next cycle after `start`, or the end of the branch. The special points between the two
-    cycles and the next cycle are appended to the branch."""
+    """Appends the next cycle after `start`, and the special points before this cycle, to the branch; returns
+    the cycle, or the end of the branch."""
     curve = record.curve
     if len(curve.points) >= limits.max_cycles:
         return BranchEnd(end_point(start, EndReason.list_full), complete=False, list_full=True)
@@ -210,8 +211,8 @@ def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
 
 
 def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """The end of a branch at a Hopf point between two cycles; or `start` with half the step length, if the
-    amplitude of `start` is too large for an extrapolation."""
+    """The end of a branch at a Hopf point between two cycles (a failure if no known Hopf point is near), or
+    `start` with half the step, if its amplitude is too large for an extrapolation. Raises Unsolvable."""
     shorter = arc_length_between(start, end) / 2
     if start.cycle.measures.tip_y_max > BRANCH_END.max_last_amplitude:
         if shorter < ARC_STEPS.min_length:
@@ -237,8 +238,8 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
 
 
 def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """The end of an asymmetric branch at a symmetry breaking between two cycles; or `start` with half the
-    step length if the cycles are too asymmetric for an extrapolation to the symmetry breaking."""
+    """The end of an asymmetric branch at a symmetry breaking between two cycles (a failure if it is unknown),
+    or `start` with half the step length, if the cycles are too asymmetric for an extrapolation."""
     which = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
     if which is None:
         return replace(start, length=arc_length_between(start, end) / 2)

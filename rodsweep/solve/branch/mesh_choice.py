@@ -32,15 +32,15 @@ class BranchMeshSettings:
     next cycles too."""
     min_rate_share: float = 0.7
     """Errors are interpolated at a cycle only if |d(parameter)/ds|, s: arc length, is at least this number
-    times the smaller value of the two measured cycles. Near a fold this derivative is smaller, and the
-    measured errors are no bound."""
+    times the smaller of the two values at the measured cycles. Near a fold the derivative tends to 0, and
+    errors measured away from the fold are no bound."""
     max_tail_growth: float = 2.0
-    """Errors are measured, not interpolated, if the coefficient tails predict that they have grown by more
-    than this factor since each of the two measured cycles."""
+    """Errors are measured, not interpolated, if the coefficient tails predict that the errors have grown by
+    more than this factor since each of the two measured cycles."""
     max_unmeasured: int = 3
     """Maximum number of steps between two cycles with measured errors."""
     remeasure_growth: float = 4.0
-    """Errors are measured again if the coefficient tails predict that they have grown by more than this
+    """Errors are measured again if the coefficient tails predict that the errors have grown by more than this
     factor since the last measurement."""
 
 
@@ -79,7 +79,7 @@ def first_measured_cycle(
 
 def measurement_due(point: ArcPoint) -> bool:
     """Whether the errors of a cycle must be measured: the last measured cycle is too many steps away, or the
-    errors have grown too much since."""
+    errors have grown too much since that cycle."""
     growth = float(point.calibration.at_parameter.scaled_on_branch(point.orbit).error_growth.max())
     return point.unmeasured >= BRANCH_MESH.max_unmeasured or growth > BRANCH_MESH.remeasure_growth
 
@@ -173,7 +173,7 @@ def with_errors_in_accuracy(
 
 def _on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
     """The cycle `point` solved again on the mesh of the later cycle `end`, with the errors of `end`, and on a
-    better mesh if these errors are too large; raises Unsolvable."""
+    sufficient mesh if these errors are too large; raises Unsolvable."""
     solved = solved_on_mesh(point, mesh_of(end.orbit), point.condition(0.0), accuracy)
     # With share 1 the errors are the errors of `end`, because the cycle now has the mesh of `end`.
     solved = _with_errors_between(end, solved, end, 1.0, accuracy)
@@ -187,8 +187,9 @@ def _with_errors_between(
     same mesh; raises Unsolvable.
 
     share: fraction of the arc length from `last` to `end` at which `point` lies. The errors of `point` are
-    measured instead if its coefficient tails are larger than at `last` and `end`, or if the parameter changes
-    more slowly, as near a fold: the errors at `last` and `end` are then no bound.
+    measured instead if its coefficient tails are much larger than at `last` and `end`, or if the parameter
+    changes more slowly than at `last` and `end`, as near a fold: the errors at `last` and `end` are then no
+    bound.
     """
     ends = (last, end)
     slow = abs(point.parameter_rate) < BRANCH_MESH.min_rate_share * min(

@@ -54,7 +54,7 @@ class BranchEndSettings:
     cycle."""
     extrapolation_tolerance: float = 0.3
     """Tolerance of the extrapolated parameter and period of a Hopf point or a symmetry breaking, divided by
-    their difference between the last cycle and this point."""
+    the difference between their values at the last cycle and at this point."""
     parameter_tolerance: float = 1e-6
     """Relative tolerance of the extrapolated parameter, added to the tolerance by `extrapolation_tolerance`;
     the larger of this number and the accuracy is used."""

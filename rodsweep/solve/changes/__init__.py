@@ -1,2 +1,2 @@
-"""Changes of the leading eigenvalues of the straight rod along a parameter, and diagrams in two
-parameters."""
+"""Thresholds of the straight rod along a parameter (crossings of the imaginary axis, exchanges of the leading
+eigenvalue), and diagrams in two parameters."""

@@ -1,10 +1,9 @@
-"""Search for all changes along a path of rods: pairs that cross the imaginary axis, and changes of the
-leading eigenvalue.
+"""Search for all thresholds along a path of rods (`unstable_modes`): pairs that cross the imaginary axis, and
+exchanges of the leading eigenvalue.
 
-The crossings come from `rodsweep.determinant.certificate.covering`, which proves that the list is complete,
-the changes of the leading eigenvalue from `leading_eigenvalue`. Both lists are merged into one list in
-increasing order of the parameter. The winding number confirms the number of unstable modes at both ends and
-between the crossings.
+The crossings come from `determinant.certificate.covering`, which proves that the list is complete, or for
+nonuniform arms from `arm.crossings`; the exchanges come from `leading_eigenvalue`. The winding number
+confirms the number of unstable modes at both ends and between the crossings.
 """
 
 import math
@@ -25,13 +24,13 @@ from .unstable_modes import ChangeKind, Crossing, ModeCounter
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TransitionSettings:
-    """Settings of the search for all changes along a path."""
+    """Settings of the search for all thresholds along a path."""
 
     anchor_distance: float = 1e-4
-    """If a pair that crosses the axis must lead but another eigenvalue leads in the list, anchors are added
-    at this distance on both sides of the crossing, as a fraction of the path's length."""
+    """If a pair that crosses the imaginary axis must lead, but another eigenvalue leads in the list, anchors
+    are added at this distance on both sides of the crossing, as a fraction of the path's length."""
     merge_distance: float = 1e-5
-    """Undecided boxes of the covering with a smaller relative gap between them are merged."""
+    """Undecided boxes of the covering are merged if the relative gap between them is at most this."""
 
 
 TRANSITIONS = TransitionSettings()
@@ -39,16 +38,16 @@ TRANSITIONS = TransitionSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Transitions:
-    """Result of a search along a path: all changes, in increasing order of the parameter, and whether the
+    """Result of a search along a path: all thresholds, in increasing order of the parameter, and whether the
     list is proved complete."""
 
     crossings: tuple[Crossing, ...] = ()
     searched: tuple[float, float] = (math.nan, math.nan)
-    """Searched interval of the parameter; all other fields refer to it."""
+    """Searched interval of the parameter; all other fields refer to this interval."""
     ended_early: bool = False
     """Whether the searched interval is shorter than the requested interval; the reason is in `why_not`."""
     open_range: tuple[float, float] = (math.nan, math.nan)
-    """Smallest interval with all parameter values of possible further crossings; nan if there are none."""
+    """Smallest interval that contains all possible further crossings; (nan, nan) if none are possible."""
     unstable_at_start: int = -1
     unstable_at_end: int = -1
     oscillates_at_start: bool = False
@@ -57,7 +56,7 @@ class Transitions:
     """Whether the covering is complete, all counts agree, and no eigenvalue lies to the right of a leading
     eigenvalue."""
     boxes: int = 0
-    """Number of evaluations of D in the covering."""
+    """Number of evaluations of the determinant D in the covering."""
     solves: int = 0
     """Number of solved eigenvalue problems."""
     why_not: str = ""
@@ -74,7 +73,7 @@ class AxisCrossings:
     """Crossings of the imaginary axis along `path`. gaps: intervals of the parameter that may contain further
     crossings. reach: end of the search.
 
-    boxes: number of evaluations of D in the covering.
+    boxes: number of evaluations of the determinant D in the covering.
     """
 
     path: Path
@@ -103,7 +102,7 @@ class AxisCrossings:
 def transitions(
     path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
 ) -> Transitions:
-    """All changes along `path` for parameter values from `start` to `stop`, proved complete if `certify`.
+    """All thresholds along `path` for parameter values from `start` to `stop`, proved complete if `certify`.
 
     The search ends early at a rod whose eigenvalues cannot be computed, and for a nonuniform arm after more
     than `most` crossings. Raises Unsolvable if not even the first interval can be searched, or if no a-priori
@@ -142,8 +141,8 @@ def transitions(
 def pair_crossings(
     path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
 ) -> Transitions:
-    """Crossings of the imaginary axis by pairs between the parameter values `start` and `stop`, without the
-    leading eigenvalue: takes half the time of `transitions`.
+    """Crossings of the imaginary axis by pairs between the parameter values `start` and `stop`, without
+    exchanges of the leading eigenvalue; takes half the time of `transitions`.
 
     `proved` then means that the covering is complete and every count agrees. The search ends early, and
     Unsolvable is raised, under the same conditions as in `transitions`.
@@ -160,7 +159,7 @@ def pair_crossings(
 
 
 def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...], at_end: int) -> Transitions:
-    """`Transitions` of counted crossings. unstable, at_end: numbers of unstable modes at the two ends."""
+    """`Transitions` of counted thresholds. unstable, at_end: numbers of unstable modes at the two ends."""
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
     return Transitions(
         crossings=crossings,
@@ -188,7 +187,7 @@ def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, 
 
 
 def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, most: float) -> AxisCrossings:
-    """Crossings for path variables in `ends`: by the covering, for arms by counts, up to `most` crossings."""
+    """Crossings between path variables `ends`, by the covering, for arms by counts; most: maximum number."""
     if not isinstance(problem, ArmPath):
         return _covered(problem.path, *ends)
     search = CrossingSearch(problem, certify)
@@ -199,7 +198,7 @@ def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, m
 
 
 def _covered(path: Path, low: float, high: float) -> AxisCrossings:
-    """Crossings for path variables `low` to `high`, by the covering; Unsolvable without an a-priori bound."""
+    """Crossings for path variables `low` to `high` by the covering; raises Unsolvable if no bound applies."""
     boxes = first_boxes(path, low, high)
     if boxes is None:
         raise Unsolvable("no a-priori bound on the eigenvalues applies to this rod")
@@ -216,7 +215,8 @@ def _range_of(gaps: list[tuple[float, float]]) -> tuple[float, float]:
 def _pairs_missed_as_leaders(
     path: Path, crossings: tuple[Crossing, ...], oscillates: bool, unstable: int
 ) -> list[float]:
-    """Path variables of the crossings whose pair must lead, but does not lead by the list of changes."""
+    """Path variables of the crossings whose pair must lead, but does not lead according to the exchanges.
+    oscillates: whether a pair leads at the start. unstable: number of unstable modes at the start."""
     missed = []
     for crossing in crossings:
         if crossing.kind.changes_leader:
@@ -229,7 +229,7 @@ def _pairs_missed_as_leaders(
 
 
 def _hopf(path: Path, zero: LocatedZero) -> Crossing:
-    """The crossing at a zero of D on the imaginary axis; a hopf if Re w grows with the parameter."""
+    """Crossing at a zero of D on the axis: hopf if Re w grows with the parameter, otherwise hopf_reverse."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
     there = determinant_along(complex(0.0, zero.eta_or_x), coefficients, path.direction)
     # dw/dp = -D_p/D_w; along a stiffness p = 1/k falls as the parameter rises.

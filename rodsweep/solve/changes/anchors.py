@@ -1,5 +1,5 @@
-"""Interpolation of the leading eigenvalues between two neighbouring anchors, rods of a path whose spectra are
-solved."""
+"""Anchors (rods of a path whose spectra are solved), and interpolation of the leading eigenvalues between two
+neighbouring anchors."""
 
 import math
 from dataclasses import dataclass
@@ -13,15 +13,15 @@ class AnchorSettings:
     """Settings of the anchors of a path of rods and of the interpolation between two anchors."""
 
     min_known_modes: int = 4
-    """Minimum number of leading eigenvalues computed at an anchor of a path of arms; at least two more than
-    the number of unstable modes."""
+    """Minimum number of leading eigenvalues computed at a place of a path of arms (`arm.axis_place`); at
+    least two more than the number of unstable modes are computed."""
     place_accuracy: float = 1e-6
-    """Relative accuracy of the eigenvalues at an anchor of a path of arms, before the refinement by Newton's
+    """Relative accuracy of the eigenvalues at a place of a path of arms, before the refinement by Newton's
     method on D."""
     explained: float = 0.25
     """Tolerance of the interpolation between two anchors. The cubic must stay above this fraction of the
-    smaller end value, so that no zero is missed. The change computed from the slopes by the trapezoidal rule
-    must agree with the actual change within this fraction."""
+    smaller end value, so that no zero is missed. The difference of the end values must agree, within this
+    fraction, with the difference that the slopes give by the trapezoidal rule."""
 
 
 ANCHORS = AnchorSettings()
@@ -33,7 +33,7 @@ class Anchor:
     (ANCHOR_MODES,) each.
 
     time: a relaxation time of the rod, smooth in p. lengthening: d time/dp. The product w time is of order
-    one; without shear and rotational drag, w grows like nu^-2 for a nearly crushed rod.
+    one; w alone grows without bound near crushing for a rod that has neither shear nor rotational drag.
     """
 
     p: float
@@ -48,8 +48,8 @@ class Anchor:
         return bool(self.w[0].imag != 0)
 
     def squared_pair_difference(self) -> tuple[float, float] | None:
-        """((w1 - w2)^2 time^2, its derivative by p) for the two leading eigenvalues w1, w2; None if w1 is
-        real and w2 is not."""
+        """((w1 - w2)^2 time^2, derivative of this product with respect to p) for the two leading eigenvalues
+        w1, w2; None if w1 is real and w2 is not."""
         if self.oscillates:
             gap, slope = self._in_units_of_time(2 * self.w[0].imag, 2 * self.slope[0].imag)
             # (w1 - w2)^2 is negative for a pair, positive for two real eigenvalues, and smooth through 0.
@@ -62,16 +62,17 @@ class Anchor:
         return gap**2, 2 * gap * slope
 
     def leading_growth_gap(self) -> tuple[float, float] | None:
-        """(Re(w1 - w) time, its derivative by p), where w is the first complex eigenvalue if w1 is real, and
-        the first real eigenvalue if w1 is complex; None if no such w is among the leading eigenvalues."""
+        """(Re(w1 - w) time, derivative of this product with respect to p). w1: leading eigenvalue. w: first
+        complex eigenvalue if w1 is real, first real eigenvalue if w1 is complex; None if there is no such w
+        at this anchor."""
         for w, slope in zip(self.w[1:], self.slope[1:], strict=True):
             if (w.imag != 0) != self.oscillates:
                 return self._in_units_of_time((self.w[0] - w).real, (self.slope[0] - slope).real)
         return None
 
     def _in_units_of_time(self, value: float, slope: float) -> tuple[float, float]:
-        """(value time, its derivative by p) of a quantity `value` with derivative `slope`; the factor `time`
-        preserves zeros and signs."""
+        """(value time, derivative of this product with respect to p) for a quantity `value` with derivative
+        `slope`; the factor `time` preserves zeros and signs."""
         return float(value * self.time), float(slope * self.time + value * self.lengthening)
 
 
@@ -101,8 +102,8 @@ def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tupl
 
 def next_anchor(left: Anchor, right: Anchor) -> tuple[float, bool]:
     """Returns (share, hides). share: position of an additional anchor as a fraction of the interval from
-    `left` to `right`; 0 if the slopes explain the end values and exclude a change. hides: whether two changes
-    may lie between.
+    `left` to `right`; 0 if the slopes explain the end values and exclude exchanges of the leading eigenvalue.
+    hides: whether two exchanges may lie between the anchors.
 
     The leading eigenvalue must be real at both anchors, or a pair at both anchors.
     """

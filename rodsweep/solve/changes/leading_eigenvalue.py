@@ -1,13 +1,13 @@
-"""Changes of the leading eigenvalue along a path of rods from real to a complex pair, or back.
+"""Exchanges of the leading eigenvalue along a path of rods: from real to a complex pair, or back.
 
-Such a change happens in two ways. At a double eigenvalue, D = D_w = 0, two real eigenvalues become a pair or
-a pair becomes two real eigenvalues. In an overtaking, a real eigenvalue and a pair exchange the lead without
+An exchange happens in two ways. At a double eigenvalue, D = D_w = 0, two real eigenvalues become a pair or a
+pair becomes two real eigenvalues. In an overtaking, a real eigenvalue and a pair exchange the lead without
 becoming equal. Anchors are rods whose leading eigenvalues come from the spectrum solver, certified on
 request. Between two anchors, cubic interpolation must explain two smooth quantities: the squared difference
 of the two leading eigenvalues, and the difference in real part between the leading eigenvalue and the next
 eigenvalue of the opposite kind (real or complex). Otherwise an anchor is added between the two anchors.
-Newton's method on D finds the changes, and the winding number proves that no eigenvalue lies to the right of
-the changes.
+Newton's method on the determinant D finds each exchange, and the winding number proves that no eigenvalue
+lies to the right of the eigenvalues that exchange the lead.
 """
 
 import math
@@ -25,13 +25,13 @@ from .unstable_modes import ChangeKind, Crossing
 
 ANCHOR_MODES = 4
 """Number of leading eigenvalues computed at an anchor: the first two, and two that may overtake the first
-two. The number is a constant, because with fewer eigenvalues it would be unknown which of them become
+two. The number is a constant, because with fewer eigenvalues it would be unknown which eigenvalues become
 equal."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeaderSettings:
-    """Settings of the search for changes of the leading eigenvalue: anchors, and Newton's method between
+    """Settings of the search for exchanges of the leading eigenvalue: anchors, and Newton's method between
     anchors."""
 
     accuracy: float = 1e-6
@@ -40,7 +40,7 @@ class LeaderSettings:
     """An anchor is added between two anchors only if their distance, as a fraction of the path's length,
     exceeds this."""
     smallest_hiding_interval: float = 1e-9
-    """As `smallest_interval`, if two changes may lie between the two anchors."""
+    """Like `smallest_interval`, for two anchors between which two exchanges may lie."""
     max_overtaking_steps: int = 60
     """Maximum number of Newton steps to an overtaking."""
     carrying_steps: int = 8
@@ -52,8 +52,8 @@ class LeaderSettings:
     """The eigenvalue w found by Newton's method is accepted if its distance from the start is below this
     multiple of |w|: some thousand rounding errors."""
     smallest_step: float = 1e-12
-    """Intervals with a smaller length, relative to the larger of their ends, are not divided: some thousand
-    rounding errors."""
+    """The search fails at an interval whose length, divided by the larger modulus of its ends, is at most
+    this (some thousand rounding errors), if its exchange is not found."""
     rounding: float = 4e-16
     """Relative rounding error of the path variable: two units in the last place."""
     converged: float = 4.0
@@ -65,8 +65,9 @@ LEADER = LeaderSettings()
 
 
 class LeaderExchange(NamedTuple):
-    """Change of the leading eigenvalue at path variable p: a double real eigenvalue (frequency 0), or a real
-    eigenvalue and a pair with equal real parts. error: of p. frequency: Im w of the pair, in 1/tau2."""
+    """Exchange of the leading eigenvalue at path variable p: a double real eigenvalue (frequency 0), or a
+    real eigenvalue and a pair with equal real parts. error: error of p. growth_rate, frequency: Re w of both
+    and Im w of the pair, in 1/tau2."""
 
     p: float
     error: float
@@ -75,7 +76,7 @@ class LeaderExchange(NamedTuple):
 
 
 class Tracer:
-    """Finds the changes of the leading eigenvalue along a path. anchors: the solved anchors, by path
+    """Finds the exchanges of the leading eigenvalue along a path. anchors: the solved anchors, by path
     variable."""
 
     def __init__(self, problem: PathProblem, certify: bool):
@@ -84,8 +85,8 @@ class Tracer:
         self.certify = certify
         self.anchors: dict[float, Anchor] = {}
         self.proved = certify
-        """Whether all anchors are certified, and counts prove that no eigenvalue lies to the right of any
-        change."""
+        """Whether all anchors are certified, no undecided interval is left, and counts prove at each exchange
+        that no further eigenvalue lies to the right."""
 
     def anchor(self, p: float) -> Anchor:
         """The anchor at path variable p, solved at the first call; raises Unsolvable if the eigenvalues
@@ -113,8 +114,8 @@ class Tracer:
         return Anchor(p, w, slope, *self.problem.relaxation(p))
 
     def changes(self, edges: list[float]) -> tuple[list[Crossing], SearchEnd]:
-        """Returns (changes, end of the search). changes: all changes by increasing p, for p from the first to
-        the last of `edges`.
+        """Returns (exchanges, end of the search). exchanges: all exchanges by increasing p, for p from the
+        first of `edges` to the end of the search.
 
         Raises Unsolvable if the search ends at the first edge.
         """
@@ -129,8 +130,9 @@ class Tracer:
         return found, intervals.reach
 
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> list[Crossing]:
-        """The change between the anchors at a and b, in a list; an empty list if there is no change, or if
-        the test is undecided and the interval was divided into two entries of `intervals`."""
+        """The exchange between the anchors at a and b, in a list; an empty list if there is no exchange, or
+        if the test is undecided. An undecided interval is divided into two entries of `intervals`, or ends
+        the proof if it is too short; raises Unsolvable."""
         left = self.anchor(a)
         right = self.anchor(b)
         share = 0.5
@@ -139,7 +141,7 @@ class Tracer:
             smallest = LEADER.smallest_hiding_interval if hides else LEADER.smallest_interval
             if share == 0.0:
                 return []
-            # Two changes may hide in an interval too short to divide: the list then is not proved.
+            # Two exchanges may hide in an interval too short to divide: the list then is not proved.
             if b - a <= smallest * intervals.length:
                 self.proved = False
                 return []
@@ -149,14 +151,17 @@ class Tracer:
                 return [change]
             if b - a <= LEADER.smallest_step * max(abs(a), abs(b)):
                 where = self.path.rod_at(a)
-                raise Unsolvable(f"the change of the leading eigenvalue near {where} was not found")
+                raise Unsolvable(
+                    f"no point was found near {where} at which the leading eigenvalue turns from real to "
+                    "complex or back"
+                )
         middle = a + share * (b - a)
         intervals.divide((a, middle), (middle, b))
         return []
 
     def _between(self, left: Anchor, right: Anchor) -> Crossing | None:
-        """The change between an anchor with a leading pair and an anchor with a real leading eigenvalue. None
-        if Newton's method finds no change, or if a count shows that other eigenvalues lead at the change."""
+        """The exchange between an anchor with a leading pair and an anchor with a real leading eigenvalue.
+        None if Newton's method finds no exchange, or if a count shows that other eigenvalues lead there."""
         pair, real = (left, right) if left.oscillates else (right, left)
         # Kinds are named in the direction of the parameter, along a stiffness the direction of falling p.
         if right.oscillates != self.path.is_compliance:
@@ -169,10 +174,10 @@ class Tracer:
             found = find(pair, real)
             if found is None or not left.p <= found.p <= right.p:
                 continue
-            # Counted halfway to the next eigenvalue: only the eigenvalues of the change may lie to the right.
+            # Counted halfway to the next eigenvalue: only the exchanged eigenvalues may lie to the right.
             behind = max(left.w[meeting].real, right.w[meeting].real)
             count = self.problem.count((found.growth_rate + behind) / 2, found.p)
-            # A different count means that other eigenvalues lead; an undecided one leaves the change
+            # A different count means that other eigenvalues lead; an undecided count leaves the exchange
             # unproved.
             if count.number in (meeting, None):
                 self.proved = self.proved and count.number == meeting

@@ -19,7 +19,8 @@ class PathProblem(ABC):
         self._spectra: dict[tuple[float, SpectrumRequest], Spectrum] = {}
 
     def spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
-        """The spectrum of the rod at p for `request`; each request is solved once and stored."""
+        """The spectrum of the rod at path variable p for `request`; each request is solved once and
+        stored."""
         key = p, request
         if key not in self._spectra:
             self._spectra[key] = solve_spectrum(self.path.rod_at(p), request)
@@ -28,7 +29,8 @@ class PathProblem(ABC):
 
     @abstractmethod
     def edges(self, low: float, high: float) -> list[float]:
-        """Path variables from `low` to `high`, so dense that neighbouring rods differ little."""
+        """Path variables from `low` to `high`, both included, spaced so closely that neighbouring rods differ
+        little."""
 
     @abstractmethod
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
@@ -44,18 +46,20 @@ class PathProblem(ABC):
         """Number of eigenvalues with Re w > `line` of the rod at p."""
 
     def counted_amid(self, low: float, high: float) -> int | None:
-        """Number of unstable modes if it is already proved at a path variable near the middle of `low` and
-        `high`; else None.
+        """Number of unstable modes already proved at a path variable near the middle between `low` and
+        `high`; None if no such number is known.
         """
         return None
 
     @abstractmethod
     def relaxation(self, p: float) -> tuple[float, float]:
-        """(relaxation time of the rod at p, derivative of this time by p); the time is smooth in p."""
+        """(relaxation time of the rod at p, derivative of this time with respect to p); the time is smooth
+        in p."""
 
 
 class UniformPath(PathProblem):
-    """Eigenvalue problem along a path of uniform rods of linear material, whose D has a closed form."""
+    """Eigenvalue problem along a path of uniform rods of linear material, whose determinant D has a closed
+    form."""
 
     def edges(self, low: float, high: float) -> list[float]:
         return [a for a, _ in path_intervals(self.path, low, high)] + [high]

@@ -16,8 +16,8 @@ class SearchRangeSettings:
     """Settings for the end of a search along a path."""
 
     last_halvings: int = 4
-    """If the search of an interval fails, up to this many further searches cover the left half of what is
-    left of the interval."""
+    """If the search of an interval fails, its left half is searched, then the left half of the remaining
+    part, and so on, up to this many times."""
 
 
 SEARCH_RANGE = SearchRangeSettings()
@@ -66,15 +66,15 @@ class SearchedIntervals:
         self._left += intervals[::-1]
 
     def stop_at(self, p: float, reason: str) -> None:
-        """Ends the search at path variable `p`, up to which the search is complete; `reason`: why the search
+        """Ends the search at path variable `p`, up to which the search is complete. reason: why the search
         ends."""
         self._left.clear()
         self._halvings = SEARCH_RANGE.last_halvings
         self.reach = SearchEnd(p, reason)
 
     def end_within(self, interval: tuple[float, float], reason: str) -> None:
-        """Ends the search at the start of the present `interval`, whose search failed; its left half may be
-        searched later."""
+        """Ends the search at the start of the present `interval`, whose search failed; `__iter__` may still
+        yield its left half. reason: why the search failed."""
         self._left.clear()
         self._unsolvable = interval[1]
         self.reach = SearchEnd(interval[0], reason)

@@ -1,5 +1,5 @@
-"""Task `thresholds` for one rod: all changes of its leading eigenvalues as the follower force grows from 0
-(paper, Sec. VI)."""
+"""Task `thresholds` for one rod: all thresholds (`unstable_modes`) as the follower force grows from 0 (paper,
+Sec. VI)."""
 
 import math
 from dataclasses import dataclass
@@ -14,17 +14,17 @@ from .unstable_modes import ChangeKind, Crossing, end_below_crushing
 
 
 class ThresholdStatus(PointStatus):
-    """Status of a search for all changes along a path of rods."""
+    """Status of a search for all thresholds along a path of rods."""
 
     ok = (
         0,
-        "the changes have the requested accuracy, and their list is certified if requested",
+        "all thresholds have the requested accuracy, and their list is certified if requested",
         True,
     )
     not_certified = (
         1,
-        "the changes are accurate, but a count of the unstable modes between them is undecided or disagrees, "
-        "or it is not proved which eigenvalue leads; `certify: false` accepts such a list",
+        "the thresholds are accurate, but a count of the unstable modes between them is undecided or "
+        "disagrees, or it is not proved which eigenvalue leads; `certify: false` accepts such a list",
     )
     window_open = (
         2,
@@ -33,33 +33,33 @@ class ThresholdStatus(PointStatus):
     )
     accuracy_not_reached = (
         3,
-        "a change misses the requested accuracy, as its error says, for example where two changes nearly "
-        "coincide; request a lower accuracy",
+        "a threshold misses the requested accuracy, as its error says, for example where two thresholds "
+        "nearly coincide; use a larger number for the accuracy",
     )
-    list_full = 4, "there are more changes than the list holds; raise the option crossings"
+    list_full = 4, "there are more thresholds than the list holds; raise the option crossings"
     failed = 5, "the search failed and nothing is stored; the message says why"
     ended_early = (
         9,
         "the search ends before the requested range, at a rod whose unstable modes could not be counted, or "
-        "once the list is full; changes beyond this end are not known; the message says why",
+        "once the list is full; thresholds beyond this end are not known; the message says why",
     )
 
 
 @dataclass(frozen=True, slots=True)
 class ThresholdsRequest:
-    """Request for each rod. F_max: largest force, in k3/L^2. accuracy: relative accuracy of each change.
+    """Request for each rod. F_max: largest force, in k3/L^2. accuracy: relative accuracy of each threshold.
     certify: whether the list must be proved complete."""
 
     F_max: float
     accuracy: float
     certify: bool
     crossings: int
-    """Maximum number of changes in the list."""
+    """Maximum number of thresholds in the list."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Thresholds:
-    """Result of a search: all changes along a path up to the parameter value `end`, with a status."""
+    """Result of a search: all thresholds along a path up to the parameter value `end`, with a status."""
 
     status: ThresholdStatus
     transitions: Transitions
@@ -69,13 +69,13 @@ class Thresholds:
 
     @property
     def crossings(self) -> tuple[Crossing, ...]:
-        """All changes, in increasing order of the parameter."""
+        """All thresholds, in increasing order of the parameter."""
         return self.transitions.crossings
 
 
 def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
-    """All changes of `rod` for forces from 0 to `request.F_max`; a failure is returned as a status, never
-    raised."""
+    """All thresholds of `rod` for forces from 0 to `request.F_max`, or to just below the crushing force if
+    smaller; a failure is returned as a status, never raised."""
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Thresholds:
@@ -86,15 +86,15 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
 
 
 def empty_thresholds(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:
-    """A result without changes, for a rod that needs no search or whose search failed. end: parameter value
-    at the end of the search."""
+    """A result without thresholds, for a rod that needs no search or whose search failed. end: parameter
+    value at the end of the search."""
     found = Transitions(proved=status == ThresholdStatus.ok)
     return Thresholds(status=status, transitions=found, end=end, message=message)
 
 
 def thresholds_with_status(found: Transitions, accuracy: float, certify: bool, most: int) -> Thresholds:
-    """The result of a search with its status: the first of the problems tested below, or ok. accuracy,
-    certify: as requested. most: maximum number of changes in the list."""
+    """The result of a search with its status: the most serious problem, or ok. accuracy, certify: as
+    requested. most: maximum number of thresholds in the list."""
     status = ThresholdStatus.ok
     if found.ended_early:
         status = ThresholdStatus.ended_early

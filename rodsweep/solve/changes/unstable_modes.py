@@ -1,7 +1,8 @@
-"""Kinds of changes along a path of rods, and the number of unstable modes between the changes.
+"""Kinds of thresholds along a path of rods, and the number of unstable modes between the thresholds.
 
-The directions of the crossings of the imaginary axis give the number of unstable modes after every crossing.
-Winding numbers confirm this number at both ends and between the crossings.
+At a threshold a pair of eigenvalues crosses the imaginary axis, or the leading eigenvalue changes between
+real and complex (an exchange). The directions of the crossings give the number of unstable modes after every
+crossing. Winding numbers confirm this number at both ends and between the crossings.
 """
 
 import math
@@ -18,13 +19,13 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChangeCountSettings:
     """Settings for the end of a search below the crushing force, and for counts of unstable modes between
-    changes."""
+    thresholds."""
 
     crushing_margin: float = 1e-6
     """A search ends at this relative distance below the crushing force; at F = k1 the rod is crushed."""
     meets_crushing: float = 1e-12
-    """F and the crushing force are equal if their relative difference is at most this: on a grid of F and k1
-    the two may differ by rounding alone."""
+    """F and the crushing force are treated as equal if their relative difference is at most this: on a grid
+    of F and k1 they may differ by rounding alone."""
     places: tuple[float, ...] = (0.5, 0.3, 0.7)
     """Positions between two crossings, as fractions of the interval, at which the unstable modes are counted,
     in this order, until a count is decided."""
@@ -37,13 +38,19 @@ CHANGE_COUNTS = ChangeCountSettings()
 
 
 def end_below_crushing(rod: Rod, F: float) -> float:
-    """Largest force of a search up to F, in k3/L^2: F, or the end of the search below the crushing force if F
-    is larger."""
+    """Largest force of a search up to F, in k3/L^2: the smaller of F and a force just below the crushing
+    force of `rod`."""
     return min(F, rod.crushing_force * (1 - CHANGE_COUNTS.crushing_margin))
 
 
 class ChangeKind(IntEnum):
-    """Kind of a change along a path, named for increasing parameter."""
+    """Kind of a threshold along a path, named for increasing parameter.
+
+    onset, real_again: two real leading eigenvalues become a pair; a pair becomes two real eigenvalues.
+    pair_leads, real_leads: a pair overtakes a real eigenvalue; a real eigenvalue overtakes a pair. hopf,
+    hopf_reverse: a pair becomes unstable; a pair becomes stable. restabilization: the last unstable pair
+    becomes stable.
+    """
 
     onset = 1
     hopf = 2
@@ -55,23 +62,23 @@ class ChangeKind(IntEnum):
 
     @property
     def changes_leader(self) -> bool:
-        """Whether the leading eigenvalue changes between real and complex at this change. Otherwise a pair
+        """Whether the leading eigenvalue changes between real and complex at this threshold. Otherwise a pair
         crosses the imaginary axis."""
         return self in (ChangeKind.onset, ChangeKind.pair_leads, ChangeKind.real_again, ChangeKind.real_leads)
 
     @property
     def pair_leads_after(self) -> bool:
-        """Whether this change is a change of the leading eigenvalue after which a complex pair leads."""
+        """Whether a complex pair takes the lead at this threshold."""
         return self in (ChangeKind.onset, ChangeKind.pair_leads)
 
 
 @dataclass(frozen=True, slots=True)
 class Crossing:
-    """One change along a path, at parameter value `at` with error `error`; the eigenvalue is growth_rate + i
-    frequency, in 1/tau2.
+    """One threshold along a path, at parameter value `at` with error `error`; the eigenvalue is growth_rate +
+    i frequency, in 1/tau2.
 
-    unstable_after: number of unstable modes just after the change, -1 if unknown. frequency_error: error of
-    the frequency of a pair that crosses the imaginary axis, nan for other changes.
+    unstable_after: number of unstable modes just after the threshold, -1 if unknown. frequency_error: error
+    of the frequency of a pair that crosses the imaginary axis; nan at an exchange of the leading eigenvalue.
     """
 
     at: float
@@ -104,8 +111,8 @@ class ModeCounter:
         return -1 if number is None else number
 
     def count_between(self, a: float, b: float) -> int:
-        """Number of unstable modes at a position between the parameter values a and b, by the winding number;
-        -1 if the count is undecided at all positions tried."""
+        """Number of unstable modes at a position between the parameter values a and b, known already or by
+        the winding number; -1 if the count is undecided at all positions tried."""
         known = self.problem.counted_amid(*sorted((self.path.coordinate(a), self.path.coordinate(b))))
         if known is not None:
             return known
@@ -117,7 +124,7 @@ class ModeCounter:
 
     def count_at_start(self, start: float, stop: float, hopfs: list[Crossing]) -> int:
         """Number of unstable modes at `start`, or, if that count is undecided, at a position before the first
-        of `hopfs`, of `gaps` and of `stop`; -1 if undecided."""
+        crossing (`hopfs`), the first of `gaps` and `stop`; -1 if undecided."""
         number = self.count_at(start)
         until = min([stop, *(c.at for c in hopfs), *(a for a, _ in self.gaps)])
         return number if number >= 0 else self.count_between(start, until)
@@ -125,9 +132,10 @@ class ModeCounter:
     def along(
         self, ordered: list[Crossing], ends: tuple[float, float], unstable: int
     ) -> tuple[tuple[Crossing, ...], int]:
-        """Returns (changes, at_end). changes: as `ordered`, with `unstable_after` set. at_end: number of
-        unstable modes at the end. ordered: changes by increasing parameter. unstable: number of unstable
-        modes at the start. Resets `doubts`.
+        """Returns (thresholds, at_end). thresholds: as `ordered`, with `unstable_after` set, and with the
+        kind restabilization where the last unstable pair becomes stable. at_end: number of unstable modes at
+        the end. ordered: thresholds by increasing parameter. unstable: number of unstable modes at the start.
+        Resets `doubts`.
         """
         self.doubts = []
         out: list[Crossing] = []
@@ -145,8 +153,9 @@ class ModeCounter:
         return tuple(out), self._between(place, ends[1], unstable)
 
     def _between(self, a: float, b: float, unstable: int) -> int:
-        """Number of unstable modes just before b, from the number `unstable` just after a, confirmed by a
-        count at a position between a and b."""
+        """Number of unstable modes just before b: `unstable`, the number just after a, compared with a count
+        between a and b if `certify`; a contradiction is added to `doubts`. If a gap lies between a and b, the
+        result is the number counted behind the gap, or -1 if undecided."""
         inside = [gap for gap in self.gaps if gap[1] > a and gap[0] < b]
         if inside:
             # A gap may hide crossings, so the modes are counted again after the gap.

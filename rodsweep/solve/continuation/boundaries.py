@@ -22,13 +22,14 @@ class BoundaryProblem(Protocol[Curve]):
         """Index of the seed point from which the next curve is traced, one of the indices `left`."""
 
     def missing_units(self, seed: int) -> list[int]:
-        """Units of work whose results are missing for the curve through the seed point `seed`."""
+        """Numbers of the units of work (parts of a curve) whose results are missing for the curve through the
+        seed point `seed`."""
 
     def curve(self, seed: int) -> Curve | None:
         """The curve through the seed point `seed`; None if this curve cannot be traced."""
 
     def distance(self, curve: Curve, seed: int) -> float:
-        """Distance of the seed point `seed` from a curve, in units of the length of a row."""
+        """Distance of the seed point `seed` from a curve, divided by the length of a row."""
 
     def are_identical(self, one: Curve, other: Curve) -> bool:
         """Whether the curves `one` and `other` are identical."""
@@ -37,7 +38,7 @@ class BoundaryProblem(Protocol[Curve]):
 @dataclass(frozen=True, slots=True)
 class Boundaries(Generic[Curve]):
     """All curves through the seed points of a plane. agreement: largest distance of a seed point from its
-    curve, in units of the length of a row. untraced: number of seed points through which no curve could be
+    curve, divided by the length of a row. untraced: number of seed points through which no curve could be
     traced."""
 
     curves: tuple[Curve, ...]
@@ -50,9 +51,9 @@ class BoundarySearch(Generic[Curve]):
     """State of the search for curves through seed points.
 
     tolerance: a seed point lies on a curve if its distance is at most this number. distances: distance of
-    each seed point from the nearest curve so far, by index. missing_units: units of work whose missing
-    results stopped the search. open_seeds: seed points that lie on no curve so far, except the point where
-    the search stopped.
+    each seed point from the nearest curve so far, by index. missing_units: numbers of the units of work whose
+    missing results stopped the search. open_seeds: seed points that lie on no curve so far, except the point
+    where the search stopped.
     """
 
     tolerance: float

@@ -70,8 +70,8 @@ class StepControl:
     """Largest prediction error of an accepted step; with a larger error the solution may belong to another
     curve."""
     prediction_order: int = 1
-    """Order of the prediction: the prediction error is proportional to length**order. If there are fewer
-    solutions so far, the number of solutions is used as the order."""
+    """Order of the prediction: the prediction error is proportional to length**order. If the curve has fewer
+    solutions than this so far, the number of solutions is used as the order."""
     target_angle: float = inf
     """The length of the next step is chosen for this angle, in radians, between successive steps."""
     max_angle: float
@@ -141,9 +141,9 @@ class Curve(Generic[Solution]):
 def advance(
     step: Callable[[float], StepResult[Solution]], length: float, control: StepControl
 ) -> tuple[StepResult[Solution], float]:
-    """(next solution of a curve, length of the successful step). length: first step length, halved after
-    every failed step. step: function that returns the solution one step of a given length ahead, or raises an
-    error of FAILURES. `advance` raises the last error if no step succeeds."""
+    """(next solution of a curve, length of the successful step); raises the error of the last step if no step
+    succeeds. length: first step length, halved after every failed step. step: function that returns the
+    solution one step of a given length ahead, or raises an error of FAILURES."""
     length = min(length, control.max_length)
     while True:
         try:

@@ -1,1 +1,2 @@
-"""Normal forms of Hopf points: amplitude, frequency and stability of the cycles that bifurcate there."""
+"""Normal forms of Hopf points, the criticality of the branches of cycles that start there, and generalised
+Hopf points with their curves."""

@@ -1,9 +1,9 @@
 """Curves of generalised Hopf points over three parameters.
 
-Generalised Hopf points, D(i eta) = 0 and Re c = 0, are isolated in a plane of two parameters and form a curve
-over three parameters. Each step prescribes the parameter that changes fastest along the curve, so that folds
-in all parameters are possible. The line through the last two points is the predictor. The secant method then
-moves along the Hopf curve in the plane of the two free parameters, to Re c = 0.
+Generalised Hopf points, D(i eta) = 0 and Re c = 0 (D: determinant, c: Landau coefficient), are isolated in a
+plane of two parameters and form a curve over three parameters. Each step prescribes the parameter that
+changes fastest along the curve, so that folds in all parameters are possible. The predictor is the line
+through the last two points; the corrector moves along the Hopf curve of the two free parameters to Re c = 0.
 """
 
 from collections.abc import Sequence
@@ -40,14 +40,13 @@ END_OTHERWISE = {
     CurveStop.lost: BautinEnd.not_found,
     CurveStop.full: BautinEnd.list_full,
 }
-"""`BautinEnd` for each `CurveStop` except `margin`: there the curve reaches an end of a parameter's range."""
+"""`BautinEnd` for each `CurveStop` except `margin`, which means an end of a parameter's range."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BautinCurvePoint:
-    """A generalised Hopf point in the space of three parameters.
-
-    values, errors: the plane's two parameters, then the third one, (3,). landau_imag: Im c, in 1/(tau2 L^2).
+    """A generalised Hopf point in the space of three parameters. values, errors: both parameters of the
+    plane, then the third parameter, (3,). frequency in 1/tau2, landau_imag = Im c in 1/(tau2 L^2).
     """
 
     values: Array
@@ -66,7 +65,7 @@ class BautinCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvePoint:
-    """Generalised Hopf point. v: coordinates for continuation, (4,): three scaled parameters and log eta."""
+    """Generalised Hopf point. v: continuation coordinates, (4,): three scaled parameters, log frequency."""
 
     v: Array
     point: BautinCurvePoint
@@ -74,9 +73,9 @@ class _CurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class BautinSpace:
-    """Curve problem for the follower: generalised Hopf points over three parameters, each with a range.
+    """Generalised Hopf points over three parameters, each with a range, as a problem for `follow_curve`.
 
-    rod: values of the fixed parameters. asked: values of the third parameter at which points are stored.
+    rod: values of the fixed parameters. asked: values of the third parameter at which points are added.
     accuracy: relative accuracy of c. side: sign of the first step along the third parameter, 1 or -1.
     """
 
@@ -130,7 +129,7 @@ class BautinSpace:
         return StepResult(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
 
     def _within(self, here: Array, change: Array) -> tuple[_CurvePoint, bool]:
-        """(point near here + change, (4,), or where the step leaves the ranges; whether it lies on an end).
+        """(point near here + change, (4,), or on the range end that the step crosses; whether on an end).
 
         No point outside the ranges is solved: its parameters may describe no rod. Raises Unsolvable.
         """
@@ -146,13 +145,13 @@ class BautinSpace:
         return self.solved(guess, which), True
 
     def margins(self, place: _CurvePoint) -> Array:
-        """Distances of a point from both ends of the three ranges minus a tolerance, (6,)."""
+        """Distances of a point from both ends of each of the three ranges, minus a tolerance, (6,)."""
         return np.ravel([place.v[:3], 1 - place.v[:3]], order="F") - BAUTIN.on_edge
 
     def located_zero(
         self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int
     ) -> _CurvePoint | None:
-        """The point `outer` itself: `_within` has already shortened the step to end on the edge."""
+        """The point `outer` itself: `_within` has already shortened the step to end on the end of a range."""
         return outer
 
     def is_closed_by(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
@@ -216,7 +215,8 @@ def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> 
 
 
 def _followed(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
-    """(points from `start` to the side `space.side`, with the requested third values; why the curve ends)."""
+    """(points from `start` in the direction `space.side` of the third parameter, including points at its
+    requested values; why the curve ends)."""
     if not 0 < start.v[2] + space.side * BAUTIN_STEPS.min_length < 1:
         return [start], BautinEnd.range_end
     curve = follow_curve(space, start, BAUTIN_STEPS, _report)
@@ -237,7 +237,7 @@ def _report(places: Sequence[_CurvePoint]) -> None:
 
 
 def _asked_between(space: BautinSpace, here: _CurvePoint, there: _CurvePoint) -> list[_CurvePoint]:
-    """Points at the requested third values between `here` and `there`; raises Unsolvable or ValueError."""
+    """Points at requested values of the third parameter between two points; raises Unsolvable, ValueError."""
     a = here.v[2]
     b = there.v[2]
     inner = [z for z in map(space.axes[2].coordinate, space.asked) if min(a, b) < z < max(a, b)]

@@ -1,4 +1,4 @@
-"""Normal form coefficients of a Hopf point, with error estimates from two meshes and from D.
+"""Normal form coefficients of a Hopf point, with error estimates from two meshes and from the determinant D.
 
 The Landau coefficient c is computed on two meshes. The value of the finer mesh is stored, and its difference
 from the value of the coarser mesh is the error estimate, which overestimates the error by some decades. The
@@ -75,8 +75,8 @@ class HopfCoefficients:
 
     @property
     def criticality(self) -> float:
-        """-1 if supercritical, 1 if subcritical, 0 if |Re c| is not larger than the error of c; nan if the
-        coefficients are not known."""
+        """Sign of Re c, c: Landau coefficient: -1 (supercritical) or 1 (subcritical); 0 if |Re c| is not
+        larger than the error of c; nan if the coefficients are not known."""
         if not self.known:
             return math.nan
         if abs(self.landau.real) <= self.landau_error * abs(self.landau):
@@ -85,7 +85,8 @@ class HopfCoefficients:
 
     @property
     def largest_error(self) -> float:
-        """The larger one of the relative errors of c and dw/dF, from which a and b are computed."""
+        """The larger of the relative errors of landau and growth_slope, from which amplitude_coefficient and
+        frequency_slope are computed."""
         return max(self.landau_error, self.growth_slope_error)
 
 
@@ -156,7 +157,7 @@ def _with_errors(
 
 
 def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
-    """(dw/dF, |d^2w/dF^2|) of the root of D of `rod` near w."""
+    """(dw/dF, |d^2w/dF^2|) of the root near w of the determinant D of `rod`."""
     step = COEFFICIENT.force_step * abs(rod.F)
     problem = path_problem(Path(rod, "F"))
     _, slope, _ = problem.eigenvalue(w, rod.F)

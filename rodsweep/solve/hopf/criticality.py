@@ -33,8 +33,8 @@ class CriticalityStatus(PointStatus):
     )
     accuracy_not_reached = (
         3,
-        "a Hopf point or a coefficient misses the requested accuracy, as its error says; request a lower "
-        "accuracy",
+        "a Hopf point or a coefficient misses the requested accuracy, as its error says; use a larger number "
+        "for the accuracy",
     )
     list_full = 4, "there are more Hopf points than the list holds; raise the option crossings"
     failed = 5, "the search for Hopf points failed and nothing is stored; the message says why"
@@ -71,7 +71,8 @@ class CriticalityRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criticality:
-    """Result for one rod: all Hopf points up to the force `end`; coefficients: of the first Hopf points."""
+    """Result for one rod: all Hopf points up to the force `end`. coefficients: normal form coefficients of
+    the first Hopf points, at most as many as requested."""
 
     status: CriticalityStatus
     transitions: Transitions
@@ -87,8 +88,9 @@ class Criticality:
 
 
 def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
-    """All Hopf points of `rod` for forces up to `request.F_max`, with coefficients. The force of `rod` is
-    ignored; a failure is returned as a status, never raised."""
+    """All Hopf points of `rod` for forces up to `request.F_max`, or to just below the crushing force if
+    smaller, with coefficients. The force of `rod` is ignored; a failure is returned as a status, never
+    raised."""
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Criticality:
@@ -143,8 +145,8 @@ def _nothing(end: float, cause: str) -> Criticality:
 def _judged(
     found: Transitions, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
 ) -> tuple[CriticalityStatus, str]:
-    """Returns (status, message) from the Hopf points `found` and their coefficients. status: the first of the
-    problems listed below, or ok."""
+    """Returns (status, message) from the Hopf points `found` and their coefficients. status: the most serious
+    problem, or ok."""
     failures = "; ".join(filter(None, (c.message for c in coefficients)))
     known = [c for c in coefficients if c.known]
     worse = any(c.error > request.accuracy * abs(c.at) for c in found.crossings) or any(

@@ -1,9 +1,10 @@
-"""Generalised Hopf (Bautin) points: points of a Hopf curve at which Re c changes its sign.
+"""Generalised Hopf (Bautin) points: points of a Hopf curve at which Re c changes its sign, c: Landau
+coefficient.
 
 The normal form gives the sign of Re c at every stored point of a Hopf curve. Between two neighbouring points
-with opposite signs, D(i eta) = 0 and Re c = 0 have a common solution: Newton's method on D computes the Hopf
-point at a position between the neighbours; Brent's method finds the position at which Re c vanishes. Two sign
-changes between the same neighbours are missed.
+with opposite signs, D(i eta) = 0 (D: determinant, eta: frequency) and Re c = 0 have a common solution:
+Newton's method on D computes the Hopf point at a position between the neighbours; Brent's method finds the
+position at which Re c vanishes. Two sign changes between the same neighbours are missed.
 """
 
 import math
@@ -49,9 +50,9 @@ GENERALISED_HOPF = GeneralisedHopfSettings()
 class GeneralisedHopfPoint:
     """Generalised Hopf point: the point of a Hopf curve with Re c = 0.
 
-    values, errors: of both parameters of the plane. frequency in 1/tau2, growth_slope = dw/dF in L^2/(k3
-    tau2), landau_imag = Im c in 1/(tau2 L^2). after: index of the last stored point of the curve before this
-    point.
+    values, errors: values and absolute errors of both parameters of the plane. frequency in 1/tau2,
+    growth_slope = dw/dF in L^2/(k3 tau2), landau_imag = Im c in 1/(tau2 L^2). after: index of the last stored
+    point of the curve before this point.
     """
 
     after: int
@@ -111,7 +112,8 @@ def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> Cu
 class HopfCurve:
     """Normal forms along a Hopf curve.
 
-    scaled: points (x, y, h) of the curve, h = log eta, shape (points, 3). accuracy: relative, of c.
+    scaled: points (x, y, h) of the curve, (points, 3); x, y: scaled parameters, h = log frequency. accuracy:
+    relative accuracy of the Landau coefficient c.
     """
 
     boundary: Boundary

@@ -59,7 +59,8 @@ class NormalFormSettings:
 NORMAL_FORM = NormalFormSettings()
 ITERATIONS_PER_SHIFT = 2
 """Number of inverse iterations with one shift. After two iterations the error of the mode is about the square
-of `NORMAL_FORM.found`, below rounding error; after one iteration it would exceed the stated error of c."""
+of `NORMAL_FORM.found`, below rounding error; after one iteration the error of the mode would exceed the
+stated error of c."""
 
 
 HARMONIC_WAVES = 2
@@ -96,17 +97,16 @@ class NormalForm:
 
     @property
     def amplitude(self) -> float:
-        """Amplitude coefficient a of a Hopf point: the largest tip y is |a| sqrt(|F' - F|/|F|), in L.
-
-        a < 0 if the cycles exist at F' < F.
+        """Amplitude coefficient a, in L, of a Hopf point at the force F: the cycle at a nearby force F' has a
+        largest tip y of |a| sqrt(|F' - F|/|F|). a < 0 if the cycles exist at F' < F.
         """
         squared = -self.slope.real / self.c.real
         return float(np.sign(squared) * abs(self.F * squared) ** 0.5)
 
     @property
     def frequency_slope(self) -> float:
-        """Frequency slope b of a Hopf point: the frequency of the cycle at F' is Im w + b (F' - F), in
-        1/tau2."""
+        """Frequency slope b of a Hopf point at the force F: the cycle at a nearby force F' has the frequency
+        Im w + b (F' - F), in 1/tau2."""
         return self.slope.imag - self.c.imag * self.slope.real / self.c.real
 
     def cycle(self, F: float) -> tuple[float, float]:
@@ -165,8 +165,8 @@ def elements_for(rod: Rod, w: complex, accuracy: float) -> Elements:
 
 
 def of_odd_order(elements: Elements) -> Elements:
-    """The elements with an even order increased by 1; elements of even order cannot be eliminated one by
-    one."""
+    """The same elements, with their order increased by 1 if it is even; elements of even order cannot be
+    eliminated one by one."""
     return Elements(elements.edges, elements.order | 1)
 
 
@@ -195,7 +195,8 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
     normal = normal_form(MixedForm(rod, mesh_on(elements.edges, elements.order)), w)
     if not abs(normal.w - w) <= max(accuracy, NORMAL_FORM.found) * abs(w):
         raise Unsolvable(
-            f"w = {w:.12g} is no eigenvalue of the mesh at F = {rod.F:g}; the nearest one is {normal.w:.12g}"
+            f"w = {w:.12g} is no eigenvalue of the mesh at F = {rod.F:g}; the nearest eigenvalue is "
+            f"{normal.w:.12g}"
         )
     return normal
 

@@ -19,13 +19,13 @@ class SubcriticalHopfSettings:
     """Settings for the search for a subcritical Hopf point near the force of a rod."""
 
     farthest_force: float = 1.5
-    """Hopf points are searched at forces from F/`farthest_force` to F `farthest_force`, where F is the force
-    of the rod."""
+    """Hopf points are searched at forces from F/`farthest_force` to F times `farthest_force`, where F is the
+    force of the rod."""
     accuracy: float = 1e-3
     """Relative accuracy of the coefficient c; only the sign and the first digits of c are needed."""
     largest_y: float = 0.5
-    """Hopf points whose unstable cycle has a larger tip y, in L, are ignored: the normal form is too
-    inaccurate."""
+    """Hopf points are ignored if the largest tip y of their unstable cycle, in L, exceeds this: the normal
+    form is too inaccurate."""
 
 
 SUBCRITICAL_HOPF = SubcriticalHopfSettings()
@@ -44,13 +44,13 @@ class SubcriticalHopf:
 
 
 def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
-    """The nearest Hopf point to the force of `rod` that is subcritical; None if neither candidate is
-    subcritical.
+    """The subcritical Hopf point nearest to the force of `rod`; None if no candidate is subcritical.
 
-    The candidates are the first Hopf point above and the first Hopf point below the force, if the tip y of
-    the unstable cycle is at most `SUBCRITICAL_HOPF.largest_y`. The straight rod must be stable. Raises
-    Unsolvable if the search for Hopf points or a coefficient fails.
+    The candidates are the first Hopf point above and the first Hopf point below the force, if the largest tip
+    y of the unstable cycle is at most `HOPF_BESIDE.largest_y`. The caller ensures that the straight rod is
+    stable. Raises Unsolvable if the search for Hopf points or a coefficient fails.
     """
+
     low = rod.F / SUBCRITICAL_HOPF.farthest_force
     high = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF.farthest_force)
     if not 0 < low < high:

@@ -1,1 +1,2 @@
-"""Leading modes and adjoint modes of one straight rod, and transient growth due to non-normality."""
+"""Leading modes and adjoint modes of one straight rod, with their condition numbers, and the numerical
+abscissa and transient growth due to non-normality."""

@@ -102,8 +102,8 @@ def _compared(coarse: ModeVectors, fine: ModeVectors, gaps: Array) -> ModeVector
 
 
 def eigenvalue_separation(rod: Rod, w: complex) -> float:
-    """Estimated distance from the eigenvalue w to the nearest other eigenvalue, 2 |D'/D''|; accurate if the
-    distance is small."""
+    """Estimated distance from the eigenvalue w to the nearest other eigenvalue, 2 |D'/D''|, D: determinant;
+    accurate if the distance is small."""
     if rod.standard:
         return distance_to_next_root(w, rod.coefficients)
     determinant = arm_determinant(rod)

@@ -43,16 +43,16 @@ class ModeVectors:
     right: Complex
     """Right modes (Y, Theta) with Y(1) = 1, in L and rad for a tip deflection L."""
     deformation: Complex
-    """(h2, Pi) = (Y' - nu Theta, Theta') of the right modes (Sec. V); h2 = c2 s is exactly 0 in an
-    unshearable rod. At a jump of a stiffness: the value behind the jump."""
+    """Shear and curvature (h2, Pi) = (Y' - nu Theta, Theta') of the right modes (Sec. V); h2 is exactly 0 in
+    an unshearable rod. At a jump of a stiffness: the value behind the jump."""
     left: Complex
     """Left modes (Y+, Theta+) with Y+(1) = 1, in L and rad for a tip deflection L."""
     pairing: Complex
     """(psi_n, xi_n) in the Gamma inner product, complex, (modes,)."""
     condition: Array
-    """|psi| |xi|/|(psi, xi)| >= 1, (modes,): ratio of the change of the eigenvalue to the perturbation of L,
-    in the Gamma norm; inf at the onset F*. For gamma3 = 0 the state contains no theta, and the norm is the
-    norm of y."""
+    """Condition number |psi| |xi|/|(psi, xi)| >= 1, (modes,): largest ratio, to first order, of the change of
+    an eigenvalue to the Gamma norm of a perturbation of the operator; inf where two eigenvalues merge. For
+    gamma3 = 0 the state contains no theta, and the norm is the norm of y."""
     rounding: Array
     """Rounding error of an eigenvalue of the mesh, from (A - w B) x, in 1/tau2, (modes,)."""
     mode_error: Array
@@ -136,7 +136,7 @@ def null_vectors(A: NDArray, B: NDArray, w: complex) -> tuple[NDArray, NDArray]:
 
 def _iterated(inverse: NDArray, B: NDArray) -> NDArray:
     """Null vector of a nearly singular matrix by inverse iteration, (unknowns,), with largest entry 1.
-    inverse: of this matrix.
+    inverse: inverse of the matrix.
 
     A larger growth in an iteration means a smaller residual of the result. At a double eigenvalue the inverse
     almost annihilates its last result, and the next iteration gives rounding errors: of the last two results,

@@ -5,9 +5,10 @@ Eigenvalues come from `rodsweep.solve.spectrum`, certified and with their own er
 meshes; the reported mesh is the mesh of the modes.
 
 Normalisation: right modes have Y(1) = 1 and left modes Y+(1) = 1. Right and left modes are therefore equal at
-F = 0, where L is self-adjoint. The coefficient of mode n in a state xi is (psi_n, xi)/(psi_n, xi_n);
-`pairing` is the denominator. A left mode belongs to the eigenvalue w* of the adjoint (Appendix B), so that
-(psi_m, xi_n) = int gamma2 Y+_m* Y_n + gamma3 Theta+_m* Theta_n = 0 for m != n.
+F = 0, where the operator L is self-adjoint. With the right mode xi_n and the left mode psi_n, the coefficient
+of mode n in a state xi is (psi_n, xi)/(psi_n, xi_n); the denominator is `pairing`. A left mode belongs to the
+eigenvalue w* of the adjoint (Appendix B), so that (psi_m, xi_n) = int gamma2 Y+_m* Y_n + gamma3 Theta+_m*
+Theta_n = 0 for m != n.
 """
 
 from dataclasses import dataclass, replace
@@ -33,10 +34,10 @@ class LeadingModeSettings:
     """Settings for the transient growth, and for the test whether a rod is unstable."""
 
     growth_wave_number: float = 24.0
-    """Smallest wave number that the mesh for the growth resolves, the wave number of the eighth mode without
-    load: growth at short times needs more modes than are requested."""
+    """The mesh for the growth resolves at least this wave number, the wave number of the eighth mode without
+    load, because growth at short times needs more modes than are requested."""
     significant_errors: float = 4.0
-    """A rod is unstable if a growth rate exceeds this multiple of its error estimate."""
+    """A rod is treated as unstable if a growth rate exceeds this multiple of its error estimate."""
 
 
 LEADING_MODES = LeadingModeSettings()
@@ -44,8 +45,9 @@ LEADING_MODES = LeadingModeSettings()
 
 @dataclass(frozen=True, slots=True)
 class ModesRequest:
-    """Request for the leading modes. modes: number of modes. accuracy: relative. nodes: number of Lobatto
-    nodes at which the modes are stored. certify: whether the list of eigenvalues must be proved complete."""
+    """Request for the leading modes. modes: number of modes. accuracy: relative accuracy of eigenvalues,
+    modes, condition numbers and growth. nodes: number of Lobatto nodes at which the modes are stored.
+    certify: whether the list of eigenvalues must be proved complete."""
 
     modes: int
     accuracy: float
@@ -116,7 +118,8 @@ def _from_equivalent(rod: Rod, request: ModesRequest) -> Modes:
 
 
 def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
-    """`outcome` with modes and, if requested, transient growth; the largest error determines the status."""
+    """`outcome` with modes and, if requested, transient growth. The status changes if no mesh small enough
+    resolves the modes, or if the largest error exceeds the accuracy."""
     spectrum = outcome.spectrum
     wave = max(wave_number(rod, complex(w)) for w in spectrum.eigenvalues)
     points = lobatto_points(request.nodes)

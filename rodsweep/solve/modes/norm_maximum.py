@@ -1,13 +1,15 @@
 """The maximum of the norm |exp(L t)| over a time interval, and an upper bound of the norm in the interval.
 
-With the numerical abscissa a, N = |exp(L t)|, and t = t0 + r in an interval [t0, t1] of width h,
+L is the operator of the rod. Let a >= 0 be an upper bound of the numerical abscissa, N(t) = |exp(L t)|, and
+c(t0) a bound of curvature: f'' >= -c(t0) at t0 for f = |exp(L t) v|^2 with any |v| = 1. For t = t0 + r in an
+interval [t0, t1] of width h,
 
     N(t) <= N(t0) exp(a r),
     N(t)^2 <= max(N(t0)^2, N(t1)^2) + (h^2/8) c(t0) exp(2 a h).
 
-Second bound: N^2 is the largest f = |exp(L t) v|^2 over all |v| = 1. If f'' >= -c(t0) at t0 for every v, then
-f'' >= -c(t0) exp(2 a r) at t, because exp(L t) v = exp(L t0) v' with |v'| <= exp(a r). Intervals are halved
-until the bound is within the tolerance of the largest value found.
+The second bound holds because N^2 is the largest f over all v, and f'' >= -c(t0) exp(2 a r) at t: exp(L t) v
+= exp(L t0) v' with |v'| <= exp(a r). Intervals are halved until the bound is within the tolerance of the
+largest value found.
 """
 
 from dataclasses import dataclass
@@ -20,7 +22,7 @@ from .propagator import Propagator
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NormMaximumSettings:
-    """Settings for the search for the maximum of |exp(L t)| over time."""
+    """Settings for the search for the maximum over time of |exp(L t)|, L: operator of the rod."""
 
     start_ratio: float = 2**0.25
     """Ratio of neighbouring times of the first grid."""
@@ -46,11 +48,11 @@ NORM_MAXIMUM = NormMaximumSettings()
 def largest_norm(
     propagator: Propagator, span: tuple[float, float], abscissa: float, floor: float, tolerance: float
 ) -> tuple[tuple[float, float], float]:
-    """Returns ((maximum of |exp(L t)|, its time), upper bound of |exp(L t)|) for times from span[0] to
-    span[1].
+    """Returns ((maximum of |exp(L t)|, time of the maximum), upper bound of |exp(L t)|) for times from
+    span[0] to span[1], in tau2.
 
-    tolerance: relative, of the bound. floor: smaller norms are not searched for. abscissa: an upper bound, at
-    least 0, of the numerical abscissa.
+    tolerance: relative tolerance of the bound. floor: norms below this are not searched for. abscissa: upper
+    bound, at least 0, of the numerical abscissa.
     """
     low, high = span
     count = max(2, int(np.ceil(np.log(high / low) / np.log(NORM_MAXIMUM.start_ratio))) + 1)
@@ -95,8 +97,8 @@ def _squares(propagator: Propagator, times: Array) -> tuple[Array, Array]:
 
 
 def _bound(h: Array, left: Array, right: Array, bend: Array, abscissa: float) -> Array:
-    """Upper bound of N^2 in intervals of width `h`, from N^2 at the `left` and `right` end and c (`bend`) at
-    the left end; all (intervals,)."""
+    """Upper bound of N^2, N = |exp(L t)|, in intervals of width `h`, from N^2 at the `left` and `right` ends
+    and the curvature bound c (`bend`) at the left ends; all (intervals,)."""
     growth = np.exp(np.minimum(2 * abscissa * h, NORM_MAXIMUM.largest_exponent))
     # Two bounds: growth at the rate of the abscissa, and the chord plus the largest curvature below it.
     return np.minimum(left * growth, np.maximum(left, right) + h**2 / 8 * bend * growth)

@@ -33,11 +33,12 @@ ABSCISSA = AbscissaSettings()
 
 
 def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
-    """sup Re (xi, L xi)/(xi, xi) over the domain of L, in 1/tau2: the largest growth rate at t = 0+.
+    """sup Re (xi, L xi)/(xi, xi) over the domain of the operator L, in 1/tau2: the largest growth rate at t =
+    0+.
 
     The largest eigenvalue of the Hermitian part (`rodsweep.model.adjoint`), approached by shifts from above.
     nan if no shift lies above this eigenvalue, which is possible only for a rod without rotational drag and
-    with g < 0.
+    with `Rod.g` < 0.
     """
     form = dense_form(rod, pencil)
     A = form.with_tip_terms(*hermitian_tip_coefficients(rod.F, tip_layer_ratio(rod)))

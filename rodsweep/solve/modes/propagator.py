@@ -1,4 +1,5 @@
-"""exp(L t) on one mesh, represented by exp(L_k t) P_k, and data for bounds of the norm between two times.
+"""exp(L t) on one mesh, L: operator of the rod, represented by exp(L_k t) P_k, and data for bounds of the
+norm between two times.
 
 P_k is the spectral projector of the k leading modes on the *whole* space; the remainder decays like exp(Re
 w_k t). The usual restriction of the initial state to the span of the k leading modes would converge only like
@@ -20,7 +21,8 @@ class PropagatorSettings:
     """Settings for exp(L t) and for its representation by the leading modes."""
 
     infinite: float = 1e-12
-    """An eigenvalue of G smaller than this fraction of the largest belongs to an infinite eigenvalue of L."""
+    """An eigenvalue of G = L^-1 whose modulus is at most this fraction of the largest modulus belongs to an
+    infinite eigenvalue of the operator L."""
     taylor_terms: int = 16
     """Number of Taylor terms of exp for a matrix of norm 1/2; a multiple of 4."""
 
@@ -67,7 +69,7 @@ class Propagator:
         self.overlap: Array = np.zeros((0, 0))
 
     def truncate(self, k: int) -> int:
-        """From now on exp(L t) is represented by k leading modes, Q exp(L_k t) (Z^T Q)^-1 Z^T, with
+        """Represents exp(L t) from now on by k leading modes, as Q exp(L_k t) (Z^T Q)^-1 Z^T, with
         orthonormal real Q, Z.
 
         Q and Z are bases of the right and left invariant subspaces: at a double eigenvalue the eigenvectors

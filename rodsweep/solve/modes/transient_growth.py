@@ -7,7 +7,7 @@ sufficient if exp(a t) <= S at the first time at which the modes represent exp(L
 `rodsweep.solve.modes.norm_maximum` bounds the norm, up to a time after which the norm only decays.
 
 The accuracy is relative to S. For a just above 0 the growth S - 1 is proportional to a^3 if shear dominates
-and to a^5 if bending dominates, and occurs early; below the accuracy it is reported as S = 1 at t = 0.
+and to a^5 if bending dominates, and occurs early; growth below the accuracy is reported as S = 1 at t = 0.
 """
 
 from dataclasses import dataclass, replace
@@ -40,8 +40,8 @@ class GrowthSettings:
     first_more_orders: int = 4
     """Increase of the element order from the first mesh to the second."""
     order_factor: float = 1.4
-    """Ratio of the element orders of a further mesh and the mesh before: boundary layers at the tip need high
-    orders."""
+    """Element order of a further mesh, divided by the order of the mesh before; boundary layers at the tip
+    need high orders."""
     max_meshes: int = 5
     """Maximum number of meshes after the first, each finer than its predecessor."""
     max_unknowns: int = 400
@@ -65,7 +65,7 @@ class Growth:
     growth_error: float = nan
     """Relative error of `transient_growth`."""
     numerical_abscissa: float = nan
-    """Growth rate at t = 0+, sup Re (xi, L xi)/(xi, xi), in 1/tau2."""
+    """Growth rate at t = 0+, sup Re (xi, L xi)/(xi, xi), L: operator of the rod, in 1/tau2."""
     abscissa_error: float = nan
     """Absolute error of `numerical_abscissa`."""
 
@@ -173,7 +173,7 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
 
 def _end(propagator: Propagator, first: float, patience: float) -> tuple[float, float]:
     """Returns (end, excess). end: a time after which |exp(L t)| does not exceed its earlier values. excess:
-    relative amount by which a later norm may nevertheless exceed them. first: earliest end.
+    relative amount by which a later norm may nevertheless exceed these values. first: earliest end.
 
     Since |exp(L (t + r))| <= |exp(L t)| |exp(L r)|, any time with |exp(L t)| < 1 is an end. Near a threshold
     such a time is very late. But once the leading pair dominates, the motion repeats itself and shrinks every

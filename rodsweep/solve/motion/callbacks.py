@@ -149,8 +149,8 @@ class Workspace:
         """Sets the rod and the two tolerances of Newton's method, both rms values over the unknowns of a
         stage.
 
-        error: Newton's method stops when the estimated error of a stage is at most this. floor: if a Newton
-        step smaller than this stagnates, the stagnation is attributed to rounding errors.
+        error: Newton's method stops when the estimated error of a stage is at most this. floor: if the Newton
+        steps stagnate below this size, the stagnation is attributed to rounding errors.
         """
         self._rod = arrays_of(beam)  # the callbacks read these arrays by address as well
         self._set({name: array.ctypes.data for name, array in self._rod.items()})
@@ -164,8 +164,8 @@ class Workspace:
         take_steps(self.context)
 
     def predict_as(self, variant: str) -> None:
-        """Sets the extrapolation points of the stages for the ARKIMEX type `variant`; no points if the type
-        is not in the table."""
+        """Sets the extrapolation points of the stages for the ARKIMEX type `variant`; no points if
+        `EXTRAPOLATION_POINTS` does not contain the type."""
         self._arrays["points"][:] = points_of(variant)
 
     def attach(self, ts: "PETSc.TS", matrix: "PETSc.Mat") -> None:

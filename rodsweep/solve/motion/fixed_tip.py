@@ -1,7 +1,7 @@
 """The rod bent until its tip is at a given point (x, y): a start of a motion chosen by the user.
 
-Of all curvatures Pi for which the tip is at (x, y), the bent rod has the one with the smallest integral of
-Pi^2. A rod of constant bending stiffness under a force at the tip, without moment, has this shape (an
+Of all curvatures Pi for which the tip is at (x, y), the bent rod has the curvature with the smallest integral
+of Pi^2. A rod of constant bending stiffness under a force at the tip, without moment, has this shape (an
 elastica). Stretch and shear are as in the straight rod under its follower force. Pi vanishes at the tip, so
 the state satisfies the boundary conditions there. Newton's method solves for the curvatures and the force f,
 with W the weights of the quadrature,
@@ -29,8 +29,8 @@ class FixedTipSettings:
     """Largest distance of the tip from the clamp, divided by the length of the straight rod: at 1 the rod
     cannot be bent."""
     first_angle: float = 0.8
-    """Polar angle of the tip, in rad, at the start of the path of targets: the tip of a straight rod cannot
-    move towards the clamp."""
+    """Angle theta of the tip, in rad, at the start of the path of targets; not 0, because the tip of a
+    straight rod cannot move towards the clamp."""
     first_step: float = 0.1
     """First step of the target, as a fraction of the path of targets."""
     least_step: float = 1e-3

@@ -31,8 +31,8 @@ class IntegratorSettings:
     `relax_fast_components`."""
 
     stage_rounding: float = 1e-9
-    """The iteration ends, as converged, if it stagnates at Newton steps smaller than this, divided by the
-    largest component of the initial state."""
+    """Newton's method for a stage stops, as converged, if it stagnates at steps whose rms size, divided by
+    the largest component of the initial state, is below this."""
     first_step_share: float = 1e-3
     """Default first time step, as a fraction of the run's duration."""
     max_steps: int = 100_000

@@ -57,8 +57,8 @@ def points_of(variant: str) -> NDArray[np.int64]:
 
 @c_function(POINTER)
 def begin_step(ts: int) -> int:
-    """PETSc's pre-step function: the stages of the finished step become those of the last step, and Newton's
-    matrix at the predicted middle of the new step is requested."""
+    """PETSc's pre-step function: the stages stored for the finished step become the stages of the last step,
+    and a new Newton matrix at the predicted middle of the new step is requested."""
     address = np.empty(1, np.int64)
     context_of_ts(ts, address.ctypes.data)
     context = address[0]

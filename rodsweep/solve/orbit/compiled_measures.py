@@ -38,10 +38,10 @@ class TipPath(NamedTuple):
     """Path of the tip over a period, and strains, as trigonometric polynomials through the states at the time
     nodes.
 
-    strains: (h1, h2, Pi) at the nodes of every element, and the derivatives of these strains by t/T, for the
-    solved states, (2, 3, K, elements (order + 1)). coefficients: Fourier coefficients of (x, y, theta) of the
-    tip, (count, 3). samples: (x, y, theta) at equidistant times of the period, (`EXTREMA.oversampling` (count
-    - 1), 3). least, largest: smallest and largest (x, y, theta), (3,).
+    strains: (h1, h2, Pi) at the nodes of every element, and the derivatives of these strains with respect to
+    t/T, T: period, for the solved states, (2, 3, K, elements (order + 1)). coefficients: Fourier coefficients
+    of (x, y, theta) of the tip, (count, 3). samples: (x, y, theta) at equidistant times of the period,
+    (`EXTREMA.oversampling` (count - 1), 3). least, largest: smallest and largest (x, y, theta), (3,).
     """
 
     strains: Array
@@ -64,7 +64,7 @@ class OrbitMeans(NamedTuple):
 @compiled_for_vectors
 def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> TipPath:
     """Path of the tip. states: states at equidistant times of the solved part of the period, (K, n): half the
-    period for a symmetric orbit, otherwise the period. period: in tau2. m: from `tip_matrices`."""
+    period for a symmetric orbit, otherwise the period. period: in tau2. m: result of `tip_matrices`."""
     size = len(p.matrices.weights)
     order = len(m.ends) - 1
     strains = np.empty((2, 3, len(states), len(m.lengths) * (order + 1)))
@@ -114,8 +114,8 @@ def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
 
 @compiled_for_vectors
 def means(stages: Array, weights: Array, p: Semidiscrete) -> OrbitMeans:
-    """Means over a period. stages: states at the stages, (K, s, n). weights: quadrature weights of the
-    stages, (s,)."""
+    """Means and rms deviations of the powers over a period, and the smallest h1. stages: states at the
+    stages, (K, s, n). weights: quadrature weights of the stages, (s,)."""
     K, s, n = stages.shape
     flat = stages.reshape(K * s, n)
     nodes = len(p.matrices.weights) - 1

@@ -21,9 +21,9 @@ class OrbitNewtonSettings:
     """A new Newton matrix is assembled and eliminated if the ratio of successive Newton steps exceeds this
     number."""
     longest_step: float = 0.5
-    """Largest relative change of state, period or parameter in one iteration. If no parameter is unknown, a
-    longer step is shortened, and the iteration fails if a later step is longer and does not decrease;
-    otherwise a longer step is a failure."""
+    """Largest relative change of state, period or parameter in one iteration. If the parameter is unknown, a
+    longer step is a failure. Otherwise a longer step is shortened; the iteration fails if a step after the
+    first is longer than this and longer than the step before."""
     max_iterations: int = 12
     """Maximum number of iterations; slower convergence means that there is no orbit near the start."""
     quadratic_error: float = 1e5
@@ -36,7 +36,7 @@ ORBIT_NEWTON = OrbitNewtonSettings()
 
 class HasMultipliers(Protocol):
     """Newton's matrix of an orbit with a method for the Floquet multipliers. tangent: derivative of the orbit
-    values by a parameter, (N,), or None. workspace: memory of the matrix."""
+    values with respect to a parameter coordinate, (N,), or None. workspace: memory of the matrix."""
 
     tangent: Array | None
     workspace: NewtonWorkspace
@@ -129,7 +129,7 @@ def multipliers_of(found: ConvergedOrbit) -> tuple[Complex, float]:
     """Returns (multipliers, distance): nontrivial Floquet multipliers by descending modulus, (rank - 1,), and
     the distance of the computed trivial multiplier from 1."""
     values = found.matrix.multipliers()
-    # The derivative of the orbit by time is an eigenvector with the exact multiplier 1.
+    # The time derivative of the orbit is an eigenvector with the exact multiplier 1.
     trivial = int(np.argmin(np.abs(values - 1)))
     others = np.concatenate([values[:trivial], values[trivial + 1 :]])
     return others, float(abs(values[trivial] - 1))
@@ -152,6 +152,6 @@ def multiplier_change(multipliers: Complex, others: Complex) -> float:
 
 
 def relative_change(orbit: Orbit, step: Array) -> float:
-    """Largest relative change of n2, m3 and the period by the Newton step `step`, (N,): the largest change of
-    each quantity, divided by the largest modulus of this quantity."""
+    """Largest relative change of n2, m3 and the period in the Newton step `step`, (N,): the largest change of
+    each quantity, divided by the largest modulus of this quantity; inf if the step is not finite."""
     return float(largest_change(orbit.values, step, orbit.form.unknowns, orbit.form.mesh.nodes))

@@ -48,8 +48,8 @@ def normalised(orbit: Orbit) -> Array:
 
 
 def normalised_tangent(orbit: Orbit, tangent: Array) -> Array:
-    """Derivative of the normalised values of an orbit by a parameter, (N + 1,). tangent: derivative of the
-    orbit values, (N,)."""
+    """Derivative of the normalised values of an orbit with respect to a parameter, (N + 1,). tangent:
+    derivative of the orbit values, (N,)."""
     slopes: Array = normalised_slopes(orbit.values, tangent, reflected(orbit))
     return slopes
 
@@ -103,8 +103,8 @@ def with_weighted_data(values: Array, data: Array, orders: Array, weights: Array
     """Predicted normalised values, (N + 1,): normalised values of the present orbit plus a weighted sum of
     data. A datum is a slope, or the difference of another orbit's normalised values from the present values.
 
-    values: of the present orbit, (N + 1,). data: slopes, or normalised values of other orbits, (m, N + 1).
-    orders: 1 for a slope, 0 for values, (m,). weights: as in `polynomial_weights`, (m,).
+    values: normalised values of the present orbit, (N + 1,). data: slopes, or normalised values of other
+    orbits, (m, N + 1). orders: 1 for a slope, 0 for values, (m,). weights: as in `polynomial_weights`, (m,).
     """
     out = np.zeros(len(values))
     rest = 1.0

@@ -84,7 +84,7 @@ class Orbit:
 
     @property
     def symmetric(self) -> bool:
-        """Whether the solved part is shorter than the period (p > 1)."""
+        """Whether the solved part is shorter than the period (`symmetry.parts` > 1)."""
         return self.symmetry.parts > 1
 
     @property

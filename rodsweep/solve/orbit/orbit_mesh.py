@@ -33,7 +33,7 @@ class OrbitMeshSettings:
     """Decrease of the element order from a mesh to its `coarser` mesh, whose errors are about ten times
     larger."""
     coarser_share: float = 0.6
-    """Ratio of the number of time intervals of the `coarser` mesh to the number of the mesh."""
+    """Number of time intervals of the `coarser` mesh, divided by the number of the mesh itself."""
     min_order: int = 8
     """Smallest element order of a chosen mesh."""
     min_intervals: int = 4
@@ -41,8 +41,8 @@ class OrbitMeshSettings:
     max_intervals: int = 256
     """Largest number of time intervals of a chosen mesh."""
     stage_accuracies: tuple[float, ...] = (2e-5, 3e-9, 3e-11)
-    """At accuracies up to these numbers, four stages cost less than three, five less than four, six less than
-    five."""
+    """At accuracies up to the first, second and third number, four stages cost less than three, five less
+    than four, and six less than five."""
     fewest_stages: int = 3
     """Number of collocation stages at accuracies above the largest of `stage_accuracies`."""
     max_more_orders: int = 12
@@ -110,21 +110,21 @@ class OrbitMesh:
 
     @property
     def coarser(self) -> "OrbitMesh":
-        """Coarser mesh, for the steps along a branch towards a cycle that is to be solved on this mesh."""
+        """Mesh coarser than this mesh, for the steps along a branch to a cycle to be solved on this mesh."""
         order = max(ORBIT_MESH.min_order - ORBIT_MESH.coarser_order, self.order - ORBIT_MESH.coarser_order)
         intervals = max(ORBIT_MESH.min_intervals - 1, round(ORBIT_MESH.coarser_share * self.intervals))
         return replace(self, order=order, intervals=intervals)
 
     @property
     def finer(self) -> "OrbitMesh":
-        """Mesh finer in space and time, used if no error estimate is available."""
+        """Mesh finer than this mesh in space and time, used if no error estimate is available."""
         more = int(ORBIT_MESH.more_intervals * self.intervals) + 1
         return replace(self.finer_in_space, intervals=more)
 
     @property
     def finer_in_space(self) -> "OrbitMesh":
-        """Mesh with a higher order, or with twice as many elements of lower order if the order would exceed
-        its maximum."""
+        """This mesh with an order increased by 2, or with twice as many elements of lower order if the order
+        would exceed its maximum."""
         if self.order + 2 <= RESOLUTION.max_order:
             return replace(self, order=self.order + 2)
         return replace(
@@ -160,7 +160,8 @@ def stages_for(accuracy: float) -> int:
 
 def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     """The coarsest mesh with `stages` stages that is expected to reach the relative accuracy `accuracy`, from
-    the tails of the nearby orbit `orbit`."""
+    the tails of the nearby orbit `orbit`; finer than the mesh of `orbit` at most by `max_more_orders` and
+    `max_interval_ratio`."""
     present = mesh_of(orbit)
     tails = tails_of(orbit)
     aim_space = (ORBIT_MESH.expected_share * accuracy / ORBIT_MESH.space_factor) ** 0.5

@@ -13,12 +13,12 @@ PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH = range(4)
 
 
 def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
-    """Differences of two paths, (4,): of the period, of the largest y, of the extremum with the largest
-    difference, and largest difference of the tip over the period.
+    """Differences of two paths, (4,): difference of the period, of the largest y, of the extremum with the
+    largest difference, and largest difference of the tip over the period.
 
-    The first difference is relative, the other three are divided by the largest y of `fine`. The first is the
-    larger of the relative differences of the periods and of the parameters of the rods, which may be
-    different on a branch.
+    The first number is the larger of two relative differences: of the periods, and of the parameters of the
+    rods, which may be different on a branch. The remaining three differences are divided by the largest y of
+    `fine`.
     """
     apart = np.abs(fine.tip_samples - rough.resampled_tip(len(fine.tip_samples))).max()
     extrema = fine.extrema

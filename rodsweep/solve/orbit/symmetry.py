@@ -37,7 +37,8 @@ class Symmetry:
         return _matrix(self, layout)
 
     def apply_inverse(self, flow: Array, layout: StateLayout) -> Array:
-        """S^-1 `flow`, (unknowns, unknowns). flow: derivative of x(T/p) by x(0), (unknowns, unknowns)."""
+        """S^-1 `flow`, (unknowns, unknowns). flow: derivative of x(T/p) with respect to x(0), (unknowns,
+        unknowns)."""
         # S is orthogonal, so its transpose is its inverse.
         returned: Array = self.matrix(layout).T @ flow
         return returned

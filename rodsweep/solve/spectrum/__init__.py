@@ -1,1 +1,2 @@
-"""Leading eigenvalues of one rod: solved on a mesh, refined by Newton's method on D, and counted."""
+"""Leading eigenvalues of rods: solved on meshes, refined by Newton's method on the determinant D, counted,
+and followed along a path (`path`)."""

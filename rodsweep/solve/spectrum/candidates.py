@@ -1,7 +1,7 @@
 """One attempt at the leading eigenvalues of a rod on one mesh, and the comparison with a count.
 
-The mesh gives approximate eigenvalues, Newton's method on D refines them, and the winding number of D shows
-whether an eigenvalue is missing. `rodsweep.solve.spectrum.search` chooses the next attempt.
+The mesh gives approximate eigenvalues, Newton's method on the determinant D refines them, and the winding
+number of D shows whether an eigenvalue is missing. `rodsweep.solve.spectrum.search` chooses the next attempt.
 """
 
 from dataclasses import dataclass
@@ -30,27 +30,28 @@ class CandidateSettings(CompiledSettings):
     max_waves_per_node: float = 2.0
     """A mesh represents eigenvalues with wave number |q| <= `max_waves_per_node` * (elements * order)."""
     wide_gap: float = 0.2
-    """For the line of a count, gaps between successive real parts wider than this, divided by |Re w| of the
-    left eigenvalue, are treated as equally wide (stable rods)."""
+    """Gaps between successive real parts, in which a line for a count may lie, are treated as equally wide if
+    their width, divided by |Re w| of the left eigenvalue, exceeds this (stable rods)."""
     wide_gap_of_flutter: float = 0.05
-    """`wide_gap` of an unstable rod; smaller, because eigenvalues far to the left converge last and need a
-    finer mesh."""
+    """Like `wide_gap`, for an unstable rod; less than `wide_gap`, because eigenvalues far to the left
+    converge last and need a finer mesh."""
     last_line_distance: float = 0.05
     """Distance from the last eigenvalue w found to the last line, which lies to the left of w, divided by
     |w|."""
     leader_line_distance: float = 0.5
     """Distance from a followed leading eigenvalue w to the first line for a count, to the left of w, divided
-    by |w|. A distant line needs fewer nodes. A line at `last_line_distance` follows in case another
-    eigenvalue lies between w and the first line."""
+    by |w|. A count at a distant line needs fewer nodes than at a near line. A line at `last_line_distance`
+    follows in case another eigenvalue lies between w and the first line."""
     min_gap: float = 1e-6
-    """Two real parts with a smaller relative gap are treated as equal: no line is drawn between them."""
+    """Two real parts are treated as equal if the relative gap between them is at most this: no line is drawn
+    between them."""
     max_lines: int = 3
     """Maximum number of lines tried for the count of one rod."""
     proof_line_errors: float = 3.0
     """Distance from the last wanted eigenvalue w to the line of a proof without a count: this multiple of the
     error of w plus `proof_line_distance` * |w|, to the left."""
     proof_line_distance: float = 1e-9
-    """See `proof_line_errors`."""
+    """Part of the distance in `proof_line_errors` that is proportional to |w|, divided by |w|."""
 
 
 CANDIDATES = CandidateSettings()
@@ -78,8 +79,8 @@ class Candidates:
 
 @dataclass(frozen=True, slots=True)
 class CountComparison:
-    """Numbers of eigenvalues to the right of a line: `count` from D; `found_count`: number of found
-    eigenvalues."""
+    """Numbers of eigenvalues to the right of a line. count: number of all eigenvalues, counted or proved
+    with D. found_count: number of the eigenvalues found."""
 
     count: EigenvalueCount
     found_count: int
@@ -100,8 +101,8 @@ def candidates_on(
     eigenvalues are dropped.
 
     wanted: number of eigenvalues requested. vectors: whether eigenvectors are returned. tight: whether the
-    eigenvalues of the mesh converge to rounding error before the refinement on D. After an error inside
-    PETSc, SLEPc or LAPACK no eigenvalue is returned; the solver may succeed on another mesh.
+    eigenvalues of the mesh converge to rounding error before they are refined. After an error inside PETSc,
+    SLEPc or LAPACK no eigenvalue is returned; the solver may succeed on another mesh.
     """
     raw: Complex = np.empty(0, complex)
     kept = None
@@ -157,11 +158,12 @@ def _right_of(line: float, w: list[complex], errors: list[float]) -> tuple[int, 
 
 
 def lines_for_count(w: list[complex], modes: int) -> list[float]:
-    """Real parts of the lines for a count, best first: middles of gaps to the left of the first `modes`
-    eigenvalues.
+    """Real parts of up to `max_lines` vertical lines to the right of which eigenvalues are counted, best
+    first: middles of the widest gaps to the left of the leading `modes` and of all unstable eigenvalues.
 
-    w: eigenvalues in descending order. Gaps wider than `wide_gap` are equally good; the rightmost of these
-    comes first. The last line lies to the left of all eigenvalues found.
+    w: eigenvalues found, by descending real part. Gaps wider than `wide_gap` (unstable rod:
+    `wide_gap_of_flutter`) are equally good; the rightmost comes first. The last line lies to the left of all
+    eigenvalues found.
     """
     wide = CANDIDATES.wide_gap_of_flutter if w[0].real > 0 else CANDIDATES.wide_gap
     target = min(w[modes - 1].real, 0.0)

@@ -1,7 +1,7 @@
 """The transverse eigenvalue problem of one rod, as used by the search for leading eigenvalues.
 
-For a uniform rod of linear material, D has a closed form and the pencil is affine in the coefficients. For
-every other arm, D is computed from propagators and the pencil is assembled for each arm.
+For a uniform rod of linear material, the determinant D has a closed form and the pencil is affine in the
+coefficients. For every other arm, D is computed from propagators and the pencil is assembled for each arm.
 """
 
 from abc import ABC, abstractmethod
@@ -65,7 +65,7 @@ class TransverseProblem(ABC):
     @abstractmethod
     def next_mesh_for(self, mesh: Any, waves: Array, accuracy: float) -> Any:
         """The mesh to try after `mesh`. waves: wave numbers of the leading modes found, (modes,). accuracy:
-        relative."""
+        relative accuracy of the eigenvalues."""
 
     def solver(self, mesh: AnyMesh) -> UniformSolver | ArmSolver:
         """The Krylov-Schur solver for a mesh."""

@@ -1,9 +1,9 @@
 """Search for the leading eigenvalues of one rod: few unknowns, the requested accuracy, no missing eigenvalue.
 
 One attempt (`rodsweep.solve.spectrum.candidates`) solves for a number of eigenvalues nearest to a shift, on
-one mesh, and refines them by Newton's method on D. The mesh error, the error of the roots of D and the count
-of eigenvalues determine the next attempt. The search ends when mesh error, root error and count are
-satisfactory.
+one mesh, and refines the eigenvalues by Newton's method on the determinant D. The mesh error, the error of
+the roots of D and the count of eigenvalues determine the next attempt. The search ends when mesh error, root
+error and count are satisfactory.
 """
 
 from dataclasses import dataclass, replace
@@ -211,7 +211,7 @@ class Search:
             counted = f"the winding number counts {number} eigenvalues where {found} are found"
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, counted)
         if self.unresolved:
-            why = "no mesh resolves all eigenvalues that may be the leading ones"
+            why = "no mesh resolves all eigenvalues that may lead"
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, why)
         return failed_spectrum(SpectrumStatus.failed, self.request, self.why)
 

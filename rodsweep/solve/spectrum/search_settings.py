@@ -31,13 +31,14 @@ class SearchSettings:
     """A spectrum is accepted if error estimate <= `max_error_over_limit` * requested accuracy. The factor is
     below 1 because an estimate may be too small."""
     max_stalled_error_over_limit: float = 0.8
-    """As `max_error_over_limit`, for a spectrum whose error further meshes do not reduce."""
+    """Largest ratio of error estimate to requested accuracy, like `max_error_over_limit`, if further meshes
+    do not reduce the error."""
     largest_displacement: float = 1e-3
     """Largest relative distance between an eigenvalue of the mesh and the root of D to which it converges. At
     a larger distance the mesh may have missed an eigenvalue."""
     unbounded_displacement: float = 1e-6
-    """`largest_displacement` for a rod without an a-priori bound of its eigenvalues, where convergence is the
-    only evidence."""
+    """Like `largest_displacement`, for a rod without an a-priori bound of its eigenvalues, where convergence
+    is the only evidence that no eigenvalue is missing."""
 
 
 SEARCH = SearchSettings()

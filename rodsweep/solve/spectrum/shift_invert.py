@@ -30,20 +30,20 @@ class KrylovSettings:
     """Matrices with up to this number of unknowns are factorised as dense: as fast as the sparse
     factorisation, with smaller rounding errors."""
     loose_tolerance: float = 1e-4
-    """Krylov tolerance for eigenvalues that are refined on D."""
+    """Krylov tolerance for eigenvalues that Newton's method on the determinant D refines."""
     loose_spare_vectors: int = 5
-    """Number of Krylov vectors in addition to the wanted eigenvalues, for eigenvalues that are refined on
-    D."""
+    """Number of Krylov vectors in addition to the wanted eigenvalues, if Newton's method on the determinant D
+    refines the eigenvalues."""
     tight_tolerance: float = 1e-14
-    """Krylov tolerance for eigenvalues and eigenvectors that are not refined on D: only the error of the mesh
+    """Krylov tolerance for eigenvalues and eigenvectors that are not refined: only the error of the mesh
     remains."""
     tight_spare_vectors: int = 13
-    """Number of Krylov vectors in addition to the wanted eigenvalues, for eigenvalues and eigenvectors that
-    are not refined on D."""
+    """Number of Krylov vectors in addition to the wanted eigenvalues, if eigenvalues and eigenvectors are not
+    refined."""
     max_restarts: int = 200
     """Maximum number of restarts of the Krylov space."""
     vectors_for_infinity: int = 2
-    """Maximum number of Krylov vectors is the number of finite eigenvalues plus this. Applying
+    """The number of Krylov vectors is at most the number of finite eigenvalues plus this. Applying
     shift-and-invert once, or twice for k2 = inf, removes all components of infinite eigenvalues. A larger
     Krylov space would add only rounding errors, on which LAPACK may fail (trexc)."""
     first_vector_width: float = 3.3
@@ -99,7 +99,7 @@ class PencilPattern(Protocol):
 class LoadedPencil(NamedTuple):
     """Data of the rod whose matrices a solver contains.
 
-    finite_eigenvalues: number of finite eigenvalues. shift: in the units of the pencil's eigenvalues.
+    finite_eigenvalues: number of finite eigenvalues. shift: shift in the units of the pencil's eigenvalues.
     deflection_ratio: eigenvalues of the rod = eigenvalues of the pencil / deflection_ratio^2; y of the rod =
     y of the pencil * deflection_ratio.
     """

@@ -20,10 +20,11 @@ class SpectrumStatus(PointStatus):
     accuracy_not_reached = (
         3,
         "a number misses the requested accuracy, as its error estimate says; near a double eigenvalue "
-        "half of the digits are lost: request a lower accuracy there",
+        "half of the digits are lost: use a larger number for the accuracy there",
     )
     modes_missing = (
         4,
-        "fewer eigenvalues are found than the winding number counts, so none are stored; request more modes",
+        "fewer eigenvalues are found than the winding number counts, so no eigenvalue is stored; request "
+        "more modes",
     )
     failed = 5, "the solver failed and nothing is stored; the message says why"

@@ -32,15 +32,17 @@ class TwoMeshSettings:
     spare_eigenvalues: int = 2
     """Number of eigenvalues requested first on a mesh, in addition to the wanted modes."""
     unchanged_tolerance: float = 1e-9
-    """The doubling ends if the leading eigenvalues change relatively by less than this after a doubled
-    request."""
+    """The number of requested eigenvalues is doubled until the leading eigenvalues change relatively by less
+    than this."""
     unchanged_rounding_tolerance: float = 3e-11
-    """The doubling also ends if the leading eigenvalues change by less than this times (shift + F^2). A
-    hundred times `rounding`, because rounding differs between releases of SLEPc and between processors."""
+    """The doubling also ends if the leading eigenvalues change by less than this times (|shift| + F^2). The
+    value is a hundred times `rounding`, because rounding differs between releases of SLEPc and between
+    processors."""
     mesh_error_factor: float = 3.0
-    """Error of the finer mesh divided by the difference between the two meshes (safety factor)."""
+    """Safety factor on the difference between the eigenvalues of two meshes, which estimates the error on
+    the finer mesh."""
     rounding: float = 3e-13
-    """Rounding error of an eigenvalue, divided by |w| + shift + F^2. F^2 is included because the first
+    """Rounding error of an eigenvalue w, divided by |w| + |shift| + F^2. F^2 is included because the first
     eigenvalue of a pulled rod is exponentially small compared with F^2."""
     min_unknowns_per_mode: int = 3
     """Minimum number of unknowns of a mesh per requested eigenvalue: a third of the unknowns have no time
@@ -137,9 +139,9 @@ def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
     """Absolute errors of the sorted eigenvalues w, (k,), from the unsorted eigenvalues `coarser`, (l,), of a
     coarser mesh.
 
-    scale: `_scale`. Two meshes may agree on one eigenvalue by chance. Each eigenvalue therefore gets the
-    largest relative difference of itself and its two neighbours. Near a double eigenvalue the stated rounding
-    errors are larger.
+    scale: result of `_scale`. Two meshes may agree on one eigenvalue by chance. Each eigenvalue therefore
+    gets the largest relative difference among itself and its two neighbours. Near a double eigenvalue the
+    stated rounding errors are larger than elsewhere.
     """
     apart = np.abs(w[:, None] - coarser).min(axis=1) / np.abs(w)
     padded = np.pad(apart, 1)

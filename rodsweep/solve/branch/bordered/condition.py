@@ -85,7 +85,8 @@ class BorderCondition:
 
 def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:
     """An orbit plus a change, (N + 1,), of the orbit values and of the coordinate of the parameter `name`;
-    raises Unsolvable if the new parameter value is not allowed or the new period is not positive."""
+    raises Unsolvable if the new parameter value is not allowed, if Omega becomes an unknown or is eliminated
+    at this value, or if the new period is not positive."""
     try:
         form = orbit.form.with_coordinate(name, orbit.form.rod.coordinate(name) + float(change[-1]))
     except (ValueError, ZeroDivisionError) as error:

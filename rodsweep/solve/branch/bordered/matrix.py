@@ -71,8 +71,8 @@ class BorderedMatrix:
         self._right = self._jump(orbit, self._columns[:, :, 1:2], ends[1:2])
 
     def step(self, border: Array, length: float) -> Array:
-        """Newton's step at the orbit, (N + 1,), under the condition that `border` . `Scale.components`,
-        border: (3,), grows by `length`."""
+        """Newton's step at the orbit, (N + 1,), along which `border` . `scale.components` grows by `length`;
+        border: (3,)."""
         return self.solve(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
 
     def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
@@ -92,10 +92,10 @@ class BorderedMatrix:
         return change / np.linalg.norm(self.scale.directional_derivative(self.orbit, change))
 
     def residual_variations(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
-        """Returns (stages, ends): derivatives of the eliminated stage residuals, (K, s, m, n), and of the end
-        of `orbit`, (m, n), along m variations.
+        """Returns (stages, ends): derivatives of the eliminated stage residuals, (K, s, v, n), and of the end
+        of `orbit`, (v, n), along v variations.
 
-        variations: changes of orbit values and parameter coordinate, (m, N + 1).
+        variations: changes of orbit values and parameter coordinate, (v, N + 1).
         """
         along = change_along(orbit.form, self.scale.name)
         rod = orbit.semidiscrete
@@ -106,8 +106,8 @@ class BorderedMatrix:
         return changed
 
     def back_substitute(self, starts: Array, columns: Array) -> Array:
-        """m changes of the orbit, (m, N + 1), at fixed period and parameter. starts: changes of the start
-        state, (m, n). columns: eliminated right-hand sides of the stages, (K, s, m, n)."""
+        """Changes of the orbit, (v, N + 1), at fixed period and parameter. starts: changes of the start
+        state, (v, n). columns: eliminated right-hand sides of the stages, (K, s, v, n)."""
         out = np.empty_like(columns)
         substitute(starts, columns, self.orbit.semidiscrete, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)

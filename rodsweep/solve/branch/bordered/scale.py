@@ -6,11 +6,12 @@ deflection of the cycle; the logarithm of the period; the parameter coordinate, 
 cycle of the scale. At a Hopf point the deflection passes linearly through 0, so that arc length stays
 regular.
 
-The deflection is the integral of (1 - s) c m3 over the rod, which is linear in the state; c is the bending
-compliance of the arm's profile. For small cycles of a rod without taper the deflection is the tip's y.
-Without c the integral would depend on the mesh: m3, the moment of a linear rod with the same strain, is
-discontinuous at a material jump, where a mesh has only the mean strain. The moment at a fixed position on the
-rod is not used, because it may vanish on large cycles; steps along a branch would become short there.
+The deflection is the integral of (1 - s) c m3 over the rod, which is linear in the state; s is the position
+on the rod and c the bending compliance of the arm's profile. For small cycles of a rod without taper the
+deflection is the tip's y. Without c the integral would depend on the mesh: m3, the moment of a linear rod
+with the same strain, is discontinuous at a material jump, where a mesh has only the mean strain. The moment
+at a fixed position on the rod is not used, because it may vanish on large cycles; steps along a branch would
+become short there.
 """
 
 from dataclasses import dataclass

@@ -1,8 +1,7 @@
 """Curves through the folds and torus points on all rows of a phase diagram; each curve is followed only once.
 
-`changes.boundaries` has the same task for the straight rod. A curve is followed in two halves from a special
-point of a row. Each half is a unit of work, whose result depends only on the special points of the rows: the
-order in which processes solve the units does not change the curves.
+`changes.diagram.boundaries` has the same task for the straight rod. A curve is followed in two halves from a
+special point of a row. Each half curve is a unit of work; its result does not depend on other half curves.
 """
 
 import math
@@ -37,11 +36,10 @@ class RowSpecialPoint:
 
 @dataclass(frozen=True, slots=True)
 class SpecialBoundaries:
-    """Curves through all folds and torus points of the rows of a parameter plane, traced in units of work.
+    """Curves through all folds and torus points of the rows of a parameter plane, traced as half curves.
 
-    line: axis of the parameter along a row. rows: axis of the rows' parameter. Unit 2 i is the half of a
-    curve from special point i to larger values of the rows' parameter, unit 2 i + 1 the half to smaller
-    values.
+    line: axis of the parameter along a row. rows: axis of the rows' parameter. Half curve (unit) 2 i leads
+    from special point i to larger values of the rows' parameter, half curve 2 i + 1 to smaller values.
     """
 
     line: PlaneAxis
@@ -49,8 +47,8 @@ class SpecialBoundaries:
     special: Sequence[RowSpecialPoint]
 
     def units_to_solve(self, results: Mapping[int, Arrays]) -> list[int]:
-        """Units to solve next: first the units needed now, then units that may be needed later; empty if the
-        curves are complete. results: results of the solved units."""
+        """Numbers of the half curves needed now, then of half curves that may be needed later; empty if the
+        curves are complete. results: results of half curves, by number."""
         needed: list[int] = []
         likely: list[int] = []
         for curves, search in self._searches(results):
@@ -59,7 +57,8 @@ class SpecialBoundaries:
         return needed + likely if needed else []
 
     def curves(self, results: Mapping[int, Arrays]) -> Boundaries[CycleCurve]:
-        """All curves, from the results of the units of work; valid if `units_to_solve(results)` is empty."""
+        """All curves, from the results of the half curves; valid if `wanted(results)` is empty."""
+
         found = [search.boundaries for _, search in self._searches(results)]
         curves = tuple(traced.curve for one in found for traced in one.curves)
         return Boundaries(curves, max(one.agreement for one in found), sum(one.untraced for one in found))
@@ -67,7 +66,7 @@ class SpecialBoundaries:
     def _searches(
         self, results: Mapping[int, Arrays]
     ) -> "Iterator[tuple[_CurvesOfKind, BoundarySearch[_TracedCurve]]]":
-        """Problem of the curves and state of the search with `results`, for each kind of special points."""
+        """Yields (curves with `results`, state of the search for these curves) for each kind of points."""
         for kind in FOLLOWED_KINDS:
             curves = _CurvesOfKind(kind, self.line, self.rows, self.special, results)
             seeds = (i for i, one in enumerate(self.special) if one.kind == kind)
@@ -76,8 +75,8 @@ class SpecialBoundaries:
     def solve(
         self, unit: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
     ) -> Arrays:
-        """The result of a unit, as `TracedHalfCurve.arrays`. located: function that returns the special
-        points, with cycles, of the row with a given index. workspace: memory of Newton's matrices."""
+        """The result of half curve number `unit`, as `TracedHalfCurve.arrays`. located: function that returns
+        the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
         # A unit is twice the index of its special point, plus one for the half to smaller values.
         place, behind = divmod(unit, 2)
         one = self.special[place]
@@ -85,11 +84,11 @@ class SpecialBoundaries:
         return _traced(limits, one, located(one.number), self.special).arrays()
 
     def row_of(self, unit: int) -> int:
-        """Index of the row on which the curve of a unit starts."""
+        """Index of the row on which the half curve number `unit` starts."""
         return self.special[unit // 2].number
 
     def unit_label(self, unit: int) -> str:
-        """Text for a unit in the progress display: kind of the curve, starting row and direction."""
+        """Text for half curve `unit` in the progress display: kind of curve, starting row, direction."""
         place, behind = divmod(unit, 2)
         one = self.special[place]
         way = "down" if behind else "up"
@@ -98,7 +97,7 @@ class SpecialBoundaries:
 
 @dataclass(frozen=True, slots=True)
 class _TracedCurve:
-    """Curve joined from two halves. distances: of special points near the curve, by index, in row lengths."""
+    """Curve joined from two halves. distances: distance of each nearby special point, in row lengths."""
 
     curve: CycleCurve
     distances: Mapping[int, float]
@@ -106,7 +105,7 @@ class _TracedCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvesOfKind:
-    """Problem of `trace_boundaries` for one kind of special points, with the results of the solved units."""
+    """Problem of `trace_boundaries` for one kind of special points, with results of half curves so far."""
 
     kind: SpecialKind
     line: PlaneAxis
@@ -119,7 +118,7 @@ class _CurvesOfKind:
         return sorted(left, key=self._place)[len(left) // 2]
 
     def missing_units(self, seed: int) -> list[int]:
-        """Units whose results are missing for the curve through the special point `seed`."""
+        """Numbers of the half curves still to be followed for the curve through special point `seed`."""
         ahead = 2 * seed
         behind = 2 * seed + 1
         if ahead not in self.results:
@@ -130,7 +129,8 @@ class _CurvesOfKind:
         return [behind] if on and behind not in self.results else []
 
     def possible_units(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
-        """Units that may be needed later: of all special points on the rows of the needed units."""
+        """Numbers of the half curves that may be needed later: from all special points on the rows on which
+        the needed half curves start."""
         rows = {self.special[unit // 2].row for unit in search.missing_units}
         beside = sorted((i for i in search.open_seeds if self.special[i].row in rows), key=self._place)
         return [unit for i in beside for unit in self.missing_units(i)]
@@ -152,7 +152,8 @@ class _CurvesOfKind:
         return _TracedCurve(curve, near)
 
     def distance(self, curve: _TracedCurve, seed: int) -> float:
-        """Distance of the special point `seed` from a curve, in lengths of a row; inf if it is not near."""
+        """Distance of the special point `seed` from a curve along the row, in row lengths; inf if the point
+        is not near, 0 if it lies on the curve's extrapolation to a Hopf point."""
         near = curve.distances.get(seed, math.inf)
         lies_off = near > CURVE_IDENTITY.max_distance
         # Between its last cycle and the Hopf point a curve is extrapolated: no cycle is solved there.
@@ -170,8 +171,8 @@ class _CurvesOfKind:
         return self.special[i].row, self.special[i].at
 
     def _ends(self, curve: CycleCurve) -> list[tuple[float, float]]:
-        """Axis coordinates (along the rows' axis, along a row) of both ends of a curve, in ascending
-        order."""
+        """Positions of both ends of a curve in the parameter plane, each as (position on the rows' axis,
+        position along a row), from 0 to 1, in ascending order."""
         return sorted((p.place, self.line.coordinate(p.at)) for p in (curve.points[0], curve.points[-1]))
 
     def _lies_on_extrapolation(self, curve: CycleCurve, one: RowSpecialPoint) -> bool:
@@ -200,8 +201,8 @@ def _traced(
     located: Iterable[SpecialPoint],
     special: Sequence[RowSpecialPoint],
 ) -> TracedHalfCurve:
-    """One half of a curve, followed from the special point `one` of a row. located: special points of this
-    row, with cycles. special: special points of all rows, whose distances from this half are computed."""
+    """One half of a curve, from the special point `one` of a row; `half` is None after a failure. located:
+    special points of this row, with cycles. special: all special points, whose distances are computed."""
     width = abs(limits.line.parameter_slope(one.at))
     same = [
         point
@@ -222,7 +223,7 @@ def _traced(
 
 
 def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
-    """Distance along the row from the point `one` to a curve, in lengths of a row; inf if not near."""
+    """Distance along the row from special point `one` to a curve, in row lengths; inf if it is not near."""
     if limits.kind != one.kind:
         return math.inf
     place = limits.rows.coordinate(one.row)

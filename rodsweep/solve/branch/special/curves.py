@@ -42,7 +42,7 @@ CURVE_STEPS = StepControl(
     max_solutions=400,
 )
 """Step length control along a curve of special points. Steps have four components: the three components of
-`Scale` and the rows' axis coordinate, from 0 to 1."""
+`Scale` and the position on the rows' axis, from 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,7 +60,7 @@ class CycleCurveSettings:
     crushing_accuracy: float = 1e-6
     """Relative tolerance of the length of a step that is shortened to end at half of `crushing_margin`."""
     min_amplitude: float = 0.01
-    """At a smaller largest tip y, in L, a curve ends and is extrapolated to a Hopf point."""
+    """A curve ends, and is extrapolated to a Hopf point, where the largest tip y, in L, falls below this."""
     min_sine_at_resonance: float = 0.2
     """A lost curve of torus points has ended at a resonance (the complex pair becomes real) if the sine of
     the angle between multiplier and real axis is below this number at the last point."""
@@ -112,7 +112,7 @@ class SpecialCurveProblem:
 
     def step(self, behind: Sequence[SolvedPoint], length: float) -> StepResult[SolvedPoint]:
         """The point one step beyond the last point, with the prediction error and the cosine of the angle
-        between the last two steps; raises Unsolvable. behind: points so far, the last point last."""
+        between the last two steps; raises Unsolvable. behind: points so far, in order along the curve."""
         last = behind[-1]
         if len(behind) == 1:
             start = last.orbit
@@ -141,7 +141,7 @@ class SpecialCurveProblem:
         return CycleFamily.near_point(self.kind, self.rows, point, self.workspace)
 
     def _predicted(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
-        """(orbit, rows' axis coordinate) predicted a step beyond the last point; raises Unsolvable."""
+        """(orbit, position on the rows' axis) predicted a step beyond the last point; raises Unsolvable."""
         known = points[-CURVE_IDENTITY.max_interpolated_points :]
         return self._weighted_sum(known, lagrange_weights(arc_lengths(known), step), mesh_of(known[-1].orbit))
 
@@ -167,7 +167,7 @@ class SpecialCurveProblem:
     def _weighted_sum(
         self, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
     ) -> tuple[Orbit, float]:
-        """(orbit, rows' axis coordinate): sums over `points` with weights, (points,); raises Unsolvable."""
+        """(orbit, place on the rows' axis): sums of `points` with weights, (points,); raises Unsolvable."""
         values = np.dot(weights, [mesh.interpolate(point.orbit).values for point in points])
         place = float(np.dot(weights, [point.row_coordinate for point in points]))
         at = float(np.dot(weights, [point.parameter for point in points]))
@@ -177,8 +177,8 @@ class SpecialCurveProblem:
         ), place
 
     def margins(self, point: SolvedPoint) -> Array:
-        """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges and from
-        `crushing_margin`, smallest h1, and largest tip y minus `min_amplitude`."""
+        """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 - F/k1
+        minus `crushing_margin`, smallest h1, and largest tip y minus `min_amplitude`."""
         x = self.line.coordinate(point.parameter)
         y = point.row_coordinate
         rod = point.orbit.form.rod
@@ -230,13 +230,13 @@ class SpecialCurveProblem:
         return len(behind) > CYCLE_CURVES.min_loop_points and 0 <= passed <= 1 and near
 
     def point_near_chord(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
-        """The point near the fraction `share` of the chord from `one` to `other`; raises Unsolvable."""
+        """Point of the curve near the fraction `share` from `one` to `other`; raises Unsolvable."""
         start, place = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.normal(other.step_from(one))
         return self._family(other).correct(start, place, across, other.normal_derivatives)
 
     def on_row(self, one: SolvedPoint, other: SolvedPoint, place: float) -> SolvedPoint:
-        """The point of the curve at the rows' axis coordinate `place` between two points; raises
+        """The point of the curve between two points, at the position `place` on the rows' axis; raises
         Unsolvable."""
         length = other.row_coordinate - one.row_coordinate
         share = (place - one.row_coordinate) / length if length else 0.0

@@ -35,9 +35,10 @@ class CurveIdentitySettings:
     """Largest distance between the ends of two identical curves; each axis has length 1."""
     max_last_chord_distance: float = 1e-3
     """Between the last cycle of a curve and the Hopf point where the cycles vanish, a special point lies on
-    the curve if its distance from the chord along the row is at most this fraction of the length of a row."""
+    the curve if its distance, along the row, from the chord is at most this fraction of the length of a
+    row."""
     max_interpolated_points: int = 4
-    """Maximum number of points through which the polynomial passes that predicts the next point, or the Hopf
+    """Maximum number of points of the interpolating polynomial that predicts the next point, or the Hopf
     point where the cycles vanish."""
     extrapolation_factor: float = 10.0
     """Safety factor on the error of an extrapolated Hopf point. The errors of the points do not include the
@@ -51,7 +52,7 @@ CURVE_IDENTITY = CurveIdentitySettings()
 
 
 Arrays = dict[str, Array]
-"""Stored result of a unit of work: arrays by name."""
+"""Stored result of following a half curve: arrays by name."""
 
 
 class CurveEnd(IntEnum):
@@ -73,7 +74,7 @@ class VanishingPoint:
     """A Hopf point at which a curve of special points ends because the cycles vanish.
 
     at: value of the parameter along a row, with the absolute error `error`. row: value of the rows'
-    parameter. period: in tau2.
+    parameter. period: period of the vanishing cycles, in tau2.
     """
 
     at: float
@@ -87,7 +88,8 @@ class CurvePoint:
     """Stored quantities of a point of a curve of special points.
 
     at: value of the parameter along a row, with the absolute error `error`. row: value of the rows'
-    parameter. place: axis coordinate of `row`, from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L.
+    parameter. place: position of `row` on its axis, from 0 to 1. period: in tau2. tip_y_max: largest tip y,
+    in L.
     """
 
     at: float
@@ -174,7 +176,8 @@ class CycleCurve:
 
 def with_located_ends(curve: CycleCurve, plane: Plane, known: Sequence[GeneralisedHopfPoint]) -> CycleCurve:
     """The curve of folds with each extrapolated end replaced by the identical generalised Hopf point in
-    `known`, which is more accurate. A curve of torus points, and an end without such a point, are unchanged.
+    `known`, which is more accurate than the extrapolation. A curve of torus points, and an end without an
+    identical point, are unchanged.
     """
 
     def located(end: VanishingPoint | None) -> VanishingPoint | None:
@@ -194,8 +197,8 @@ def with_located_ends(curve: CycleCurve, plane: Plane, known: Sequence[Generalis
 
 
 def lagrange_weights(places: Array, at: float) -> Array:
-    """Lagrange weights, (n,): the weighted sum of n > 1 values is the value at the abscissa `at` of the
-    polynomial through the values at the abscissas `places`, (n,)."""
+    """Lagrange weights, (n,), n > 1: the weighted sum of n values at the abscissas `places`, (n,), is the
+    value of their interpolating polynomial at the abscissa `at`."""
     apart = places[:-1] - places[-1]
     weights = polynomial_weights(apart, np.zeros(len(apart)), at - places[-1])
     return np.append(weights, 1 - weights.sum())

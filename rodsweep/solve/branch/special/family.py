@@ -1,9 +1,9 @@
 """Correction of a predicted point of a curve of folds or torus points over two parameters.
 
-Cycles near a special point form a two-parameter family: arc length along the branch (`bordered`), and the
-rows' axis coordinate. In the plane of these two variables the special points are the zeros of a test function
-on a smooth curve, also at a cusp, where both parameters turn back. The secant method across the curve finds
-the zero. All cycles and their test functions are corrected with the matrix factors of one cycle
+Cycles near a special point form a two-parameter family: arc length along the branch (`bordered`), and
+position on the rows' axis. In the plane of these two variables the special points form a smooth curve, the
+zeros of a test function, also at a cusp, where both parameters turn back. The secant method across the curve
+finds a zero. All cycles and their test functions are corrected with the matrix factors of one cycle
 (`augmented`). The first derivatives across the curve come from the previous point. The error is the
 difference between two meshes, measured at about every third point.
 """
@@ -67,8 +67,9 @@ class CycleFamily:
         return cls(kind, rows, point.scale, point.ahead, small, workspace)
 
     def orbit_at_row(self, orbit: Orbit, row_coordinate: float) -> Orbit:
-        """The orbit with unchanged values, for the rod whose rows' parameter has the axis coordinate
-        `row_coordinate`; raises Unsolvable."""
+        """The orbit with unchanged values, for the rod at the position `place` on the rows' axis; raises
+        Unsolvable."""
+
         return orbit_with_parameters(orbit, {self.rows.name: self.rows.value(row_coordinate)})
 
     def function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:
@@ -89,10 +90,11 @@ class CycleFamily:
         """The point of the curve near the orbit `start`, found by the secant method across the curve; raises
         Unsolvable.
 
-        row_coordinate: rows' axis coordinate of `start`. normal: direction of the search, (2,), in components
-        (along the branch, along the rows' axis). derivatives: approximate derivatives across the curve.
-        is_other_mesh: whether `derivatives` were computed at the same point on another mesh.
+        place: position of `start` on the rows' axis, from 0 to 1. across: direction of the search, (2,), in
+        components (along the branch, along the rows' axis). rates: approximate derivatives across the curve.
+        same: whether `rates` were computed at the same point on another mesh.
         """
+
         # Derivatives along another direction across the curve would mislead the secant method.
         usable = derivatives and derivatives.direction @ normal >= CURVE_SECANT.min_cosine
         known = derivatives if usable else None
@@ -115,10 +117,11 @@ class CycleFamily:
         """The point of the curve near `start` with an error estimate, on a finer mesh if necessary; raises
         Unsolvable.
 
-        start, row_coordinate, normal, derivatives: as in `correct`. slope: `chord_slope` of the curve, by
-        which a displacement along the curve is not counted as an error. previous: previous point of the
-        curve, whose measured error is used if it still applies.
+        start, place, across, rates: as in `nearest`. slope: `chord_slope` of the curve, with which a
+        displacement along the curve is removed from the error. before: previous point of the curve, whose
+        measured error is used if it still applies.
         """
+
         last = self.correct(start, row_coordinate, normal, derivatives)
         if previous and previous.errors and previous.errors.apply_at(last):
             return replace(last, errors=previous.errors.for_next_point)
@@ -163,7 +166,8 @@ class _SecantState:
         self.previous: _SecantIterate | None = None
         self.length = float(family.border @ family.scale.components(start))
         self.max_last_step = CURVE_SECANT.max_linear_step if same else CURVE_SECANT.max_carried_step
-        """Longest last secant step until the derivatives are computed from two cycles of this search."""
+        """Largest length of the last secant step, as long as `rates` are not from two cycles of this
+        search."""
         contraction = rates.contraction if rates and not family.small else inf
         self.nearby = NearbyCycleSolver(family, self.orbit, contraction)
 
@@ -208,7 +212,7 @@ class _SecantState:
 
     def _derivatives_from_last(self, present: _SecantIterate) -> NormalDerivatives | None:
         """Derivatives across the curve from the last cycle and the cycle `present`; None if `present` is the
-        first cycle or if the distance between the two cycles is too small."""
+        first cycle, or if the two cycles are too close or have equal test functions."""
         before = self.previous
         if before is None or present.test == before.test:
             return None

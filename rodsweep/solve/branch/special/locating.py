@@ -1,9 +1,9 @@
 """Location of special points on a branch: zeros of test functions of arc length. Each value of a test
-function takes the solution of a cycle.
+function requires the solution of a cycle.
 
-The zero is bracketed on the mesh of the branch, then found by the secant method on two finer meshes. The
-difference between the two zeros gives the error. A cycle takes only one matrix factorisation, because its
-test function is corrected with the factors of the last matrix (`augmented`).
+The zero is bracketed on the mesh of the branch, then found by the secant method on finer meshes. The
+difference between the zeros on the last two meshes gives the error. A cycle needs only one matrix
+factorisation, because its test function is corrected with the factors of the last matrix (`augmented`).
 """
 
 from dataclasses import replace
@@ -50,8 +50,8 @@ def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrb
 
 
 def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
-    """Value of the test function of torus points, symmetry breakings or period doublings, from the
-    multipliers h over the solved time interval, (rank,); raises Unsolvable."""
+    """Value of the test function of torus points, symmetry breakings or period doublings. h: multipliers over
+    the solved time interval, (rank,). Raises Unsolvable for torus points if all multipliers are real."""
     real = np.abs(h.imag) <= SPECIAL_POINT.real_multiplier * np.abs(h)
     if kind != SpecialKind.torus:
         # The product of h + 1 changes sign only where a real multiplier crosses -1.
@@ -76,8 +76,9 @@ def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> f
 
 
 def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
-    """The special point of a kind between two cycles, to a relative accuracy. If the point cannot be located,
-    its message gives the reason, and its error is the parameter difference of the two cycles."""
+    """The special point of a kind between two cycles, to a relative accuracy; its error exceeds the accuracy
+    if no allowed mesh suffices. If the point cannot be located, its message gives the reason, and its error
+    is the parameter difference of the two cycles."""
     aim = min(accuracy, SPECIAL_POINT.accuracy)
     try:
         segment = BranchSegment(start, end)
@@ -123,8 +124,8 @@ def _finer(mesh: OrbitMesh, excess: float) -> OrbitMesh:
 
 def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: ArcPoint) -> SpecialPoint:
     """The special point with errors: its differences from `last`, the same point on a coarser mesh, times a
-    safety factor. The errors of period and largest tip y include the arc length error of the last secant
-    step, for which the cycles `start` and `end` before and behind the point are needed."""
+    safety factor. The errors of period and largest tip y include the error of the last secant step, which is
+    proportional to their difference between `start` and `end`, the cycles before and after the point."""
     place = (
         SPECIAL_POINT.secant_error_at_fold if point.kind is SpecialKind.fold else SPECIAL_POINT.secant_error
     )

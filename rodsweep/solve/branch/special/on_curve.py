@@ -1,5 +1,5 @@
-"""A solved point of a curve of special points: cycle, error, and derivatives by the distance from the
-curve."""
+"""A solved point of a curve of special points: cycle, error, and derivatives with respect to the distance
+from the curve."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -58,7 +58,7 @@ class CurveSecantSettings:
     more_intervals: float = 1.2
     """Ratio of the numbers of time intervals on the next finer mesh and on the present mesh."""
     max_finer_meshes: int = 5
-    """Maximum number of finer meshes for one point."""
+    """Maximum number of meshes tried for one point after the first mesh, each finer than the mesh before."""
 
 
 CURVE_SECANT = CurveSecantSettings()
@@ -66,7 +66,7 @@ CURVE_SECANT = CurveSecantSettings()
 
 @dataclass(frozen=True, eq=False)
 class NormalDerivatives:
-    """Derivatives of cycles near a curve of special points by the distance from the curve."""
+    """Derivatives of cycles near a curve of special points with respect to the distance from the curve."""
 
     direction: Array
     """Unit direction across the curve, (2,): components along the branch and along the rows' axis."""
@@ -133,7 +133,7 @@ class SolvedPoint:
     """Direction of the branch along the row, (3,), a unit vector in components (deflection, log period,
     parameter)."""
     row_coordinate: float
-    """Axis coordinate of the rows' parameter, from 0 to 1."""
+    """Position on the axis of the rows' parameter, from 0 to 1."""
     parameter: float
     """Value of the parameter along a row."""
     row_parameter: float
@@ -152,7 +152,7 @@ class SolvedPoint:
 
     def step_from(self, other: "SolvedPoint") -> Array:
         """Step from the point `other` to this point, (4,), in components (deflection, log period, parameter
-        along a row, rows' axis coordinate)."""
+        along a row, position on the rows' axis)."""
         moved = self.scale.components(self.orbit) - self.scale.components(other.orbit)
         return np.append(moved, self.row_coordinate - other.row_coordinate)
 
@@ -165,8 +165,8 @@ class SolvedPoint:
 
 
 def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
-    """The points of a curve, in order, with the field `error` set: the larger of the two errors that follow
-    from the last measurement before the point and the next measurement after the point."""
+    """The points of a curve, in order, with the field `error` set: the error at a measured point; at a point
+    between, the larger of the errors from the previous and, if on the same mesh, the next measurement."""
     found: list[SolvedPoint] = []
     behind: CurveErrors | None = None
     # In reverse order, so that the next measurement after each point is known.
@@ -184,7 +184,7 @@ def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
 
 def orbit_with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
     """The orbit with unchanged values, for a rod with changed parameters; raises Unsolvable if the new
-    parameters are not allowed. changed: new parameter values by name."""
+    parameters are not allowed or change the unknowns of a state. changed: new parameter values by name."""
     try:
         form = replace(orbit.form, rod=orbit.form.rod.changed(**changed))
     except (ValueError, ZeroDivisionError) as error:
@@ -207,7 +207,7 @@ def arc_lengths(points: Sequence[SolvedPoint]) -> Array:
 
 
 def chord_slope(one: SolvedPoint, other: SolvedPoint) -> float:
-    """Slope of the chord between two points of a curve: difference of the parameter along a row, divided by
-    the difference of the rows' axis coordinate; 0 if the axis coordinates are equal."""
+    """Slope of the chord between two points of a curve: difference of `at`, divided by the difference of
+    `place`; 0 if the places are equal."""
     apart = other.row_coordinate - one.row_coordinate
     return (other.parameter - one.parameter) / apart if apart else 0.0

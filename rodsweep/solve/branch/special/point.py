@@ -12,7 +12,7 @@ class SpecialPointSettings:
     """Settings for locating a special point on a branch: tolerances, meshes, and numbers of steps."""
 
     real_multiplier: float = 1e-7
-    """A multiplier h is treated as real if |Im h| is at most this number times |h|."""
+    """A multiplier m is treated as real if |Im m| is at most this number times |m|."""
     accuracy: float = 1e-9
     """Relative accuracy of the parameter at a special point, unless the accuracy of the branch is a smaller
     number."""
@@ -62,14 +62,14 @@ class SpecialPointSettings:
     max_interval_ratio: float = 2.0
     """Largest ratio of the numbers of time intervals on the next finer mesh and on the present mesh."""
     time_order_by_stages: float = 1.5
-    """Ratio of the assumed order in time of the error of a special point to the number of stages; measured
-    orders are larger."""
+    """Order in time assumed for the error of a special point, divided by the number of stages; the orders
+    measured are larger than assumed."""
     error_factor: float = 3.0
     """The error estimate is the difference between the special points on two meshes, times this factor."""
     rounding_error: float = 1e-13
     """Relative rounding error of the parameter, the period and the largest tip y of a special point."""
     unit_multiplier_distance: float = 3e-3
-    """A multiplier h with |h - 1| below this number may lie on either side of the unit circle, because of
+    """A multiplier m with |m - 1| below this number may lie on either side of the unit circle, because of
     errors. Near a fold two multipliers are close to 1."""
     max_halvings: int = 7
     """Maximum number of halvings of a step that has several special points, or a special point that cannot be

@@ -1,10 +1,10 @@
 """Detection of special points of a branch: folds, torus points, symmetry breakings, period doublings.
 
 A special point lies between two cycles at which its test function has opposite signs. The test functions are,
-for a fold: derivative of the parameter by arc length; for a torus point: modulus of a complex pair of
-multipliers minus 1; for a symmetry breaking: multiplier of the half-period map composed with the reflection,
-plus 1; for a period doubling of an asymmetric cycle: multiplier over the period, plus 1. The special points
-found must explain the change of the number of multipliers outside the unit circle.
+for a fold: derivative of the parameter with respect to arc length; for a torus point: modulus of a complex
+pair of multipliers minus 1; for a symmetry breaking: multiplier of the half-period map composed with the
+reflection, plus 1; for a period doubling of an asymmetric cycle: multiplier over the period, plus 1. The
+special points found must explain the change of the number of multipliers outside the unit circle.
 """
 
 from collections.abc import Callable
@@ -22,7 +22,7 @@ Unsolvable."""
 
 
 def unstable_multiplier_count(point: ArcPoint) -> int:
-    """Number of multipliers of a cycle outside the unit circle, taken over the solved time interval."""
+    """Number of nontrivial multipliers of a cycle, over the solved time interval, outside the unit circle."""
     return int((np.abs(point.partial_multipliers) > 1).sum())
 
 
@@ -44,7 +44,7 @@ def special_kinds_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialK
 
 
 def _beyond_minus_one(point: ArcPoint) -> int:
-    """Number of real multipliers below -1, over the solved time interval of a cycle."""
+    """Number of real multipliers of a cycle, over the solved time interval, that are less than -1."""
     h = point.partial_multipliers
     return int(((h.real < -1) & (np.abs(h.imag) <= SPECIAL_POINT.real_multiplier * np.abs(h))).sum())
 

@@ -56,12 +56,13 @@ class BranchSegment:
 
     @property
     def last_solved_cycle(self) -> tuple[float, Orbit, Array]:
-        """(arc length from `start`, orbit, derivative of orbit values and parameter coordinate by arc length,
-        (N + 1,)), for the last cycle that `at` solved. Raises ValueError before the first cycle."""
+        """(arc length from `start`, orbit, derivative of orbit values and parameter coordinate with respect
+        to arc length, (N + 1,)) of the last cycle that `at` solved; raises ValueError if there is none."""
         if self._known is None:
             raise ValueError("no cycle was solved on this segment and mesh yet")
         return self._known
 
     def parameter_rate(self) -> float:
-        """Derivative of the scaled parameter coordinate by arc length, at the last cycle that `at` solved."""
+        """Derivative of the scaled parameter coordinate with respect to arc length, at the last cycle that
+        `at` solved."""
         return float(self.last_solved_cycle[2][-1]) / self.start.scale.coordinate_unit

@@ -1,1 +1,1 @@
-"""Stability changes along a path of arms, whose D has no closed form."""
+"""Crossings of the imaginary axis along a path of arms, whose determinant D has no closed form."""

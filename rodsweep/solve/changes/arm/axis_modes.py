@@ -1,4 +1,4 @@
-"""Eigenvalues near the imaginary axis at places, selected arms of a path, and the test whether a pair may
+"""Eigenvalues near the imaginary axis at selected arms of a path (places), and the test whether a pair may
 cross the axis twice between two places."""
 
 import math
@@ -42,8 +42,9 @@ class AxisModes:
     unstable: int
 
     def nearest_pair(self, growing: bool) -> tuple[float, float] | None:
-        """(distance from the imaginary axis, derivative by p of this distance) of the nearest pair to the
-        right (if `growing`) or to the left of the axis; None if no pair is known there."""
+        """(distance from the imaginary axis, derivative of this distance with respect to p) of the pair
+        nearest to the axis, on its right if `growing`, otherwise on its left; None if no pair is known
+        there."""
         pairs = [i for i, w in enumerate(self.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
         if not pairs:
             return None
@@ -58,7 +59,7 @@ class AxisModes:
 
 
 class AxisModesOfPath:
-    """The places of a path at which eigenvalues have been computed; known: the places by p."""
+    """The places of a path at which eigenvalues have been computed. known: the places, by path variable p."""
 
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
@@ -66,12 +67,12 @@ class AxisModesOfPath:
         self.known: dict[float, AxisModes] = {}
 
     def has_many_modes(self, p: float) -> bool:
-        """Whether at p only the modes near the imaginary axis are computed, because many modes are expected
-        to grow."""
+        """Whether, at path variable p, only the modes near the imaginary axis are computed: many modes are
+        expected to grow, and `certify` is set."""
         return self.certify and self.problem.expected_growing(p) > AXIS_MODES.many_modes
 
     def modes_at(self, p: float, beside: Complex | None = None) -> AxisModes:
-        """The place at p; raises Unsolvable if the eigenvalues or the count cannot be computed.
+        """The place at path variable p; raises Unsolvable if the eigenvalues or the count cannot be computed.
 
         beside: approximate eigenvalues near the imaginary axis, (n,), one of each pair, if available.
         """
@@ -84,11 +85,12 @@ class AxisModesOfPath:
         return self.known[p]
 
     def eigenvalues_near_axis(self, p: float, highest: float, known: Complex) -> Complex:
-        """Eigenvalues near the imaginary axis at p with Im w up to `highest`, (n,), as
-        `ArmPath.eigenvalues_near_axis`. known: some of these eigenvalues, (k,).
+        """Eigenvalues near the imaginary axis at path variable p, with |Im w| up to `highest`, (n,), one of
+        each pair. known: some of these eigenvalues, (k,), which come first.
 
         Raises Unsolvable if no elements resolve the arm.
         """
+
         try:
             return self.problem.eigenvalues_near_axis(p, highest, known)
         except FloatingPointError as unresolved:
@@ -128,15 +130,15 @@ class AxisModesOfPath:
 
 
 def _needed_modes(found: Spectrum) -> int:
-    """Number of modes to be computed: two more than the unstable modes, or, without a count, than the growing
-    modes found."""
+    """Number of modes to be computed: two more than the number of unstable modes counted or the number of
+    growing modes found, whichever is larger."""
     growing = int((found.eigenvalues.real > 0).sum())
     return 2 + max(found.unstable_count, growing)
 
 
 def next_count_position(left: AxisModes, right: AxisModes) -> float:
-    """Position of the next count as a fraction of the interval from `left` to `right`, because a pair may
-    touch the axis between; 0 if no pair can touch the axis."""
+    """Position of the next count as a fraction of the interval from `left` to `right`; 0 if no count is
+    needed, because no pair can touch the imaginary axis in the interval."""
     h = right.p - left.p
     for growing in (False, True):
         a = left.nearest_pair(growing)

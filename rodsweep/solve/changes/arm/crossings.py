@@ -1,8 +1,8 @@
 """Crossings of the imaginary axis along a path of arms. No covering proves that the list is complete.
 
 The unstable modes are counted at places along the path. Between two places whose counts differ by one pair,
-Newton's method on D finds the crossing. Between two places with equal counts, the slopes of the pairs nearest
-to the axis must exclude two crossings; otherwise a place is added between the two.
+Newton's method on the determinant D finds the crossing. Between two places with equal counts, the slopes of
+the pairs nearest to the axis must exclude two crossings; otherwise a place is added between the two places.
 """
 
 import math
@@ -23,11 +23,12 @@ class ArmCrossingSettings:
 
     beyond_the_list: float = 2.0
     smallest_first: float = 1e-3
-    """An interval is halved before its search if more modes than `beyond_the_list` times the length of the
-    list are expected to grow at its right end, unless it is shorter than `smallest_first` times the path."""
+    """An interval is halved before its search if the number of pairs expected to grow at its right end
+    exceeds `beyond_the_list` times the maximum number of crossings, unless the interval is shorter than
+    `smallest_first` times the path."""
     most_at_once: int = 6
-    """All crossings between two places are searched at once if the counts differ by at most this many
-    pairs."""
+    """Where many modes grow, all crossings between two places are searched at once if the counts differ by at
+    most this many pairs."""
     higher: float = 4.0
     """Modes near the axis at a crossing are searched up to this multiple of the largest known |w|."""
     same_errors: float = 10.0
@@ -38,8 +39,8 @@ class ArmCrossingSettings:
     """Intervals shorter than this fraction of the path are not divided: whether two crossings lie inside
     remains undecided."""
     smallest_step: float = 1e-12
-    """An interval with a smaller length, relative to the larger of its ends, has no place between its ends:
-    some thousand rounding errors."""
+    """The search fails at an interval whose length, divided by the larger modulus of its ends, is at most
+    this (some thousand rounding errors), if its crossings are not located."""
     count_distance: float = 1e-5
     """Distance from a crossing, as a fraction of the path, at which the modes are counted on both sides."""
     max_steps: int = 20
@@ -66,8 +67,8 @@ class CrossingSearch:
         self.gaps: list[tuple[float, float]] = []
 
     def crossings(self, edges: list[float], most: float) -> tuple[list[Crossing], SearchEnd]:
-        """Returns (crossings, end of the search): all crossings from the first of `edges` to that end, in
-        increasing order of p.
+        """Returns (crossings, end). crossings: all crossings from the first of `edges` to the end of the
+        search, in increasing order of p. end: end of the search.
 
         The search ends after the first crossing beyond `most`: where dozens of modes grow, each further
         crossing takes longer than all earlier crossings. Raises Unsolvable if the search ends at the first
@@ -90,15 +91,16 @@ class CrossingSearch:
         return [self.found[p] for p in sorted(self.found)], intervals.reach
 
     def _is_too_long(self, a: float, b: float, most: float, length: float) -> bool:
-        """Whether the list of `most` crossings is likely to be full before b, where a count is expensive.
-        length: of the path."""
+        """Whether the interval (a, b) must be halved before its search: the list of `most` crossings is
+        likely to be full before b, where a count is expensive. length: length of the path."""
         if b in self.places.known or b - a < ARM_CROSSINGS.smallest_first * length:
             return False
         expected = self.problem.expected_growing(b)
         return self.places.has_many_modes(b) and expected > ARM_CROSSINGS.beyond_the_list * 2 * most
 
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> None:
-        """Searches the interval (a, b): stores the crossings found, or divides the interval."""
+        """Searches the interval (a, b): stores the crossings found, or divides the interval, or stores an
+        interval that is too short to be divided as a gap; raises Unsolvable."""
         left = self.places.modes_at(a)
         right = self.places.modes_at(b)
         # Equal counts leave room for a pair that crosses and returns.
@@ -128,10 +130,10 @@ class CrossingSearch:
         self, crossings: list[Crossing], left: AxisModes, right: AxisModes, length: float
     ) -> list[tuple[float, float]] | None:
         """The intervals between crossings, in increasing order of p; None if the counts just before and just
-        after a crossing do not confirm the crossing. length: of the path.
+        after a crossing do not confirm the crossing. length: length of the path.
 
-        Where many modes grow, the modes near the axis at a crossing serve the counts before and after the
-        crossing.
+        Where many modes grow, the modes near the axis at a crossing are used for the counts before and after
+        the crossing.
         """
         parts: list[tuple[float, float]] = []
         start = left.p
@@ -154,7 +156,7 @@ class CrossingSearch:
 
     def _between(self, left: AxisModes, right: AxisModes) -> list[Crossing]:
         """Crossings between two places, in increasing order of p, that explain the change of the number of
-        unstable modes; empty if not all are found."""
+        unstable modes; empty if a crossing is not found or the change is too large for one search."""
         change = (right.unstable - left.unstable) // 2
         many = self.places.has_many_modes(right.p)
         # Where modes are followed, bisection first separates several crossings.
@@ -177,8 +179,8 @@ class CrossingSearch:
         return []
 
     def _newton(self, start: AxisModes, i: int, ends: tuple[float, float], grows: bool) -> Crossing | None:
-        """Newton's method for the p at which eigenvalue number i of the place `start` lies on the imaginary
-        axis; None without convergence.
+        """The crossing of the imaginary axis by eigenvalue number i of the place `start`, by Newton's method
+        for p; None if Newton's method does not converge within `ends`.
 
         ends: allowed interval of p. grows: whether the growth rate of the pair increases with p.
         """
@@ -204,8 +206,8 @@ class CrossingSearch:
         return None
 
     def _crossing(self, p: float, w: complex, slope: complex, blur: float, grows: bool) -> Crossing | None:
-        """The crossing of the pair w at p; None if the growth rate changes in the opposite direction, or if w
-        is no pair. slope: dw/dp. blur: error of p."""
+        """The crossing of the pair w at p; None if w is real, or if its growth rate changes in the direction
+        opposite to `grows`. slope: dw/dp. blur: error of p. grows: as in `_newton`."""
         # Newton's method may find another pair, which crosses in the opposite direction.
         if w.imag <= 0 or (slope.real > 0) != grows:
             return None

@@ -32,27 +32,30 @@ class ArmPathSettings:
     edges: int = 12
     """Number of equal intervals into which a path of arms is first divided."""
     points_between: int = 4
-    """Number of steps in which eigenvalues are followed through each of these intervals."""
+    """Number of steps in which eigenvalues are followed through each of the `edges` intervals."""
     followed_modes: int = 4
-    """Number of leading eigenvalues that are proved complete at each step, besides all unstable
+    """Number of leading eigenvalues that are proved complete at each step, together with all unstable
     eigenvalues."""
     spare_pair: int = 2
-    """Number of modes solved for in addition to the requested modes, for an arm with many unstable modes."""
+    """Number of modes solved for in addition to the requested modes, if more than `followed_modes` modes are
+    requested."""
     most_growing: float = 16.0
-    """If more unstable modes than this are expected, no modes are followed: at most 13 are followed."""
+    """No modes are followed where more unstable modes than this are expected, because at most 13 modes can be
+    followed."""
     headroom: float = 4.0
     """Largest |w| of a family of arms for crossings, divided by the largest known |w|; twice the known |w|
     suffices for the eigenvalues."""
     amid: float = 0.25
-    """The count at a path variable replaces a count in the middle of an interval if its distance from the
-    middle is less than this fraction of the interval's length."""
+    """A known count replaces a count in the middle of an interval if the distance of its path variable from
+    the middle is less than this fraction of the interval's length."""
 
 
 ARM_PATH = ArmPathSettings()
 
 
 class ArmPath(PathProblem):
-    """Path of arms that vary along the length or have a nonlinear law, with D from propagators.
+    """Path of arms that vary along the length or have a nonlinear law; the determinant D is computed from
+    propagators.
 
     The leading eigenvalues are followed along the path once, and then from the nearest step to every
     requested p.
@@ -62,7 +65,7 @@ class ArmPath(PathProblem):
         super().__init__(path)
         self._followed: FollowedArms | None = None
         self._solutions: dict[float, Spectrum] = {}
-        """Spectra by p that were solved, not followed; each with the number of modes requested last."""
+        """Spectra that were solved, not followed: for each path variable p, the last spectrum solved."""
         self._counts: dict[float, int] = {}
         """Proved numbers of unstable modes, by p."""
         self._families: list[ArmFamily] = []
@@ -76,8 +79,8 @@ class ArmPath(PathProblem):
         return made
 
     def make_family(self, low: float, high: float, highest: float) -> None:
-        """Creates the family of arms from `low` to `high` for eigenvalues up to |w| = `highest`, if
-        possible."""
+        """Creates a family of arms from `low` to `high` for eigenvalues up to |w| = `highest`, if possible
+        and if no stored family suffices."""
         W = ARM_PATH.headroom * highest
         if any(one.low <= low and high <= one.high and highest * 2 <= one.W for one in self._families):
             return

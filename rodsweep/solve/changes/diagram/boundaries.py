@@ -1,6 +1,7 @@
-"""Boundaries of a phase diagram: the curves through the stability changes found on its rows.
+"""Boundaries of a phase diagram: the curves through the crossings of the imaginary axis and the double
+eigenvalues found on its rows.
 
-The curves are traced from the changes of all rows (`rodsweep.solve.changes.diagram.boundary_curves`).
+The curves are traced from these thresholds of all rows (`rodsweep.solve.changes.diagram.boundary_curves`).
 """
 
 import math
@@ -19,23 +20,23 @@ from .boundary_curves import BoundaryCurve, trace
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChangeBoundarySettings:
-    """Settings for the assignment of the changes found on rows to boundary curves."""
+    """Settings for the assignment of the thresholds found on rows to boundary curves."""
 
     same_coordinate: float = 1e-12
     """Two scaled coordinates are equal if their difference is smaller than this."""
     same_eigenvalue: float = 1e-3
-    """A change lies on a curve only if the eigenvalue of the curve at the same height differs by less than
-    this, relatively."""
+    """A threshold lies on a curve only if its eigenvalue and the eigenvalue of the curve at the same value of
+    the second parameter differ by less than this, relatively."""
     max_secants: int = 20
-    """Maximum number of secant steps to a point of a curve at a given height."""
+    """Maximum number of secant steps to the point of a curve at a given value of the second parameter."""
     coincident_ends: float = 1e-6
-    """Two curves are the same if two of their end points (coordinates and log |eigenvalue|) are closer than
-    this: curves do not cross."""
+    """Two curves are identical if an end of the first and an end of the second (coordinates and log
+    |eigenvalue|) are closer than this, because curves do not cross."""
     change_distance: float = 1e-7
-    """A change at a smaller distance from a curve lies on the curve; both axes have length 1."""
+    """A threshold closer to a curve than this lies on the curve; both axes have length 1."""
     beside: float = 0.1
-    """A chord of a curve is searched for a change only if the change is at most this far beyond the chord's
-    ends along the first axis, which has length 1: steps are shorter."""
+    """A chord of a curve is searched for a threshold only if the threshold lies at most this far beyond the
+    chord's ends along the first axis, which has length 1; continuation steps are shorter than this."""
 
 
 CHANGE_BOUNDARIES = ChangeBoundarySettings()
@@ -43,7 +44,7 @@ CHANGE_BOUNDARIES = ChangeBoundarySettings()
 
 @dataclass(frozen=True, slots=True)
 class Seed:
-    """A change on a row as the starting point of a curve: values of both parameters, and the eigenvalue."""
+    """A threshold on a row, at which a curve may start: values of both parameters, and the eigenvalue."""
 
     values: tuple[float, float]
     sign: float
@@ -53,8 +54,8 @@ class Seed:
 
 
 def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rate: float) -> Seed | None:
-    """The seed of a change with values of both parameters; None for an overtaking, because no boundary
-    consists of overtakings."""
+    """The seed of a threshold with values of both parameters; None for an overtaking (`leading_eigenvalue`),
+    because no boundary consists of overtakings. kind: value of `ChangeKind`."""
     if kind in (ChangeKind.hopf, ChangeKind.hopf_reverse, ChangeKind.restabilization):
         return Seed(values, 0.0, frequency)
     if kind in (ChangeKind.onset, ChangeKind.real_again):
@@ -64,14 +65,15 @@ def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rat
 
 @dataclass(frozen=True, slots=True)
 class _ChangeBoundaries:
-    """The boundary curves through the changes of all rows of a plane, as a problem for `trace_boundaries`."""
+    """The boundary curves through the thresholds of all rows of a plane, as a problem for
+    `trace_boundaries`."""
 
     plane: Plane
     seeds: list[Seed]
 
     def next_seed(self, left: Sequence[int]) -> int:
-        """Index of the change at which the next curve starts: the first of the changes `left`, which lie on
-        no curve."""
+        """Index of the threshold at which the next curve starts: the first in `left`, the thresholds on no
+        curve."""
         return left[0]
 
     def missing_units(self, seed: int) -> list[int]:
@@ -79,18 +81,19 @@ class _ChangeBoundaries:
         return []
 
     def curve(self, seed: int) -> BoundaryCurve | None:
-        """The curve through change number `seed`; None if it is not found."""
+        """The curve through threshold number `seed`; None if it is not found."""
         one = self.seeds[seed]
         x, y = (a.coordinate(v) for a, v in zip(self.plane.axes, one.values, strict=True))
         return trace(one.sign, self.plane, (x, y), one.eigenvalue)
 
     def distance(self, curve: BoundaryCurve, seed: int) -> float:
-        """Distance of change number `seed` from `curve`, along the first axis at the height of the change."""
+        """Distance of threshold number `seed` from `curve` along the first axis; inf if the curve has no
+        point near the threshold."""
         return _distance(self.plane, curve, self.seeds[seed])
 
     def are_identical(self, one: BoundaryCurve, other: BoundaryCurve) -> bool:
-        """Whether two curves are the same because they share an end; near a crushed rod a change may not be
-        found on its own curve."""
+        """Whether two curves are identical because they share an end; near a crushed rod a threshold may not
+        be found on its own curve."""
         ends = one.scaled[[0, -1], None] - other.scaled[None, [0, -1]]
         return (
             one.sign == other.sign
@@ -99,21 +102,21 @@ class _ChangeBoundaries:
 
 
 def curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries[BoundaryCurve]:
-    """Boundary curves through all changes; each curve is followed once, and the changes on the curve start no
+    """Boundary curves through all thresholds `seeds`; a threshold on a curve already followed starts no
     further curve."""
     problem = _ChangeBoundaries(plane, seeds)
     return trace_boundaries(problem, range(len(seeds)), CHANGE_BOUNDARIES.change_distance).boundaries
 
 
 def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
-    """Distance of a change from the curve along the first axis, at the height of the change; inf if the curve
-    has no point near the change."""
+    """Distance of a threshold from the curve along the first axis, at the threshold's value on the second
+    axis; inf if the curve has no point near the threshold."""
     if curve.sign != seed.sign:
         return math.inf
     x, y = (a.coordinate(v) for a, v in zip(plane.axes, seed.values, strict=True))
     points = curve.scaled
     side = points[:, 1] - y
-    # A change on a point of the curve must not fall between two chords by rounding.
+    # A threshold on a point of the curve must not fall between two chords by rounding.
     side[np.abs(side) < CHANGE_BOUNDARIES.same_coordinate] = 0.0
     if len(points) == 1:
         return float(abs(points[0, 0] - x)) if abs(side[0]) < CHANGE_BOUNDARIES.change_distance else math.inf
@@ -134,7 +137,8 @@ def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
 
 
 def _at_height(boundary: Boundary, a: Array, b: Array, y: float) -> Array | None:
-    """The point (x, y, h) of a curve at height y between its points a and b, (3,) each; None if not found.
+    """The point (x, y, log |eigenvalue|) of a curve at the given y, between its points a and b, (3,) each;
+    None if not found.
 
     Newton's method starts from the chord. If this guess is too far from the curve, secant steps along the
     curve follow.

@@ -59,7 +59,8 @@ def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: flo
     """The boundary curve with `sign` through `start` (scaled coordinates) and |w| = |eigenvalue|; None if no
     point of a curve is found there.
 
-    The curve is followed in both directions until it leaves the plane, closes, or reaches a crushed rod.
+    The curve is followed in both directions until it leaves the plane, closes, reaches a crushed rod, or
+    cannot be followed further.
     """
     curve = ChangeCurveProblem(Boundary(plane, sign))
     guess = np.array([*start, math.log(abs(eigenvalue))])

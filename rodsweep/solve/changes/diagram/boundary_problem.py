@@ -1,7 +1,7 @@
-"""A boundary of the spectrum in a plane of rods as a curve problem for the follower.
+"""A boundary of the spectrum in a plane of rods, as a problem for `continuation.follower.follow_curve`.
 
-Each point of the curve has a unit tangent. A curve ends at an edge of the plane, at a crushed rod, or where
-it closes.
+Each point of the curve has a unit tangent. A curve ends at an edge of the plane, at a crushed rod, where it
+closes, or where it cannot be followed.
 """
 
 from collections.abc import Sequence
@@ -25,8 +25,8 @@ BOUNDARY_STEPS = StepControl(
     max_ratio=1.5,
     max_solutions=5000,
 )
-"""Arc lengths of the continuation steps; each axis of the plane has length 1. Steps are short enough for a
-smooth drawn curve."""
+"""Control of the arc length of continuation steps; each axis of the plane has length 1. Steps are short
+enough for a smooth drawn curve."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,8 +36,8 @@ class ChangeCurveSettings:
     beside_an_edge: float = 1e-9
     """Largest distance by which a point on one edge of the plane may lie beyond another edge."""
     coincident_points: float = 1e-9
-    """Two neighbouring points of a curve at a smaller distance are merged, as at a start on an edge of the
-    plane."""
+    """Two neighbouring points of a curve are merged if their distance is at most this, as at a start on an
+    edge of the plane."""
     fold_accuracy: float = 1e-13
     """Convergence tolerance at a fold: largest component of the tangent, and smallest bracket as a fraction
     of the step."""
@@ -70,7 +70,8 @@ class BoundaryEnd(IntEnum):
 
 
 class BoundaryPoint(NamedTuple):
-    """A point v = (x, y, h) of a curve, (3,), and the unit tangent in the direction of the curve, (3,)."""
+    """A point v = (x, y, h) of a curve, (3,), and the unit tangent in the direction of the curve, (3,). x, y:
+    scaled parameters. h: log |eigenvalue|."""
 
     v: Array
     tangent: Array
@@ -85,7 +86,7 @@ class BoundaryPoint(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ChangeCurveProblem:
-    """A boundary of the spectrum as a curve problem for the follower."""
+    """A boundary of the spectrum, as a problem for `follow_curve`."""
 
     boundary: Boundary
 
@@ -117,7 +118,7 @@ class ChangeCurveProblem:
         self, behind: Sequence[BoundaryPoint], outer: BoundaryPoint, margin: int
     ) -> BoundaryPoint | None:
         """The point on the edge `margin` crossed by the step from the last of `behind` to `outer`; None for a
-        crushed rod, or if the point lies beyond a second edge."""
+        crushed rod, or if the point is not found or lies beyond a second edge."""
         if margin == CRUSHED_MARGIN:
             return None
         axis, limit = divmod(margin, 2)
@@ -144,8 +145,8 @@ class ChangeCurveProblem:
     def end_of(self, followed: Curve[BoundaryPoint]) -> BoundaryEnd:
         """The reason for the end of a followed curve.
 
-        No solution is found beyond a point on an edge where the range of a parameter ends, such as gamma3 =
-        0, nor for a crushed rod, which may be closer than the shortest step.
+        If no further solution was found, the reason is `edge` if the last point lies on an edge, such as
+        gamma3 = 0, `crushed` if a rod just beyond the last point is crushed, otherwise `not_followed`.
         """
         if followed.end is CurveStop.closed:
             return BoundaryEnd.closed

@@ -1,7 +1,8 @@
-"""Rows of a phase diagram: the class of the rod at each value along one axis, and all changes along the row.
+"""Rows of a phase diagram: the class of the rod at each value along one axis, and all thresholds along the
+row.
 
-All changes along a row are found first (`along_path`). The changes determine the class of every point without
-a solve at the point, and each change is as accurate as Newton's method.
+All thresholds along a row are found first (`along_path`). The thresholds determine the class of every point
+without a solve at the point, and each threshold is as accurate as Newton's method.
 """
 
 import math
@@ -42,17 +43,18 @@ class RowRequest:
     name: str
     values: Array
     accuracy: float
-    """Relative accuracy of the changes."""
+    """Relative accuracy of the thresholds."""
     certify: bool
     crossings: int
-    """Maximum number of stored changes."""
+    """Maximum number of stored thresholds."""
     cycle_accuracy: float = 1e-6
-    """Relative accuracy of the period and of the largest y of each cycle, if cycles are requested."""
+    """Relative accuracy of the period and of the largest tip y of each cycle, if cycles are requested."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiagramRow:
-    """One row: class and number of unstable modes at each value, (values,), and all changes along the row."""
+    """One row: class (`Motion`) and number of unstable modes at each value, (values,), and all thresholds
+    along the row."""
 
     motion: NDArray[np.int8]
     unstable_count: NDArray[np.int32]
@@ -80,7 +82,8 @@ def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
 
 
 def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
-    """The row, searched between the first and the last value at which the rod is not crushed."""
+    """The row, searched over the values at which the rod is not crushed and, along F or k1, on to the
+    crushing force."""
     name = request.name
     values = request.values
     F = values if name == "F" else np.full(len(values), rod.F)
@@ -94,7 +97,7 @@ def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
         return replace(row, motion=np.where(crushed, Motion.crushed, Motion.undecided).astype(np.int8))
     start = float(values[alive][0])
     stop = float(values[alive][-1])
-    # Changes may lie between the last value that is not crushed and the crushing force.
+    # Thresholds may lie between the last value that is not crushed and the crushing force.
     if name == "F" and not alive.all():
         stop = rod.crushing_force * (1 - CHANGE_COUNTS.crushing_margin)
     if name == "k1" and not alive.all():
@@ -111,7 +114,7 @@ def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
 
 
 def _uniform(status: ThresholdStatus, values: Array, motion: Motion, message: str = "") -> DiagramRow:
-    """A row without changes, with the same class at all values."""
+    """A row without thresholds, with the same class at all values."""
     return DiagramRow(
         motion=np.full(len(values), motion, dtype=np.int8),
         unstable_count=np.full(len(values), -1, dtype=np.int32),
@@ -121,7 +124,7 @@ def _uniform(status: ThresholdStatus, values: Array, motion: Motion, message: st
 
 def classes(found: Transitions, values: Array) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
     """(class, number of unstable modes) at each value of the path's parameter, (values,) each, from the
-    changes `found`. Values beyond the end of a search that ended early are undecided."""
+    thresholds `found`. Values beyond the end of a search that ended early are undecided."""
     oscillates = np.full(len(values), found.oscillates_at_start)
     unstable = np.full(len(values), found.unstable_at_start, dtype=np.int32)
     blurred = np.zeros(len(values), dtype=bool)

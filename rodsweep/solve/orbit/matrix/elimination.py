@@ -30,7 +30,7 @@ def eliminate(
     points: Array, V: Array, duration: float, p: Semidiscrete, factors: Factors, columns: Array
 ) -> Array:
     """Eliminates Newton's matrix at `points`, (1 + K s, n), writes it into `factors`, and returns the changes
-    of the end of the last interval by the right-hand sides for a fixed start, (columns, n).
+    that the right-hand sides cause at the end of the last interval for a fixed start, (columns, n).
 
     V: velocities of the stages, (K, s, 3, nodes + 1). duration: total length of the intervals, in tau2.
     columns: right-hand sides, (K, s, columns, n), which are reduced in place.
@@ -76,8 +76,8 @@ def eliminate(
 def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -> None:
     """Eliminates the blocks B of one interval, (s, s, n, n), whose diagonal blocks are given.
 
-    right: output, right-hand side of each stage from the third for x_0 = M^-1, (s, n, n). parts: work array,
-    (5, n, n).
+    right: output, (s, n, n): for each stage from the third, the matrix that gives the right-hand side of the
+    stage when it multiplies M x_0, x_0: state at the start. parts: work array, (5, n, n).
     """
     s = B.shape[0]
     n = B.shape[2]
@@ -109,8 +109,8 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -
 
 @compiled_for_vectors
 def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> None:
-    """Eliminates the first two stages: computes the blocks B, and the right-hand sides `right` for x_0 =
-    M^-1, of all later stages.
+    """Eliminates the first two stages: computes the blocks B and the matrices `right` (see
+    `_eliminate_interval`) of all later stages.
 
     parts: Z, W, Z W, W Z and Z W Z of the module docstring, (5, n, n); Z is given, the rest is computed.
     """

@@ -1,4 +1,4 @@
-"""Newton's matrix at an orbit: Newton's step, the derivative by a parameter, and all Floquet multipliers.
+"""Newton's matrix at an orbit: Newton's step, derivative along a parameter, and all Floquet multipliers.
 
 After the elimination of the intervals (`elimination`) a system for the state at t = 0 and the period remains.
 Its last row is the phase condition. N: orbit values. K: intervals, s: stages each, n: unknowns of a state.
@@ -29,8 +29,8 @@ class Linearisation:
     """Newton's matrix at an orbit. The matrix can correct nearby orbits until another matrix is assembled in
     its workspace.
 
-    step: Newton's step at the orbit, (N,). tangent: derivative of the orbit values by the parameter
-    `parameter`, (N,); None if no parameter was given.
+    step: Newton's step at the orbit, (N,). tangent: derivative of the orbit values with respect to the
+    coordinate of the parameter `parameter`, (N,); None if no parameter was given.
     """
 
     def __init__(self, orbit: Orbit, workspace: NewtonWorkspace, parameter: str | None = None) -> None:
@@ -62,19 +62,19 @@ class Linearisation:
 
 
 def partial_multipliers(propagator: Array, orbit: Orbit) -> Complex:
-    """Nonzero eigenvalues, (rank,), of the map S^-1 P over the solved part of the period. propagator: P, (n,
-    n)."""
+    """Nonzero eigenvalues, (rank,), of the map S^-1 P over the solved part of the period, S: symmetry.
+    propagator: P, (n, n)."""
     return nonzero_eigenvalues(orbit.symmetry.apply_inverse(propagator, orbit.form.layout))
 
 
 def over_period(partial: Complex, orbit: Orbit) -> Complex:
-    """Floquet multipliers over the period, by descending modulus. partial: over the solved part, (rank,)."""
+    """Floquet multipliers, by descending modulus. partial: multipliers over the solved part, (rank,)."""
     values: Complex = partial**orbit.symmetry.parts
     return values[np.argsort(-np.abs(values), kind="stable")]
 
 
 def change_along(form: StressForm, name: str) -> ParameterDerivatives:
-    """Derivatives of a rod and of its mass, (n,), by the coordinate of the parameter `name`."""
+    """Derivatives of a rod and of its mass, (n,), with respect to the coordinate of the parameter `name`."""
     change = form.parameter_derivative(name)
     return ParameterDerivatives(change, form.mass_of(change))
 
@@ -86,8 +86,8 @@ def linearise(
     """Eliminates Newton's matrix at the orbit with the given `values`, (N,), and writes it into `factors`.
 
     Returns (steps, by_period). steps: Newton's step and, if count = 3, the derivative of the orbit values
-    along the parameter of `along`, (count - 1, N). by_period: reduced derivative of the stage residuals by
-    the period, (K, s, n). count: 2 or 3.
+    along the parameter of `along`, (count - 1, N). by_period: reduced derivative of the stage residuals with
+    respect to the period, (K, s, n). count: 2 or 3.
     """
     K = factors.blocks.shape[0]
     s = factors.blocks.shape[1]
@@ -123,7 +123,7 @@ def linearise(
 
 @compiled_for_vectors
 def jump_of(points: Array, p: Semidiscrete) -> Array:
-    """Residual S x(0) - x(T/p) of the closing condition, (n,). points: states of the orbit, (1 + K s, n)."""
+    """Residual S x(0) - x(end) of the closing condition, (n,), S: symmetry. points: states, (1 + K s, n)."""
     jump = -points[-1]
     for i in range(len(jump)):
         for j in range(len(jump)):
@@ -134,8 +134,8 @@ def jump_of(points: Array, p: Semidiscrete) -> Array:
 @compiled_for_vectors
 def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, factors: Factors) -> Array:
     """Changes of the orbit values, (columns, N). rights: right-hand sides of the closing and phase
-    conditions, (columns, n + 1). by_period: reduced derivative of the stage residuals by the period, (K, s,
-    n). columns: reduced right-hand sides of the stages, (K, s, columns, n)."""
+    conditions, (columns, n + 1). by_period: reduced derivative of the stage residuals with respect to the
+    period, (K, s, n). columns: reduced right-hand sides of the stages, (K, s, columns, n)."""
     K, s, count, n = columns.shape
     found = np.zeros((count, n + 1))
     for m in range(count):
@@ -230,8 +230,8 @@ def correct(values: Array, by_period: Array, p: Semidiscrete, factors: Factors) 
 
 @compiled_for_vectors
 def largest_change(values: Array, step: Array, unknowns: int, nodes: int) -> float:
-    """Largest relative change of n2, m3 and the period by a step, (N,): the largest change of each quantity,
-    divided by the largest modulus of this quantity."""
+    """Largest relative change of n2, m3 and the period in a step, (N,): the largest change of each quantity,
+    divided by the largest modulus of this quantity; inf if the step is not finite."""
     largest = abs(step[-1]) / abs(values[-1])
     for change in step:
         # NaN would be lost in the comparisons below.

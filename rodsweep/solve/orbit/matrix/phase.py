@@ -61,7 +61,7 @@ def tip_angle(x: Array, compliance: Array, m: NodeMatrices) -> float:
 
 @compiled_for_vectors
 def phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> None:
-    """Writes the derivative of `phase` by the state `start`, (n,), into `row`, (n,)."""
+    """Writes the derivative of `phase` with respect to the state `start`, (n,), into `row`, (n,)."""
     n = len(start)
     V = np.empty(c.drag.shape)
     G = np.empty(c.drag.shape)

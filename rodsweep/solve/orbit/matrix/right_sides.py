@@ -16,8 +16,8 @@ from .substitution import add_products
 
 
 class ParameterDerivatives(NamedTuple):
-    """Derivatives by a parameter. change: derivatives of the arrays of the rod. mass: derivative of the
-    diagonal mass matrix, (n,)."""
+    """Derivatives with respect to the coordinate of a parameter. change: derivatives of the arrays of the
+    rod. mass: derivative of the diagonal mass matrix, (n,)."""
 
     change: NodalChange
     mass: Array
@@ -87,8 +87,8 @@ def right_sides(
     """Writes the right-hand sides of Newton's system into `columns`, (K, s, columns, n), and the velocities
     of the stages into V, (K, s, 3, nodes + 1).
 
-    Column 0: derivative of the residuals by the period. Column 1: the `residuals`. Column 2, if present:
-    derivative of the residuals along the parameter of `along`. points, duration: as in `residuals`.
+    Column 0: derivative of the residuals with respect to the period. Column 1: the `residuals`. Column 2, if
+    present: derivative of the residuals along the parameter of `along`. points, duration: as in `residuals`.
     """
     K, s, count, n = columns.shape
     G = np.empty(V.shape[2:])
@@ -103,7 +103,7 @@ def right_sides(
             _slopes(points[k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
             for r in range(n):
                 # sides[0] contains F, which is needed for the residual, and is then overwritten by the
-                # derivative of h F by the period.
+                # derivative of h F with respect to the period.
                 sides[1, r] = duration * length * sides[0, r] - p.mass[r] * slopes[r]
                 sides[0, r] *= length / p.parts
             if count > 2:
@@ -136,7 +136,7 @@ def variation_sides(
     J = np.empty((n, n))
     tip = np.empty((len(V), n))
     v = np.empty((count, n))
-    # Eigenvectors of the flow do not change the parameter: the derivative by the parameter is not needed.
+    # Eigenvectors of the flow do not change the parameter: derivatives along the parameter are not needed.
     moving = np.any(variations[:, -1] != 0.0)
     columns[:] = 0.0
     for k in range(K):

@@ -39,13 +39,14 @@ SHOOTING_INTERVALS = ShootingIntervalSettings()
 @dataclass(frozen=True, eq=False)
 class ShootingIntervals:
     """The m legs of an orbit. edges: index of the first time interval of each leg, and the number of time
-    intervals, m + 1 numbers. maps: derivative of the end of each leg by its start, (m, n, n)."""
+    intervals, m + 1 numbers. maps: derivative of the end of each leg with respect to its start, (m, n, n)."""
 
     edges: tuple[int, ...]
     maps: Array
 
     def ends(self, factors: Factors, columns: Array, whole: Array, p: Semidiscrete) -> Array:
-        """Changes of the ends of all legs by right-hand sides, for fixed starts of the legs, (m, columns, n).
+        """Changes that right-hand sides cause at the ends of all legs, for fixed starts of the legs, (m,
+        columns, n).
 
         columns: reduced right-hand sides, (K, s, columns, n). whole: changes of the end of the last time
         interval for a fixed start of the first time interval, (columns, n).
@@ -69,8 +70,8 @@ class ShootingIntervals:
         return out
 
     def multipliers(self, orbit: Orbit) -> Complex:
-        """Nonzero multipliers of the map S^-1 P over the solved part of the period, (rank,). Raises
-        LinAlgError if the map is not finite.
+        """Nonzero multipliers of the map S^-1 P over the solved part of the period, (rank,); P: product of
+        the maps of all legs, S: symmetry. Raises LinAlgError if the map is not finite.
 
         P itself is not formed, because multipliers far below its norm would lose all digits. Orthogonal
         iteration gives a triangular matrix whose rows are ordered by their growth.

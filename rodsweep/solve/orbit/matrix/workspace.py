@@ -31,9 +31,9 @@ class Factors(NamedTuple):
 
     blocks: (K, s, s, n, n); the diagonal has inverses of the pivot blocks, the part below has row
     multipliers, the part above has Schur-updated blocks. Off the diagonal, the first two rows and columns are
-    unused, except row 0: column 1 has the change of the end for x_0 = M^-1, columns 2 to s - 2 have the
-    right-hand sides of these stages for x_0 = M^-1. propagator: P, (n, n). inverse: inverse of the remaining
-    matrix for start and period, (n + 1, n + 1).
+    unused, except row 0: its blocks multiply M x_0, x_0: state at the start; block 1 gives the change of the
+    end, blocks 2 to s - 2 the right-hand sides of these stages. propagator: map P over all intervals, (n, n).
+    inverse: inverse of the remaining matrix for start and period, (n + 1, n + 1).
     """
 
     blocks: Array

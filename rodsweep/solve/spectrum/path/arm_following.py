@@ -1,8 +1,8 @@
 """Eigenvalues of arms followed along a path, and proved complete at every point of the path.
 
-The method is described in `rodsweep.solve.spectrum.path.following`; here D comes from the interpolated
-propagators of a family of arms. The proof at a point (`rodsweep.determinant.arm.completeness`) uses only the
-eigenvalues at this point.
+The method is described in `rodsweep.solve.spectrum.path.following`; here the determinant D is computed from
+the interpolated propagators of a family of arms. The proof at a point
+(`rodsweep.determinant.arm.completeness`) uses only the eigenvalues at this point.
 """
 
 import math
@@ -36,13 +36,13 @@ from .following import (
 from .prediction import Track, find_conjugates, predict_eigenvalues, set_two_guesses
 
 PropagatorsWithSlopes = tuple[float, Array, Array]
-"""(bound W of |w|, propagators valid for |w| <= W, derivatives of the propagators by p); both arrays:
-(elements, terms, PADDED)."""
+"""(bound W of |w|, propagators valid for |w| <= W, derivatives of the propagators with respect to the path
+variable p); both arrays: (elements, terms, PADDED)."""
 
 
 @compiled
 def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes) -> CorrectedEigenvalue:
-    """One Newton step on D from w, for an arm given by its propagators `level`; a real w stays real."""
+    """One Newton step for a root of D from w, for an arm with propagators `level`; a real w stays real."""
     D, D_w, D_p, _, noise = chain_along(w, level[0], level[1], level[2])
     return newton_step(w, D, D_w, D_p, ARM_VALUE.root_noise * noise)
 
@@ -80,7 +80,8 @@ def two_roots_of_arm(middle: complex, level: PropagatorsWithSlopes) -> tuple[com
 def _correct_all(
     track: Track, i: int, p: float, guess: Complex, modes: int, level: PropagatorsWithSlopes
 ) -> bool:
-    """Refines the guesses for all eigenvalues of point i, at p, and writes the eigenvalues to the track.
+    """Refines the guesses for all eigenvalues of point i, at path variable p, and writes the eigenvalues to
+    the track.
 
     guess: (m,). The `modes` leading eigenvalues converge to rounding error. Returns True if all eigenvalues
     converged, no two coincide, and every complex pair stayed complex.
@@ -143,11 +144,12 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Propa
 def follow_eigenvalues_of_arms(
     track: Track, family: ArmFamily, hulls: PathHulls, p: Array, modes: int, known: NDArray
 ) -> int:
-    """Follows eigenvalues of arms along the points p, (points,), and returns the number of points reached.
+    """Follows eigenvalues of arms along the path variables p, (points,), and returns the number of points
+    reached.
 
-    track: `w` and `order` of the first point are given, the remaining points are filled. family: contains all
-    p. hulls: regions that contain the spectra of all arms of the family. known: (points,), filled by
-    `all_right_of_line`.
+    track: `w` and `order` of the first point are given, the remaining points are filled. family: family of
+    arms that contains all p. hulls: regions that contain the spectra of all arms of the family. known:
+    output, the number from `all_right_of_line` at each point, (points,).
     """
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)

@@ -1,8 +1,9 @@
-"""Spectra of arms at the points of a segment of a sweep. If few followed modes leave many points without a
-proof, more modes are followed to these points.
+"""Spectra of arms at the points of a stretch. If few followed modes leave many points without a proof, more
+modes are followed to these points.
 
 A count at a point costs as much as following ten further modes to the point. More modes prove more points, up
-to a value of p beyond which the hull is too wide; bisection with single arms finds this value.
+to a value of the path variable beyond which the hull is too wide; bisection with single arms finds this
+value.
 """
 
 import numpy as np
@@ -19,8 +20,8 @@ from .prediction import slice_track
 
 
 def follow_stretch_of_arms(path: Path, p: Array, request: SpectrumRequest) -> FollowedPoints | None:
-    """Spectra of the arms at p, (n,), from the first up to the last point reached; None if no point is
-    reached."""
+    """Spectra of the arms at the path variables p, (n,), from the first point to the last point reached; None
+    if no point is reached."""
     found = follow_interval(path, p, request)
     if found is None:
         return None

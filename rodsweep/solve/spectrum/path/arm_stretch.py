@@ -1,9 +1,10 @@
 """Spectra of arms at neighbouring values of one parameter: eigenvalues are followed, and proved complete at
 each arm.
 
-Krylov-Schur solves the first arm for more modes than wanted, because known eigenvalues to the left of the
-line make the proof easy. The propagators of all arms are interpolated from the propagators of a few arms
-(`rodsweep.determinant.arm.family`), on an interval short enough for smooth polynomials.
+Krylov-Schur solves the first arm for more modes than wanted: a proof that all eigenvalues to the right of a
+line are known is easier with known eigenvalues to the left of the line. The propagators of all arms are
+interpolated from the propagators of a few arms (`rodsweep.determinant.arm.family`), on an interval short
+enough for smooth polynomials.
 """
 
 from dataclasses import replace
@@ -99,14 +100,15 @@ def _is_better(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
 
 
 def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, further: int) -> bool:
-    """Whether following `further` additional modes would prove completeness at the middle one of the points
-    without a proof."""
+    """Whether following `further` additional modes would prove completeness at the middle point among the
+    points without a proof."""
     left = np.flatnonzero(found.proved_modes < request.modes)
     return proves_point(path, found, float(found.p[left[len(left) // 2]]), request, further)
 
 
 def proves_point(path: Path, found: ArmInterval, p: float, request: SpectrumRequest, further: int) -> bool:
-    """Whether following `further` modes would prove the arm at p, inside the interval `found`."""
+    """Whether the wanted modes at path variable p, inside the interval `found`, would be proved complete if
+    `further` modes were followed in addition."""
     roots = _roots(path, p, request, further)
     if roots is None or len(roots.w) < request.modes:
         return False
@@ -121,7 +123,8 @@ def proves_point(path: Path, found: ArmInterval, p: float, request: SpectrumRequ
 def follow_with(
     path: Path, p: Array, request: SpectrumRequest, further: int, before: ArmInterval | None
 ) -> ArmInterval | None:
-    """As `follow_interval` of p, (n,), with exactly `further` modes in addition to the wanted modes."""
+    """The first points of p, (n,), that are reached as in `follow_interval`, with exactly `further` modes
+    followed in addition to the wanted modes; None if the first point fails."""
     first = _eigenvalues_of_previous_interval(before, float(p[0]), request, further)
     if first is None:
         first = first_eigenvalues(path, float(p[0]), request, further)
@@ -156,7 +159,7 @@ def follow_with(
 
 
 def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmFamily, PathHulls] | None:
-    """(family of the arms at all p, (n,); hulls that contain their spectra), or None.
+    """(family of the arms at all p, (n,); hulls that contain the spectra of these arms), or None.
 
     first: eigenvalues at the first point, (m,), in descending order. modes: number of requested modes. None
     if all p are equal, if the arms are not smooth in p, or if no elements resolve an arm.
@@ -188,8 +191,8 @@ def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[
 def _eigenvalues_of_previous_interval(
     before: ArmInterval | None, p: float, request: SpectrumRequest, further: int
 ) -> Complex | None:
-    """Eigenvalues, (m,), at p, the last point of the previous interval; None unless all points of this
-    interval are proved complete.
+    """Eigenvalues, (m,), at p, from the previous interval `before`; None unless p is the last point of this
+    interval, `further` modes were followed there, and all its points are proved complete.
     """
     if before is None or before.further_modes != further or before.p[-1] != p:
         return None
@@ -207,8 +210,8 @@ def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: i
 
 
 def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Roots | None:
-    """The leading eigenvalues at p, without a proof: the wanted modes and `further` more modes; None if the
-    solve fails.
+    """The leading eigenvalues at path variable p, without a proof: the wanted modes and `further` more modes;
+    None if the solve fails.
     """
     try:
         modes = request.modes + further
@@ -222,8 +225,8 @@ def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Root
 
 
 def count_at(path: Path, found: ArmInterval, p: float, modes: int, here: Track) -> int:
-    """Number of eigenvalues at p that are confirmed by a count to be all eigenvalues to the right of a line;
-    0 without a confirmation.
+    """Number of eigenvalues at path variable p that are confirmed by a count to be all eigenvalues to the
+    right of a line; 0 if no count confirms this.
 
     found: an interval that contains p. here: a track with the eigenvalues at p only.
     """

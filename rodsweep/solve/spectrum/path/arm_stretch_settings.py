@@ -10,11 +10,12 @@ class ArmStretchSettings:
     """
 
     further_modes: tuple[int, ...] = (3, 9)
-    """Numbers of modes followed in addition to the wanted modes. The second number is tried if the first
-    proves too few points."""
+    """Numbers of modes followed in addition to the wanted modes. The second number is tried if, with the
+    first number, fewer than `min_proved_fraction` of the points are proved or too few growing modes are
+    followed."""
     min_proved_fraction: float = 0.5
-    """If a smaller fraction of the points is proved complete, more modes are followed, provided that more
-    modes prove a further point."""
+    """More modes are followed if the fraction of the points that are proved complete is below this, provided
+    that more modes prove a further point."""
     further_modes_for_unproved: tuple[int, ...] = (9, 20)
     """Numbers of modes, in addition to the wanted modes, that are tried one after the other at points without
     a proof."""
@@ -22,16 +23,16 @@ class ArmStretchSettings:
     """Minimum number of points without a proof for which more modes are followed; fewer points are counted
     one by one, which costs less than a new family."""
     unproved_parts: int = 16
-    """The range of points that more modes prove is located to one part in this number of all points without
-    a proof."""
+    """The range of points that more modes prove is located by bisection until its end is known to within
+    1/`unproved_parts` of the number of points without a proof."""
     hull_arms_for_unproved: int = 49
     """Number of arms at which hulls are computed again, if at least `min_unproved_points` points have no
     proof."""
     headroom: float = 2.0
     """The propagators of a new family are valid up to W = headroom * (largest |w| at the first point)."""
     reused_headroom: float = 1.25
-    """The family of the previous interval is used again if its W is at least this multiple of the largest
-    |w|."""
+    """The family of the previous interval is used again if its W is at least this multiple of the largest |w|
+    at the first point of the new interval."""
     max_points_growth: int = 2
     """Maximum number of points of a new family, divided by the number of points reached with the previous
     family."""
@@ -42,8 +43,8 @@ class ArmStretchSettings:
     modes_beyond_growing: int = 2
     """Number of modes that a search for crossings requests in addition to the growing modes."""
     steps_from_nearest: tuple[int, ...] = (1, 4)
-    """To follow eigenvalues from the nearest point of the path to p, these numbers of equal steps are tried
-    in turn."""
+    """Eigenvalues at a path variable p are followed from the nearest solved point in this number of equal
+    steps; the numbers are tried in turn."""
     hull_arms: int = 13
     """Number of arms of an interval at which hulls are computed; the hulls of all other arms are
     interpolated."""

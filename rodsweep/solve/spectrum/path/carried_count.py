@@ -1,8 +1,9 @@
 """A count of eigenvalues carried along a path, as long as a proof with a moving line succeeds.
 
 At the first point the leading `known` followed eigenvalues are proved to be all eigenvalues to the right of a
-line. If no eigenvalue crosses a line that moves to another point within a gap between followed eigenvalues
-(`rodsweep.determinant.moving_line`), the number to the right of the line is the same at every point between.
+line. A line in a gap between followed eigenvalues is moved, with the gap, to another point. If no eigenvalue
+crosses the moving line (`rodsweep.determinant.moving_line`), the number of eigenvalues to the right of the
+line is the same at every point between.
 """
 
 from dataclasses import dataclass
@@ -24,8 +25,8 @@ class CarriedCountSettings(CompiledSettings):
     """Settings for a count that is carried from point to point of a path."""
 
     base_rectangles: int = 60
-    """The number of rectangles of one proof is at most this number plus `rectangles_per_point` times the
-    number of points covered."""
+    """The number of rectangles (`moving_line`) of one proof is at most this number plus
+    `rectangles_per_point` times the number of points covered."""
     rectangles_per_point: int = 20
     """Number of rectangles allowed in a proof for each point covered: a new count at a point costs as much as
     twenty rectangles."""
@@ -34,7 +35,7 @@ class CarriedCountSettings(CompiledSettings):
     is taken. Relative half-width: half-width divided by the distance of the gap's middle from the imaginary
     axis."""
     min_gap: float = 1e-6
-    """No line is drawn in a gap with a smaller relative half-width."""
+    """No line is drawn in a gap whose relative half-width, as in `wide_gap`, is less than this."""
 
 
 CARRIED_COUNT = CarriedCountSettings()
@@ -92,8 +93,8 @@ def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[floa
 
 @compiled
 def _gap_between(track: Track, ends: tuple[int, int], modes: int, known: int, p: Array) -> int:
-    """Number of eigenvalues to the right of the widest gap that stays open between the points `ends`; 0
-    without such a gap.
+    """Number of eigenvalues to the right of the widest gap that stays open between the points `ends`; 0 if no
+    gap stays open.
 
     The number is at least `modes` and at most `known`.
     """
@@ -120,8 +121,9 @@ def carry_count(
 ) -> int:
     """Index of the last point to which the count at the first point can be carried.
 
-    coefficients: (points, 4). p: (points,). known: number of leading eigenvalues that are all eigenvalues to
-    the right of a line, (points,); given at the first point, filled up to the last point reached.
+    coefficients: (F, nu, c2, gamma3) at each point, (points, 4). p: path variables, (points,). direction:
+    d(F, nu, c2, gamma3)/dp. known: number of leading eigenvalues that are all eigenvalues to the right of a
+    line, (points,); given at the first point, filled up to the last point reached.
     """
     i = 0
     last = len(p) - 1

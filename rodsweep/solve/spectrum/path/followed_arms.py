@@ -1,5 +1,5 @@
 """Leading eigenvalues of arms along a path, followed once from point to point and then available at every
-p."""
+path variable p."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -19,10 +19,11 @@ from .prediction import KnownRoots, Track, slice_track, start_track
 
 
 class FollowedArms:
-    """Leading eigenvalues of arms along a path; eigenvalues at any p are followed from the nearest point.
+    """Leading eigenvalues of arms along a path; eigenvalues at any path variable p are followed from the
+    nearest point.
 
-    Points are followed only as far as the largest requested p. If following fails at a point, a new interval
-    starts at a later point.
+    Eigenvalues are followed from point to point only as far as the largest requested p. If following fails at
+    a point, a new interval starts at a later point.
     """
 
     def __init__(self, path: Path, p: Array, modes: int):
@@ -73,7 +74,7 @@ class FollowedArms:
         return next((spectrum for spectrum in found if spectrum is not None), None)
 
     def roots(self, p: float) -> KnownRoots | None:
-        """Eigenvalues followed to p, not proved complete; None if following fails."""
+        """Eigenvalues followed to path variable p, not proved complete; None if following fails."""
         self._follow_to(p)
         for one in self.intervals:
             if one.p.min() <= p <= one.p.max():
@@ -131,7 +132,7 @@ class FollowedArms:
 
 
 class ProvedEigenvalues(NamedTuple):
-    """Eigenvalues at one p of a path; the leading `proved_modes` are proved complete.
+    """Eigenvalues at one path variable p; the leading `proved_modes` eigenvalues are proved complete.
 
     max_modes: largest number of modes whose proof was tried.
     """

@@ -1,7 +1,7 @@
 """The leading eigenvalue of a rod, followed from a neighbouring rod without a mesh.
 
-Newton's method on D refines the eigenvalue of the neighbouring rod, and a count of eigenvalues proves that
-the refined eigenvalue leads.
+Newton's method on the determinant D refines the eigenvalue of the neighbouring rod, and a count of
+eigenvalues, or for an arm a proof without a count, shows that the refined eigenvalue leads.
 """
 
 from collections.abc import Iterator
@@ -40,9 +40,9 @@ class LeadingEigenvalue(NamedTuple):
 def follow_leading_eigenvalue(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | None:
     """The leading eigenvalue of `rod`, followed from a neighbouring rod; None unless it is proved to lead.
 
-    near: eigenvalues of the neighbouring rod with Im w >= 0, (n,), the leading eigenvalue first. A uniform
-    rod uses only the first; the proof for an arm that varies along its length needs several. accuracy:
-    largest relative error.
+    near: eigenvalues of the neighbouring rod with Im w >= 0, (n,), the leading eigenvalue first. For a
+    uniform rod only the first eigenvalue is used; the proof for an arm that varies along its length needs
+    several eigenvalues. accuracy: largest relative error.
     """
     if rod.standard:
         return _of_uniform(rod, complex(near[0]), accuracy)
@@ -57,7 +57,7 @@ def follow_leading_eigenvalue(rod: Rod, near: Complex, accuracy: float) -> Leadi
 
 
 def _of_uniform(rod: Rod, near: complex, accuracy: float) -> LeadingEigenvalue | None:
-    """As `follow_leading_eigenvalue`, for a uniform rod of linear material.
+    """The result of `follow_leading_eigenvalue` for a uniform rod of linear material.
 
     near: leading eigenvalue of the neighbouring rod.
     """
@@ -71,7 +71,8 @@ def _of_uniform(rod: Rod, near: complex, accuracy: float) -> LeadingEigenvalue |
 
 
 def _of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | None:
-    """As `follow_leading_eigenvalue`, for an arm that is not uniform.
+    """The result of `follow_leading_eigenvalue` for an arm that is not uniform; raises FloatingPointError if
+    D needs too many elements.
 
     near: eigenvalues of the neighbouring arm, (n,).
     """

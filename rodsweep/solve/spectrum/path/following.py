@@ -1,4 +1,5 @@
-"""Eigenvalues followed along the points of a path: predicted, then refined by Newton's method on D.
+"""Eigenvalues followed along the points of a path: predicted, then refined by Newton's method on the
+determinant D.
 
 Each followed eigenvalue is a root of D within its error, and no two are the same root. Following proves
 neither that no eigenvalue is missing nor that no two eigenvalues have been exchanged; a count proves both.
@@ -55,7 +56,7 @@ class CorrectedEigenvalue(NamedTuple):
 def correct_eigenvalue(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> CorrectedEigenvalue:
-    """One Newton step on D from w, for a uniform rod; a real w stays real. direction: d(F, nu, c2,
+    """One Newton step for a root of D from w, for a uniform rod; a real w stays real. direction: d(F, nu, c2,
     gamma3)/dp.
     """
     D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
@@ -64,7 +65,7 @@ def correct_eigenvalue(
 
 @compiled
 def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, rounding: float) -> CorrectedEigenvalue:
-    """One Newton step from w, given D and its derivatives by w and p; a real w stays real.
+    """One Newton step from w, given D and its derivatives with respect to w and p; a real w stays real.
 
     rounding: rounding error of D, on the same scale as D. If D_w vanishes, w is returned unchanged, with step
     and rounding error inf.
@@ -199,12 +200,12 @@ def _correct_all(
 def follow_eigenvalues(
     track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int
 ) -> int:
-    """Follows eigenvalues of uniform rods along the points p, (points,), and returns the number of points
-    reached.
+    """Follows eigenvalues of uniform rods along the path variables p, (points,), and returns the number of
+    points reached.
 
-    track: `w` and `order` of the first point are given, the remaining points are filled. coefficients:
-    (points, 4). direction: d(F, nu, c2, gamma3)/dp. The leading `modes` eigenvalues converge to rounding
-    error.
+    track: `w` and `order` of the first point are given, the remaining points are filled. coefficients: (F,
+    nu, c2, gamma3) at each point, (points, 4). direction: d(F, nu, c2, gamma3)/dp. The leading `modes`
+    eigenvalues converge to rounding error.
     """
     guess = track.w[0].copy()
     decided = np.empty(len(guess), np.int64)

@@ -1,9 +1,10 @@
 """Prediction of eigenvalues at the next point of a path, from values and slopes at the last two points.
 
 A cubic Hermite polynomial extrapolates each single real eigenvalue. Two real eigenvalues that meet and become
-a complex pair are not smooth functions of p. Half their sum and the square of half their difference are
-smooth, before and after the meeting, and are extrapolated instead. Near the meeting, the quadratic Taylor
-polynomial of D about half the sum shows whether the two eigenvalues are real or complex.
+a complex pair are not smooth functions of the path variable p. Half their sum and the square of half their
+difference are smooth, before and after the meeting, and are extrapolated instead. Near the meeting, the
+quadratic Taylor polynomial of the determinant D about half the sum shows whether the two eigenvalues are real
+or complex.
 """
 
 import cmath
@@ -26,8 +27,8 @@ class EigenvaluePredictionSettings(CompiledSettings):
     """Two real eigenvalues are extrapolated as a pair if, by their slopes, they meet within this many steps
     of the path, ahead or behind."""
     undecided_fraction: float = 0.25
-    """If the predicted squared half difference is below this fraction of its value at the last point, D is
-    evaluated to find whether the two eigenvalues are real or complex."""
+    """If the predicted squared half difference is below this fraction of its value at the last point, the
+    determinant D is evaluated to find whether the two eigenvalues are real or complex."""
 
 
 EIGENVALUE_PREDICTION = EigenvaluePredictionSettings()
@@ -126,8 +127,8 @@ def extrapolate_hermite(
 
 @compiled
 def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, float, float, float]:
-    """(half the sum of eigenvalues k and j, squared half difference, slope of the former, slope of the
-    latter)."""
+    """(half the sum of eigenvalues k and j, squared half difference, slope of the half sum, slope of the
+    squared half difference)."""
     half = (w[k] - w[j]) / 2
     slope_of_half = (slope[k] - slope[j]) / 2
     middle = (w[k] + w[j]).real / 2

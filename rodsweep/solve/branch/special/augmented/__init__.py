@@ -1,2 +1,2 @@
-"""Minimally augmented systems: cycles and their test functions, corrected with the matrix factors of a nearby
-cycle."""
+"""Minimally augmented systems: a cycle near a known cycle is corrected together with a test function, using
+the matrix factors of the known cycle."""

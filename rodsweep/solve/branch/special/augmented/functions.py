@@ -40,8 +40,9 @@ class AugmentedSettings:
     max_correction_ratio: float = 0.3
     """A new matrix is assembled if the ratio of the sizes of successive corrections exceeds this number."""
     rounding_correction: float = 1e-8
-    """The iteration stops if a correction has at most this relative size and is hardly smaller than the
-    previous correction: the correction is then rounding error."""
+    """The iteration stops if a correction has at most this relative size but is not much smaller than the
+    previous correction (ratio above `max_correction_ratio`; above 1/2 for a test function at a fixed cycle):
+    the correction is then rounding error."""
     max_corrections: int = 30
     """Maximum number of corrections of one cycle."""
     inverse_shift: float = 1e-9
@@ -56,8 +57,8 @@ AUGMENTED = AugmentedSettings()
 
 
 class FoldFunction:
-    """Test function of folds: derivative of the scaled parameter coordinate by the arc length in the
-    direction `border`, (3,). small: whether the derivative is divided by the deflection; without this
+    """Test function of folds: derivative of the scaled parameter coordinate with respect to the arc length in
+    the direction `border`, (3,). small: whether the derivative is divided by the deflection; without this
     division the derivative vanishes at a Hopf point too."""
 
     def __init__(self, matrix: BorderedMatrix, border: Array, small: bool) -> None:
