@@ -63,7 +63,7 @@ class SolvedPoints:
     history: Mapping[str, Any]
     """Attributes with the times, the host and the PETSc options of the solve."""
     messages: Sequence[str]
-    """Message of each point; "" for points solved together in segments of the sweep."""
+    """Message of each point; "" for points solved together in a stretch."""
 
     @cached_property
     def dataset(self) -> xr.Dataset:

@@ -54,7 +54,8 @@ def describe_job(job: Job) -> None:
 
 
 def _arm_lines(job: Job) -> list[str]:
-    """Lines on an arm: quantities, parameters, unit of time, and the validity of the model at rest."""
+    """Lines on an arm: quantities, warnings on walls and plane, parameters, unit of time, points without a
+    rod, validity of the model at rest."""
     arm = job.config.parameters.arm
     assert arm is not None
     columns = job.points.by_name | {v.name: values for v, values in job.quantities if v.name == "tau2"}

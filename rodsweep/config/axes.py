@@ -16,7 +16,7 @@ BEYOND_LINEAR = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEA
 REQUIRED = tuple(p.name for p in PARAMETERS.values() if p.default is None and p.name != "F")
 """Names of the parameters without a default, except F."""
 DEFAULTS = {p.name: p.default for p in PARAMETERS.values() if p.default is not None and not p.optional}
-"""Default of each parameter that has one, by name, without the optional parameters."""
+"""Default value, by name, of each parameter with a default, without the optional parameters."""
 
 
 def _section(base: type[StrictSection], names: tuple[str, ...], kind: Any) -> Any:

@@ -48,8 +48,8 @@ def _when(a: dict[str, Any]) -> str:
 
 
 def rank_lines(a: dict[str, Any], noun: str) -> list[str]:
-    """Lines about the MPI ranks of the last run: fraction of the time spent solving, and number of points. a:
-    attributes of the result file. noun: noun for a point.
+    """Lines about the last run: ranks, hosts, points, shard, reason of a stop, and fraction of the time spent
+    solving; empty if not stored. a: attributes of the result file. noun: noun for a point.
     """
     if RANK_SHARES[0] not in a:
         return []

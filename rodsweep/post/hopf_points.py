@@ -91,8 +91,8 @@ class StoredChanges:
             self._read(v, name, "change", np.ones(len(v["change_kind"]), bool))
 
     def _read(self, v: Mapping[str, np.ndarray], name: str, prefix: str, along: NDArray[np.bool_]) -> None:
-        """Reads the changes selected by the mask `along` from the variables whose names start with `prefix`.
-        name: parameter along which the changes are located.
+        """Reads the thresholds selected by the mask `along` from the variables whose names start with
+        `prefix`. name: parameter along which the changes are located.
         """
         rods = np.stack([v[f"{prefix}_{other}"] for other in self.others], axis=-1)
         fields = (name, "error", "frequency", "kind")
@@ -110,8 +110,7 @@ class StoredChanges:
             self.by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
 
     def up_to(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
-        """Changes on a line of points, and at parameter values below the line down to the start of the
-        search.
+        """Changes from the start of the search to the largest parameter value of a line of points.
         """
         return sorted({*self.on(line), *self._stored(line, -inf)}, key=sort_position)
 

@@ -38,12 +38,14 @@ ARM_SPECTRUM_MS = 4.0
 """Time to evaluate D and certify one spectrum of an arm that is not uniform, in ms: median over 40 random
 arms."""
 FIRST_POINT_COST = 2.0
-"""Time of the first point of a segment of the sweep, divided by the time of a point that is solved alone."""
+"""Time of the first point of a stretch, divided by the time of a point that is solved alone."""
 FOLLOWED_MS = 0.006
-"""Time per point of a segment, in which eigenvalues are continued from a neighbouring point, in ms."""
+"""Time per point of a stretch, in which eigenvalues are continued from a neighbouring point, in ms."""
 FOLLOWED_ARM_MS = 0.25
-"""Time per point, including the first point, of a stretch of arms that are not uniform, in ms: median over 30
+
+"""Time per point, including the first point, of a stretch of arms that are not uniform, in ms: median over 24
 random arms."""
+
 SEARCH_MS = 24.0
 """Time to search one rod for crossings along one parameter, in ms: mean over 72 rods, of which a few take
 four times as long."""
@@ -162,8 +164,7 @@ def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> E
 
 
 def estimate_followed(alone: Estimate, stretches: Stretches, standard: bool) -> Estimate:
-    """Estimated cost of spectra followed along segments of the sweep, from the cost `alone` of solving every
-    point alone.
+    """Estimated cost of spectra followed along stretches, from the cost `alone` of solving every point alone.
 
     standard: whether all rods are uniform and of linear material.
     """

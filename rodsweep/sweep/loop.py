@@ -22,7 +22,7 @@ Indices = int | NDArray[np.int64]
 
 
 class UnitSolver(Protocol):
-    """Function that solves a unit, that is, a point, a chain of points or a segment of the sweep.
+    """Function that solves a unit, that is, a point, a chain or a stretch of points.
 
     Yields (flat index, result) of each point of a chain, or once (flat indices, results) of all points of a
     segment.

@@ -80,7 +80,7 @@ class LimitCycleTask(Task):
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
 
     def constants(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[Filled, ...]:
-        """Hopf points of the straight rod on the lines through the points."""
+        """Hopf points of the straight rod on the lines of points."""
         lines = hopf_lines_of(self.points)
         if lines:
             require_solvers()

@@ -86,8 +86,8 @@ class Solver:
     """Chains of points, each started from the solution of the previous point; used instead of `solve`. None
     if there are no chains."""
     stretched: tuple[Stretches, SolveStretch] | None = None
-    """(segments of the sweep, function that solves the points of a segment at their flat indices), used
-    instead of `solve`. None if every point is solved alone."""
+    """(stretches of the sweep, function that solves the points of a stretch at their flat indices), used
+    instead of `solve`; None if no points are solved together."""
 
     def with_wrapper(
         self, around: SolveWrapper, together: SolveStretch | None = None, **changed: Any
@@ -95,7 +95,7 @@ class Solver:
         """A copy of the solver with the solve of every point wrapped by `around`, and with the fields in
         `changed`.
 
-        together: new function that solves a segment of the sweep, if the solver has segments.
+        together: new function that solves a stretch, if the solver has stretches.
         """
         chained = self.chained
         stretched = self.stretched
@@ -135,7 +135,7 @@ class Task(ABC):
 
     @property
     def stretches(self) -> Stretches | None:
-        """Segments of neighbouring points that are solved together; None if every point is solved alone."""
+        """Stretches of points that are solved together; None if there are none."""
         return None
 
     def coordinates(self) -> dict[str, np.ndarray]:

@@ -52,8 +52,7 @@ class SpectrumTask(CertifiedTask):
 
     @property
     def stretches(self) -> Stretches | None:
-        """Segments of neighbouring points along which eigenvalues are followed; None if eigenvalues are not
-        followed.
+        """Stretches of points along which eigenvalues are followed; None if eigenvalues are not followed.
         """
         if not self.config.follows:
             return None
@@ -164,8 +163,8 @@ class SpectrumTask(CertifiedTask):
         )
 
     def _together(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> StretchResult:
-        """Results for the points of a segment of the sweep, along which eigenvalues are followed. indices:
-        flat indices, (n,).
+        """Results for the points of a stretch, along which eigenvalues are followed. indices: flat indices,
+        (n,).
         """
         from ..determinant.parameter_path import Path
         from ..solve.spectrum.path.stretch import Stretch, solve_stretch

@@ -133,8 +133,8 @@ def _shortening(arm: SlenderArm, F: float) -> float:
 
 
 def stiffening(strain: float) -> float:
-    """Relative increase of the tangent modulus E (1 + 2/h^3)/3 of neo-Hookean rubber over E, at the stretch h
-    = 1 - `strain`.
+    """Relative increase of the tangent modulus E (1 + 2/h^3)/3 of neo-Hookean rubber over E, at the stretch
+    ratio h = 1 - `strain`.
     """
     return float(2 * ((1 - strain) ** -3 - 1) / 3)
 

@@ -14,8 +14,8 @@ from .validity import Assessment
 
 
 def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
-    """Sentences of the verdict on an arm, over the range of drag: flutter in the plane with the smaller
-    flutter load, then in the second plane.
+    """Sentences of the verdict on an arm, over the range of drag: whether the model applies, flutter in the
+    plane with the smaller flutter load, then in the second plane.
     """
     plane = planes.first
     if plane.found.failures:
@@ -32,7 +32,7 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
 
 
 def _verdict(plane: PlaneOfMotion) -> list[str]:
-    """Sentences on flutter of an arm for which no neglected effect exceeds its limit."""
+    """Sentences on flutter and return to stability of an arm to which the model applies."""
     arm = plane.arm
     found = plane.found
     load = Load(plane.arm)

@@ -1,5 +1,5 @@
 """Solution of the points of a run, in work items shared among the ranks; every rank writes its results into a
-journal. A work item is a point, a chain of points or a segment of the sweep."""
+journal. A work item is a point, a chain or a stretch of points."""
 
 import socket
 from collections.abc import Callable, Iterable
@@ -107,8 +107,8 @@ class PointWork:
     def _solve_unit(
         self, missing: IndexSet, directory: Path
     ) -> Callable[[int], Iterable[tuple[Indices, Any]]]:
-        """Function from the number of a work item (a point, a chain or a segment of the sweep) to its
-        results. missing: flat indices of all missing points. directory: journal directory.
+        """Function from the number of a work item (a point, a chain or a stretch) to its results. missing:
+        flat indices of all missing points. directory: journal directory.
         """
         solver = self.solver
         if solver.stretched:

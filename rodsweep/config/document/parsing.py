@@ -101,7 +101,8 @@ class _DataOnly(Parser):
 
 
 def _refuse_scalar(event: ScalarEvent) -> None:
-    """Raises InputError for a YAML scalar that can be neither a key nor a value of a config."""
+    """Raises InputError for a YAML scalar that is too long or not printable, a merge key, or an overflowing
+    number."""
     text = event.value
     if len(text) > MAX_TEXT_LENGTH:
         raise InputError(f"{short_repr(text)} has {len(text)} characters, more than any value of a config")

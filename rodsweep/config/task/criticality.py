@@ -17,7 +17,7 @@ class CriticalityOptions(StrictSection):
 
     F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0
     """Largest force of the search for Hopf points. If a smaller force crushes the rod, the search ends just
-    below this smaller force."""
+    below that crushing force."""
     crossings: Crossings = 16
     """Maximum number of stored Hopf points."""
     certify: bool = True

@@ -1,4 +1,5 @@
-"""Picture of the bifurcation diagram: largest tip deflection of stable and unstable cycles over the load."""
+"""Picture of the bifurcation diagram: largest tip deflection of stable and unstable cycles against the
+load."""
 
 from math import nan
 from typing import Any
@@ -32,8 +33,8 @@ STABILITY_DASHES = {1: "solid", 0: "dashed", -1: "dotted"}
 
 
 class BranchPicture:
-    """Branches of cycles and of the straight rod over the load. Filled marks are Hopf points, folds and torus
-    points.
+    """Branches of cycles and of the straight rod against the load. Filled marks are Hopf points, folds and
+    torus points.
     """
 
     def __init__(self) -> None:

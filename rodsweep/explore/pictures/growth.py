@@ -1,4 +1,4 @@
-"""Picture of the growth rates of the leading modes over the load, with the thresholds of stability."""
+"""Picture of the growth rates of the leading modes against the load, with the thresholds of stability."""
 
 from typing import Any
 
@@ -37,7 +37,7 @@ THRESHOLD_LOOKS = {
 
 
 class GrowthPicture:
-    """Growth rates of the leading modes over the load. Dotted vertical lines mark thresholds; the thick
+    """Growth rates of the leading modes against the load. Dotted vertical lines mark thresholds; the thick
     vertical line marks the load of the page.
     """
 

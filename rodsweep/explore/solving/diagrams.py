@@ -18,8 +18,8 @@ Dataset = Any
 ROW_COUNT = 20
 """Number of values of the second parameter, for uniform rods of linear material."""
 SLOW_ROW_COUNT = 8
-"""Number of values of the second parameter for other rods, for which each value takes seconds, and for
-diagrams with curves of cycles."""
+"""Number of values of the second parameter for rods that are not uniform or not of linear material, for which
+each value takes seconds, and for diagrams with curves of cycles."""
 LOAD_COUNT = 121
 """Number of load values. Additional values are cheap: the stability at all loads of a row follows from the
 thresholds on this row."""

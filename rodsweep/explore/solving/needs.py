@@ -1,6 +1,8 @@
-"""When each kind of question is sent to a solver, and on which part of the page's state the answer depends.
+"""When each kind of question is sent to a solver, and on what its answer depends: part of the page's state,
+and the dragged tip.
 
-A question is not sent if this part of the state has not changed since the last question of the same kind.
+A question is not sent again while nothing on which its answer depends has changed, unless the user presses a
+button.
 """
 
 from dataclasses import replace

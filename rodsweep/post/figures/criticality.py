@@ -52,8 +52,8 @@ LINEAR_FRACTION = 0.1
 
 
 def draw_criticality(request: FigureRequest) -> str:
-    """Draws a map of the first Hopf points over two parameters, or the coefficients a and Re c over one
-    parameter, or else predicted amplitudes over F; returns a sentence.
+    """Draws a map of the first Hopf points over two parameters, or the coefficients a and Re c against one
+    parameter, or else predicted amplitudes against F; returns a sentence.
     """
     view = request.only_view()
     style.require(view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form")
@@ -68,7 +68,7 @@ def draw_criticality(request: FigureRequest) -> str:
 
 
 def _along(view: View, name: str) -> Figure:
-    """Figure of the amplitude coefficient a (upper panel) and of Re c (lower panel) over the parameter
+    """Figure of the amplitude coefficient a (upper panel) and of Re c (lower panel) against the parameter
     `name`. Markers show the criticality.
     """
     x = view.point_columns[name]

@@ -1,4 +1,4 @@
-"""Figures of the task `thresholds`: lines over parameters, maps over two parameters, or bars for single
+"""Figures of the task `thresholds`: curves against parameters, maps over two parameters, or bars for single
 rods.
 """
 
@@ -62,8 +62,8 @@ def draw_thresholds(request: FigureRequest) -> str:
 
 
 def _of_files(request: FigureRequest) -> str:
-    """Draws the thresholds of several files over the parameter that varies in all files; returns a sentence.
-    Raises InputError if the files do not vary in one common parameter only.
+    """Draws the thresholds of several files against the parameter that varies in all files; returns a
+    sentence. Raises InputError if the files do not vary in one common parameter only.
     """
     request.refuse_points(request.views[0], ("lines",))
     request.check_output()

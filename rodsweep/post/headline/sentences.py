@@ -28,7 +28,8 @@ class Headline:
 
 
 def eigenvalue_sentence(rod: OneRod) -> str:
-    """Sentence on the number of unstable modes and the leading eigenvalue."""
+    """Sentence on the number of unstable modes and the leading eigenvalue; empty if no eigenvalue is
+    stored."""
     count = rod.count("unstable_count")
     stability = "the straight rod is stable" if count == 0 else f"{counted(count or 0, 'unstable mode')}"
     stability = "number of unstable modes not known" if count is None else stability
@@ -40,7 +41,7 @@ def eigenvalue_sentence(rod: OneRod) -> str:
 
 
 def threshold_sentence(rod: OneRod) -> str:
-    """Sentence on the first force of each kind of threshold."""
+    """Sentence on the first force of each kind of threshold; empty if the count of crossings is unknown."""
     if rod.count("crossing_count") is None:
         return ""
     verbs = {"onset": "oscillates from", "hopf": "flutters from", "restabilization": "stable again from"}
@@ -55,7 +56,8 @@ def threshold_sentence(rod: OneRod) -> str:
 
 
 def hopf_sentence(rod: OneRod) -> str:
-    """Sentence on the numbers of supercritical, subcritical and undecided Hopf points."""
+    """Sentence on the numbers of supercritical, subcritical and undecided Hopf points; empty if the count is
+    unknown."""
     count = rod.count("crossing_count")
     if count is None:
         return ""

@@ -15,7 +15,7 @@ SUBSCRIPT = re.compile(r"_(?:\{([^{}]*)\}|(.))")
 POWER = re.compile(r"\^(?:\{([^{}]*)\}|(\\?\w+|.))")
 """Pattern for a TeX superscript."""
 COMMAND = re.compile(r"\\([A-Za-z]+|.)")
-"""Pattern for any other TeX command."""
+"""Pattern for a TeX command that has no pattern of its own."""
 TEX_SIGNS = {
     "times": "×",
     "infty": "∞",

@@ -25,8 +25,8 @@ END_SUFFIXES = ("start", "end")
 
 
 def curve_lines(view: View, line: str, row: str) -> list[str]:
-    """Lines about all curves of a diagram. line: parameter that varies along a row. row: parameter that is
-    constant on a row.
+    """Lines about folds, generalised Hopf points and their curves, and curves of folds and torus points of
+    cycles. line: parameter that varies along a row. row: parameter that is constant on a row.
     """
     v = view.variables
     lines = fold_lines(view, line, row)
@@ -62,8 +62,8 @@ def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
 
 
 def agreement_lines(view: View, line: str) -> list[str]:
-    """Lines on the largest distance, along the parameter `line`, between the curves and the points located on
-    rows.
+    """Sentences on the numbers of curves by kind, their largest distance, along the parameter `line`, from
+    the points located on rows, and the number of points on no curve.
     """
     v = view.variables
     hopf = len(np.unique(v["curve_number"][v["curve_kind"] == 1]))
@@ -134,7 +134,8 @@ def _place(view: View, what: str, i: int, names: tuple[str, str]) -> str:
 
 
 def criticality_lines(view: View) -> list[str]:
-    """Line about the numbers of supercritical and subcritical points on the Hopf curves."""
+    """List with a line on gamma1 and on the numbers of points of the Hopf curves by criticality, including
+    undecided and unknown."""
     v = view.variables
     side = v["curve_criticality"][v["curve_kind"] == 1]
     kinds = {
@@ -152,8 +153,8 @@ def criticality_lines(view: View) -> list[str]:
 
 
 def bautin_lines(view: View, line: str, row: str) -> list[str]:
-    """Lines about generalised Hopf points, at which the criticality changes. line, row: as in
-    `curve_lines`.
+    """Lines about generalised Hopf points, and on the number of changes of criticality that were not located.
+    line, row: as in `curve_lines`.
     """
     v = view.variables
     lines = [

@@ -90,7 +90,7 @@ def _stability(view: View) -> tuple[list[str], list[str]]:
 
 
 def _proof_lines(view: View) -> list[str]:
-    """List with a line on whether the list of Hopf points is proved complete; empty if no line of points was
+    """Sentence, in a list, on whether the Hopf points are proved complete; empty if no line of points was
     searched.
     """
     v = view.variables
@@ -102,8 +102,8 @@ def _proof_lines(view: View) -> list[str]:
 
 
 def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:
-    """Line on the stability of the only cycle in a file. v: variables of the file, (1, ...) each. stable:
-    whether the status is "cycle".
+    """Line on the stability of the only cycle in a file, or that no multiplier is known. v: variables of the
+    file, (1, ...) each. stable: whether the status is "cycle".
     """
     if np.isnan(v["multiplier"]).all():
         return "the motion in time settles on the cycle; no Floquet multiplier is computed"
@@ -150,8 +150,8 @@ def _at(some: np.ndarray, done: np.ndarray) -> str:
 
 
 def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
-    """Lines about further properties of the cycles. v: variables of the file. beats: mask of the points with
-    a cycle.
+    """Lines on frequency, period in tau1, extrema of the tip, power, multiplier, least stretch of the cycles.
+    v: variables of the file. beats: mask of the points with a cycle.
     """
     ratio = v["frequency"][beats] / v["linear_frequency"][beats]
     times = span(ratio, ratio * v["period_error"][beats])

@@ -42,8 +42,8 @@ def modes_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def growth_lines(view: View, done: np.ndarray) -> list[str]:
-    """Lines about the non-normality of the modes, and the transient growth of small disturbances. done: mask
-    of the computed points, of the shape of the points.
+    """Lines about the condition of the leading eigenvalue, the numerical abscissa and the transient growth;
+    fewer if no growth is stored. done: mask of the computed points, of the shape of the points.
     """
     v = view.variables
     condition = v["condition"][done][:, 0]

@@ -74,8 +74,9 @@ def saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
 
 
 def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
-    """Lines about the fraction of the grid with each stable state, and about changes of cycles. done: mask of
-    the computed rows, (...,). line: parameter along a row. row: parameter constant on a row.
+    """Lines about the fraction of the grid with each stable state, the ranges of some states, and the special
+    points of cycles. done: mask of the computed rows, (...,). line: parameter along a row. row: parameter
+    constant on a row.
     """
     v = view.variables
     of_row = view.point_columns[row].reshape(done.shape)
@@ -120,8 +121,8 @@ def start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
 
 
 def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
-    """Lines about the changes of the straight rod along the rows in the mask `done`, (...,). line: parameter
-    along a row. row: parameter constant on a row.
+    """Lines about the rows in the mask `done`, (...,): states at their starts, crossings by kind, undecided
+    ranges, rows with and without flutter. line: parameter along a row. row: parameter constant on a row.
     """
     v = view.variables
     of_row = view.point_columns[row].reshape(done.shape)

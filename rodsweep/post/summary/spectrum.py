@@ -89,8 +89,8 @@ def count_line(view: View) -> str:
 
 
 def error_lines(view: View, done: np.ndarray) -> list[str]:
-    """Line on the errors of the eigenvalues. done: mask of the computed points, of the shape of the
-    points.
+    """List with a line on the errors of the eigenvalues; empty if no error is known. done: mask of the
+    computed points, of the shape of the points.
     """
     v = view.variables
     size = np.hypot(v["growth_rate"][done], v["frequency"][done])
@@ -101,8 +101,8 @@ def error_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
-    """Line on the number of unknowns per point. done: mask of the computed points, of the shape of the
-    points.
+    """Line on the number of unknowns per point, and of points without a mesh. done: mask of the computed
+    points, of the shape of the points.
     """
     v = view.variables
     unknowns = 3 * v["elements"][done].astype(int) * v["order"][done]
@@ -113,8 +113,8 @@ def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def stability_line(view: View, done: np.ndarray) -> str:
-    """Line on the number of points at which the number of unstable modes is proved. done: mask of the
-    computed points, of the shape of the points.
+    """Line on the largest number of unstable modes, and on how many points it is proved or unknown. done:
+    mask of the computed points, of the shape of the points.
     """
     unstable = view.variables["unstable_count"][done]
     points = int(done.sum())

@@ -32,7 +32,7 @@ Threshold = LocatedChange | BracketedChange
 def stability_lines(
     view: View, name: str, found_on: Callable[[ParameterLine], Sequence[Threshold]]
 ) -> tuple[list[str], list[str]]:
-    """Returns (lines, lines in an arm's units), one line for each kind of threshold along the parameter
+    """Returns (sentences, sentences in an arm's units), one for each kind of threshold along the parameter
     `name`. The second list is empty unless the parameter is F; both lists are empty if the parameter does not
     vary.
 

@@ -33,7 +33,7 @@ class SummaryLines:
     details: Sequence[str] = ()
     """Lines about further results."""
     of_arm: Sequence[str] = ()
-    """Lines of the answer in the units of an arm."""
+    """Sentences of the answer in the units of an arm."""
     numbers: TextTable | None = None
     """Table of numbers below the answer."""
 

@@ -45,8 +45,8 @@ def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def event_line(view: View, done: np.ndarray, event: str) -> str:
-    """Line on the forces at the first threshold of the kind `event`. done: mask of the computed points, of
-    the shape of the points.
+    """Line on the forces and rates at the first threshold of the kind `event`, and on the number of rods that
+    have it or are unknown. done: mask of the computed points, of the shape of the points.
     """
     words, rate, noun, unit = FIRST_THRESHOLD_WORDS[event]
     v = view.variables
@@ -84,7 +84,8 @@ def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
 
 
 def crossing_lines(view: View) -> list[str]:
-    """Lines about the number of crossings of the only rod in a file, and the meaning of their kinds."""
+    """Lines about the first thresholds and the number of crossings of the only rod in a file, and the meaning
+    of their kinds."""
     v = view.of_point(0)
     end = f"F = {v['F_end']:.15g}{unknown_beyond_clause(view, float(v['F_end']))}"
     if kinds := [CROSSING_KINDS[int(kind)] for kind in v["crossing_kind"][v["crossing_kind"] > 0]]:
@@ -122,8 +123,8 @@ def crossing_table(view: View) -> TextTable | None:
 
 
 def completeness_lines(view: View) -> list[str]:
-    """Lines on the searched range and the completeness of the list of crossings, for the only rod in a
-    file.
+    """Lines on the searched range, the completeness of the list of crossings, and the undecided range, for
+    the only rod in a file.
     """
     v = view.of_point(0)
     hidden = int(v["crossing_count"]) - int((v["crossing_kind"] > 0).sum())
@@ -183,7 +184,8 @@ def monotony_lines(view: View) -> list[str]:
 
 
 def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
-    """Lines about completeness and errors of the searches. noun: noun for a point.
+    """Lines about completeness, undecided ranges, numbers of stored crossings and errors of the searches.
+    noun: noun for a point.
 
     done: mask of the computed points, of the shape of the points.
     """

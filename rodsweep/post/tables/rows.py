@@ -77,7 +77,7 @@ def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: b
 def si_columns(
     view: View, variables: Sequence[Variable], columns: Sequence[Column], points: NDArray[np.int64] | None
 ) -> Iterator[Column]:
-    """Yields columns in SI units for variables of a list that the file of an arm stores only in dimensionless
+    """Yields columns in SI units for those variables of a list that the file stores only in dimensionless
     form.
 
     columns: columns of `variables`. points: index of the point of each row, (rows,); None if the list

@@ -56,8 +56,8 @@ def require_same_config(header: ResultHeader, plan: Plan, journals: Path) -> Non
 
 
 def _remedies_clause(plan: Plan, journals: Path) -> str:
-    """Clause with the remedies for an existing file that prevents the run of a plan. journals: journal
-    directory of the file.
+    """Clause that tells the user what to do with a file that is in the way of the result file. journals:
+    journal directory of the file.
     """
     if journals_of(journals, plan.fingerprint):
         return f"move it away, and the same command will use the points in {journals}"

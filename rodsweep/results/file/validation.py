@@ -24,9 +24,9 @@ PROGRAM = "rodsweep"
 """Value of the attribute `program` of result files."""
 FORMAT = 8
 """Value of the attribute `format` of result files. The format grows when a variable is added or changes in
-meaning; files of any other format are refused. Format 5 was the first with sealed content; 6 introduced
-frequencies in Hz, counts from 1, the Hopf points of the lines of limit cycles, and grids over an arm's
-quantities."""
+meaning; files whose format number differs are refused. Format 5 was the first with sealed content; 6
+introduced frequencies in Hz, counts from 1, the Hopf points of the lines of limit cycles, and grids over an
+arm's quantities."""
 CONFIGS = (".yaml", ".yml")
 """Suffixes of the names of config files."""
 LONGEST_REASON = 150

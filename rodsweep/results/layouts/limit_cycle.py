@@ -97,7 +97,7 @@ TRANSIENT = (
     ),
 )
 HOPF = "hopf"
-"""Dimension of the Hopf points on the lines between the points of a file."""
+"""Dimension of the Hopf points on the lines of points of a file."""
 HOPF_ALONG = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 """Parameters along which Hopf points are searched; gamma1 has no influence on Hopf points."""
 PAIR_CROSSINGS = ("none", "hopf", "hopf_reverse", "restabilization")
@@ -105,7 +105,7 @@ PAIR_CROSSINGS = ("none", "hopf", "hopf_reverse", "restabilization")
 
 
 def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
-    """Variables of the Hopf points of the straight rod on lines between the points; names: parameters."""
+    """Variables of the Hopf points of the straight rod on lines of points. names: parameters."""
     at = "at the Hopf point"
     kinds = ((CROSSING_KINDS.index(kind), kind) for kind in PAIR_CROSSINGS)
     return (
@@ -144,7 +144,7 @@ INCREASES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), NO_CYCLE)
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables of the Hopf points on the lines through the points of a resolved config."""
+    """Variables of the Hopf points on the lines of points of a resolved config."""
     found = hopf_points_of((*LINEAR_PARAMETERS, *optional_in(config)))
     if has_covering(config):
         return found

@@ -1,1 +1,2 @@
-"""The points of a sweep: grids and lists, and their division into lines, stretches, chains and shards."""
+"""The points of a sweep: grids of parameters or of arm quantities, lists; loads relative to flutter; lines,
+stretches, chains and shards."""

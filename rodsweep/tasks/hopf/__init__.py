@@ -1,1 +1,1 @@
-"""Hopf points and other changes of stability at parameter values between the points of a file."""
+"""Hopf points, onsets and changes of stability at parameter values between the points of a file."""

@@ -41,7 +41,8 @@ class ForceLines:
 
 
 def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-    """Changes of stability on all lines over F, as variables of the file; empty if F does not vary.
+    """Changes of stability on all lines of points along F, as variables of the file; empty if F does not
+    vary.
 
     values: variables of the points by name, shape (points, own dimensions), arrays or HDF5 datasets.
     """
@@ -77,7 +78,7 @@ def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
 
 
 def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
-    """Yields the lines over F among the points of a list, one line at a time."""
+    """Yields the lines of points along F in a list of points, one line at a time."""
     w = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(points.count, -1)
     unstable = values["unstable_count"][...].ravel()
     for line in lines_over(points.by_name, "F"):
@@ -90,7 +91,8 @@ def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
 
 
 def _changes_on(lines: ForceLines) -> Iterator[dict[str, float]]:
-    """Yields the changes of stability on some lines, line after line, as values of variables by name."""
+    """Yields the changes of stability on some lines of points, one line after another, as values of variables
+    by name."""
     from ...determinant.stability_changes import onset_between, stability_change_between
 
     F = lines.F.tolist()

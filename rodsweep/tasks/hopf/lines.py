@@ -1,4 +1,4 @@
-"""Hopf points of the straight rod on lines through the points of a file, for figures and for `show`.
+"""Hopf points of the straight rod on the lines of points of a file, for figures and for `show`.
 
 The Hopf points depend only on the config and are stored before any point is solved. Hence the file has the
 Hopf points of all its lines after a run, an extension or a merge.
@@ -25,8 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class HopfLine:
-    """Line of rods along which one parameter varies from `start` to `stop`; all other parameters are
-    fixed.
+    """Rods that differ in one parameter, which varies from `start` to `stop`; all other parameters are fixed.
     """
 
     name: str

@@ -1,1 +1,2 @@
-"""The job of a config, the plan of its result file, and the treatment of unforeseen exceptions."""
+"""The job of a config and the plan of its result file; reasons of failures, unforeseen exceptions, and
+solution in memory."""

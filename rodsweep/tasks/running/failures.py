@@ -30,8 +30,7 @@ class FailureReasons:
     def add(self, index: Indices, result: Any) -> list[str]:
         """Adds the reasons of failed points; returns the examples of reasons that are new.
 
-        index, result: flat index and outcome of one point, or flat indices, (n,), and result of a segment of
-        the sweep.
+        index, result: flat index and outcome of one point, or flat indices, (n,), and result of a stretch.
         """
         new = []
         for at, outcome in _failed(index, result):

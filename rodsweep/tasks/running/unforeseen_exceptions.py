@@ -52,8 +52,8 @@ class RecordedOutcome:
 def guarded_solver(solver: Solver, layout: Layout, note: PointNote) -> Solver:
     """A solver that catches unforeseen exceptions, calls `note`, and gives a failed point fill values.
 
-    After an exception in a segment of the sweep, each point of the segment is solved alone. Only points that
-    fail again get fill values.
+    After an exception in a stretch, each of its points is solved alone. Only points that fail again get fill
+    values.
     """
     return _Guard(solver, layout, note).solver()
 
@@ -109,8 +109,7 @@ class _Guard:
             return self._one_by_one(indices)
 
     def _one_by_one(self, indices: NDArray[np.int64]) -> StretchResult:
-        """Result of a segment of the sweep from separate solves of its points. indices: flat indices,
-        (n,).
+        """Result of a stretch from separate solves of its points. indices: flat indices, (n,).
         """
         solve = self.solver().solve
         outcomes = [solve(index) for index in indices.tolist()]

@@ -1,1 +1,2 @@
-"""Figures of limit cycles: portraits, amplitudes over a parameter, maps, energy over a period, animations."""
+"""Figures of limit cycles: portraits, amplitudes against a parameter, maps, energy over a period,
+animations."""

@@ -210,8 +210,8 @@ def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[fl
 
 
 def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
-    """Draws x and y of the tip over the time from 0 to `end`, with a second time axis in tau1 if the rod has
-    this time scale.
+    """Draws x and y of the tip against the time from 0 to `end`, with a second time axis in tau1 if the rod
+    has this time scale.
     """
     from ....discretization.elements.periodic import (
         interpolate_samples,  # compiled code, which few figures need

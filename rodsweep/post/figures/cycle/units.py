@@ -60,7 +60,8 @@ class CycleUnits:
 
     @property
     def labels_over(self) -> tuple[str, str, str, str]:
-        """Labels of the panels over a parameter: (x_max - x_min)/2 and y_max of the tip, period, power."""
+        """Labels of the panels with a parameter as abscissa: (x_max - x_min)/2 and y_max of the tip, period,
+        power."""
         if self.in_si:
             length, time, _, power = self.names
             return (

@@ -1,1 +1,1 @@
-"""Figures of spectra along a line of points: one line, or several lines in separate panels."""
+"""Figures of spectra: a single point, a list of points, and points along one or several lines."""

@@ -49,7 +49,7 @@ def draw_eigenvalues(view: View) -> Figure:
 
 
 def draw_list_of_spectra(view: View) -> Figure:
-    """Figure of the growth rates and frequencies of a list of points over the number of the point."""
+    """Figure of the growth rates and frequencies of a list of points against the number of the point."""
     growth = view.variables["growth_rate"]
     frequency = view.variables["frequency"]
     figure = Figure(figsize=(5.2, 5.4), layout="constrained")

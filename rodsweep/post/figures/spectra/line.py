@@ -1,5 +1,5 @@
-"""Figures of spectra along a line of points: two roots over the parameter and in the complex plane, as in the
-paper's Fig. 2.
+"""Figures of spectra along a line of points: two roots against the parameter and in the complex plane, as in
+the paper's Fig. 2.
 """
 
 from collections.abc import Sequence
@@ -106,7 +106,8 @@ def _scatter_all(axes: Axes, x: Array, w: Complex, label: str) -> None:
 
 
 def draw_line(view: View, name: str, roots: str) -> Figure:
-    """Figure of the roots over the parameter `name`, and in the complex plane. roots: choice of the roots."""
+    """Figure of the roots against the parameter `name`, and in the complex plane. roots: choice of the
+    roots."""
     figure = Figure(figsize=(5.2, 6.6), layout="constrained")
     top, bottom = figure.subplots(2, 1)
     w = draw_roots(top, view, name, roots)
@@ -125,8 +126,8 @@ def draw_line(view: View, name: str, roots: str) -> Figure:
 
 
 def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
-    """Draws roots over the parameter `name`, and returns the roots, with NaN in gaps: followed roots, (n, 2),
-    or all roots, (n, modes). roots: choice of the roots.
+    """Draws roots against the parameter `name`, and returns the roots, with NaN in gaps: followed roots, (n,
+    2), or all roots, (n, modes). roots: choice of the roots.
     """
     x = view.axes[name]
     w = _followed(view, roots)

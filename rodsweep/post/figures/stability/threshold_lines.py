@@ -1,4 +1,4 @@
-"""Figures of first thresholds of rods over a parameter, with lines for all or some values of a second
+"""Figures of first thresholds of rods against a parameter, with curves for all or some values of a second
 parameter."""
 
 from collections.abc import Sequence
@@ -38,9 +38,9 @@ HEADROOM = 1.05
 
 
 def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, str]:
-    """Returns (figure, description). The figure shows thresholds over the parameter with more values, with a
-    line for each value of the other parameter. long: the one or two parameters with several values. searched:
-    clause on the searched range.
+    """Returns (figure, description). The figure shows thresholds against the parameter with more values, with
+    a line for each value of the other parameter. long: the one or two parameters with several values.
+    searched: clause on the searched range.
     """
     along = max(long, key=lambda name: np.count_nonzero(np.isfinite(view.axes[name])))
     other = next((name for name in long if name != along), None)
@@ -112,8 +112,8 @@ def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str)
 
 
 def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:
-    """Draws thresholds over the parameter `along` for up to three different values of the parameter `other`,
-    see `_far_apart`; returns the number of values.
+    """Draws thresholds against the parameter `along` for up to three different values of the parameter
+    `other`, see `_far_apart`; returns the number of values.
     """
     table = _table(view, along, other)
     some = _far_apart(table)
@@ -176,7 +176,7 @@ def _label(axes: Axes, view: View, along: str, table: Array) -> None:
 
 
 def _kinds(table: Array) -> list[Line2D]:
-    """Legend entries for the kinds of thresholds in a table, (values, 3, values along)."""
+    """Legend entries for the kinds of thresholds that occur in `table`, (..., kinds, ...) as in `_table`."""
     shown = np.isfinite(table).any(axis=(0, 2))
     return [
         Line2D([], [], color="0.3", marker=marker, ls=line, ms=3, lw=1.2, label=word)

@@ -106,8 +106,8 @@ def _of_thresholds(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 
 
 def _where(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines:
-    """Lines on the arms with the smallest and the largest flutter load, and on the effect of drag.
-    loads: flutter loads of the points in the mask `rods`, (n,).
+    """Lines on the arms with the smallest and the largest flutter load, and on the effect of drag; empty with
+    fewer than two loads. loads: flutter loads of the points in the mask `rods`, (n,).
     """
     if np.isfinite(loads).sum() < 2:
         return []
@@ -151,7 +151,8 @@ def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarra
 
 
 def _of_cycles(view: View, rods: np.ndarray) -> Lines:
-    """Lines about the frequency and the amplitude of limit cycles."""
+    """Lines about the frequency and the amplitude of limit cycles and their variation with drag, or about the
+    outcomes if there is no cycle."""
     names = {"frequency_hz": "frequency", "tip_y_max_si": "tip_y_max"}
     v = {name: view.variables[name][rods] for name in names}
     errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}

@@ -3,7 +3,7 @@ are reused.
 
 A stored point is reused only if a run of the larger config would give results that are equal bit by bit: the
 parameters are equal bit by bit, and every requested result is present. In a chain all previous points, and in
-a stretch (a segment of the sweep) all points, must satisfy the same conditions.
+a stretch all points, must satisfy the same conditions.
 """
 
 from collections.abc import Iterator

@@ -1,1 +1,1 @@
-"""Amplitudes of limit cycles over a parameter, with Hopf points and fitted square-root laws."""
+"""Amplitudes of limit cycles against a parameter, with Hopf points and fitted square-root laws."""

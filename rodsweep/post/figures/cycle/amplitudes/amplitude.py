@@ -1,4 +1,4 @@
-"""Limit cycles over a parameter: amplitudes of the tip, as in the paper's Fig. 6, period and power."""
+"""Limit cycles against a parameter: amplitudes of the tip, as in the paper's Fig. 6, period and power."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -34,7 +34,7 @@ UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 
 
 def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows (x_max - x_min)/2 and y_max of the tip, period and
-    power over a parameter.
+    power against a parameter.
 
     A straight arm has amplitude 0 and no period. narrow: whether the panels are stacked. Raises InputError
     for too many lines.

@@ -1,4 +1,4 @@
-"""Limit cycles of a file as lines over a parameter: amplitudes of the tip, periods and powers."""
+"""Limit cycles of a file as curves against a parameter: amplitudes of the tip, periods and powers."""
 
 from dataclasses import dataclass
 
@@ -72,8 +72,8 @@ def abscissa(view: View) -> str:
 
 
 def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeBranch]:
-    """Lines of a file over the parameter `name`, one line for each combination of the other parameters.
-    units: units of the drawn quantities.
+    """Curves of a file against the parameter `name`, one for each combination of the other parameters. units:
+    units of the drawn quantities.
     """
     words = view.outcomes
     v = view.variables
