@@ -64,7 +64,6 @@ class Parameter:
             raise ValueError(
                 f"{self.name} scales {' and '.join(self.scales)}; "
                 "a parameter may scale either stiffnesses or drags"
-
             )
 
     @property

@@ -1,11 +1,9 @@
-
 """Distribution of work items over ranks, in small chunks whose size follows from each rank's time per item.
 
 A work item, in the code a unit, is a point, a chain or a stretch of points. A rank with a slow chunk returns
 the unsolved units of the chunk with the next request. No rank ends while another rank may still return units,
 and all ranks finish within about the time of one unit. `rodsweep.sweep.claims` sends the messages.
 """
-
 
 import threading
 from collections import Counter, deque

@@ -32,7 +32,6 @@ class _Pieces(NamedTuple):
     columns: (nnz,).
     """
 
-
     value: Array
     slope: Array
     both: Array
