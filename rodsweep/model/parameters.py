@@ -62,7 +62,7 @@ class Parameter:
         """Raises ValueError if the parameter scales both stiffnesses and drags."""
         if len({name in STIFFNESSES for name in self.scaled_names}) > 1:
             raise ValueError(
-                f"{self.name} scales {' and '.join(self.scales)}; "
+                f"{self.name} scales {' and '.join(self.scaled_names)}; "
                 "a parameter may scale either stiffnesses or drags"
             )
 

@@ -111,7 +111,7 @@ def _refuse_sections(arm: "SlenderArm") -> None:
         )
     if not SMALLEST_TAPER <= arm.si.tip_radius / arm.si.radius <= LARGEST_TAPER:
         raise InputError(
-            f"{arm.quoted('tip_radius')} is {arm.si.tip_radius / arm.si.radius:.3g} of the radius; the "
+            f"{arm.text_of('tip_radius')} is {arm.si.tip_radius / arm.si.radius:.3g} of the radius; the "
             f"ratio must be from {SMALLEST_TAPER:g} to {LARGEST_TAPER:g}"
         )
 
@@ -125,7 +125,7 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
     for name in (*SECTION_SIDES[0], *SECTION_SIDES[1]):
         if getattr(arm, name) is not None:
             raise InputError(
-                f"{arm.quoted(name)} and segments are both given; give one of them, because every segment "
+                f"{arm.text_of(name)} and segments are both given; give one of them, because every segment "
                 "has its own radius"
             )
     pieces = arm.pieces
@@ -139,7 +139,7 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
         unit = unit_of(arm.length, "m")
         summed = f"{written_in(total, unit, 'm'):.6g} {unit}"
         raise InputError(
-            f"{arm.quoted('length')} is not the sum of the segment lengths, {summed}; leave out length"
+            f"{arm.text_of('length')} is not the sum of the segment lengths, {summed}; leave out length"
         )
 
 
@@ -181,6 +181,6 @@ def refuse_crushed(arm: "SlenderArm") -> None:
     unit = unit_of(getattr(arm, loaded), si)
     where = "the weakest section of" if arm.shape.varies else ""
     raise InputError(
-        f"{arm.quoted(loaded)} crushes {f'{where} the arm'.strip()}; the load on a linear material must be "
+        f"{arm.text_of(loaded)} crushes {f'{where} the arm'.strip()}; the load on a linear material must be "
         f"below {float(f'{written_in(limit, unit, si):.4g}'):g} {unit}"
     )
