@@ -18,7 +18,6 @@ def local_coefficients_at_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
     A result is the value of the parameter of the same name, times the values of all parameters that multiply
     this parameter, see `Parameter.scaled_names`.
     """
-
     if not SCALINGS:
         return values
     own = dict(values)

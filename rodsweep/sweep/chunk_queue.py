@@ -2,7 +2,7 @@
 
 A work item, in the code a unit, is a point, a chain or a stretch of points. A rank with a slow chunk returns
 the unsolved units of the chunk with the next request. No rank ends while another rank may still return units,
-and all ranks finish within about the time of one unit. `rodsweep.sweep.claims` sends the messages.
+and all ranks finish within about the time of one unit. `rodsweep.sweep.chunk_requests` sends the messages.
 """
 
 import threading

@@ -214,13 +214,11 @@ def cover_with_boxes(
             zero = crossing_newton(eta, p, origin, direction, half)
             away = _distance_in_half_widths(zero, eta, p, half)
             if away <= 2:  # false if Newton's method failed, which returns nan
-                known = (
-                    away > 1 + BOX_PROOF.outside_distance
-                )  # outside the box: a neighbouring box finds the same zero
+                # A zero outside the box is found from a neighbouring box too.
+                known = away > 1 + BOX_PROOF.outside_distance
                 for other in zeros:  # the doubled box contains at most one zero
-                    known = (
-                        known or _distance_in_half_widths(other, eta, p, half) <= BOX_PROOF.same_zero_distance
-                    )
+                    apart = _distance_in_half_widths(other, eta, p, half)
+                    known = known or apart <= BOX_PROOF.same_zero_distance
                 if not known:
                     zeros.append(zero)
                 continue

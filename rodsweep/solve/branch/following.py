@@ -176,7 +176,6 @@ def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimi
 
 def _add_special_points(curve: BranchCurve, start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> None:
     """Appends the special points between the last cycle `start` and the next cycle `end` to a branch."""
-
     step = partial(cycle_at_length, accuracy=limits.accuracy)
     curve.add_special_points(*special_points(start, end, step, limits.accuracy))
 

@@ -13,7 +13,7 @@ class AnchorSettings:
     """Settings of the anchors of a path of rods and of the interpolation between two anchors."""
 
     min_known_modes: int = 4
-    """Minimum number of leading eigenvalues computed at a place of a path of arms (`arm.axis_place`); at
+    """Minimum number of leading eigenvalues computed at a place of a path of arms (`arm.axis_modes`); at
     least two more than the number of unstable modes are computed."""
     place_accuracy: float = 1e-6
     """Relative accuracy of the eigenvalues at a place of a path of arms, before the refinement by Newton's

@@ -47,10 +47,9 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     """The subcritical Hopf point nearest to the force of `rod`; None if no candidate is subcritical.
 
     The candidates are the first Hopf point above and the first Hopf point below the force, if the largest tip
-    y of the unstable cycle is at most `HOPF_BESIDE.largest_y`. The caller ensures that the straight rod is
-    stable. Raises Unsolvable if the search for Hopf points or a coefficient fails.
+    y of the unstable cycle is at most `SUBCRITICAL_HOPF.largest_y`. The straight rod must be stable. Raises
+    Unsolvable if the search for Hopf points or a coefficient fails.
     """
-
     low = rod.F / SUBCRITICAL_HOPF.farthest_force
     high = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF.farthest_force)
     if not 0 < low < high:

@@ -57,8 +57,7 @@ class SpecialBoundaries:
         return needed + likely if needed else []
 
     def curves(self, results: Mapping[int, Arrays]) -> Boundaries[CycleCurve]:
-        """All curves, from the results of the half curves; valid if `wanted(results)` is empty."""
-
+        """All curves, from the results of the half curves; valid if `units_to_solve(results)` is empty."""
         found = [search.boundaries for _, search in self._searches(results)]
         curves = tuple(traced.curve for one in found for traced in one.curves)
         return Boundaries(curves, max(one.agreement for one in found), sum(one.untraced for one in found))

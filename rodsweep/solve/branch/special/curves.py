@@ -172,9 +172,8 @@ class SpecialCurveProblem:
         place = float(np.dot(weights, [point.row_coordinate for point in points]))
         at = float(np.dot(weights, [point.parameter for point in points]))
         orbit = replace(mesh.interpolate(points[-1].orbit), values=values)
-        return orbit_with_parameters(
-            orbit, {self.line.name: at, self.rows.name: self.rows.value(place)}
-        ), place
+        changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
+        return orbit_with_parameters(orbit, changed), place
 
     def margins(self, point: SolvedPoint) -> Array:
         """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 - F/k1
@@ -236,8 +235,7 @@ class SpecialCurveProblem:
         return self._family(other).correct(start, place, across, other.normal_derivatives)
 
     def on_row(self, one: SolvedPoint, other: SolvedPoint, place: float) -> SolvedPoint:
-        """The point of the curve between two points, at the position `place` on the rows' axis; raises
-        Unsolvable."""
+        """The point of the curve between two points, at `place` on the rows' axis; raises Unsolvable."""
         length = other.row_coordinate - one.row_coordinate
         share = (place - one.row_coordinate) / length if length else 0.0
         start, _ = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))

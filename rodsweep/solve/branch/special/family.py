@@ -67,9 +67,8 @@ class CycleFamily:
         return cls(kind, rows, point.scale, point.ahead, small, workspace)
 
     def orbit_at_row(self, orbit: Orbit, row_coordinate: float) -> Orbit:
-        """The orbit with unchanged values, for the rod at the position `place` on the rows' axis; raises
-        Unsolvable."""
-
+        """The orbit with unchanged values, for the rod at the position `row_coordinate` on the rows' axis;
+        raises Unsolvable."""
         return orbit_with_parameters(orbit, {self.rows.name: self.rows.value(row_coordinate)})
 
     def function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:
@@ -90,11 +89,10 @@ class CycleFamily:
         """The point of the curve near the orbit `start`, found by the secant method across the curve; raises
         Unsolvable.
 
-        place: position of `start` on the rows' axis, from 0 to 1. across: direction of the search, (2,), in
-        components (along the branch, along the rows' axis). rates: approximate derivatives across the curve.
-        same: whether `rates` were computed at the same point on another mesh.
+        row_coordinate: position of `start` on the rows' axis, from 0 to 1. normal: direction of the search,
+        (2,), in components (along the branch, along the rows' axis). derivatives: approximate derivatives
+        along the normal. is_other_mesh: whether they were computed at the same point on another mesh.
         """
-
         # Derivatives along another direction across the curve would mislead the secant method.
         usable = derivatives and derivatives.direction @ normal >= CURVE_SECANT.min_cosine
         known = derivatives if usable else None
@@ -117,11 +115,10 @@ class CycleFamily:
         """The point of the curve near `start` with an error estimate, on a finer mesh if necessary; raises
         Unsolvable.
 
-        start, place, across, rates: as in `nearest`. slope: `chord_slope` of the curve, with which a
-        displacement along the curve is removed from the error. before: previous point of the curve, whose
-        measured error is used if it still applies.
+        slope: `chord_slope` of the curve, with which a displacement along the curve is removed from the
+        error. previous: previous point of the curve, whose measured error is used if it still applies. Other
+        arguments as in `correct`.
         """
-
         last = self.correct(start, row_coordinate, normal, derivatives)
         if previous and previous.errors and previous.errors.apply_at(last):
             return replace(last, errors=previous.errors.for_next_point)
@@ -154,21 +151,20 @@ class _SecantState:
         start: Orbit,
         place: float,
         direction: Array,
-        rates: NormalDerivatives | None,
-        same: bool,
+        derivatives: NormalDerivatives | None,
+        is_other_mesh: bool,
     ) -> None:
         self.family = family
         self.row_coordinate = place
         self.direction = direction
-        self.derivatives = rates
+        self.derivatives = derivatives
         self.orbit = family.orbit_at_row(start, place)
         self.distance = 0.0
         self.previous: _SecantIterate | None = None
         self.length = float(family.border @ family.scale.components(start))
-        self.max_last_step = CURVE_SECANT.max_linear_step if same else CURVE_SECANT.max_carried_step
-        """Largest length of the last secant step, as long as `rates` are not from two cycles of this
-        search."""
-        contraction = rates.contraction if rates and not family.small else inf
+        self.max_last_step = CURVE_SECANT.max_linear_step if is_other_mesh else CURVE_SECANT.max_carried_step
+        """Largest length of the last secant step, as long as `derivatives` are not from this search."""
+        contraction = derivatives.contraction if derivatives and not family.small else inf
         self.nearby = NearbyCycleSolver(family, self.orbit, contraction)
 
     def next(self) -> SolvedPoint | None:
@@ -197,8 +193,7 @@ class _SecantState:
         return None
 
     def _solve_at_distance(self) -> _SecantIterate:
-        """The cycle at the present distance `at` across the curve, with its test function; raises
-        Unsolvable."""
+        """The cycle at the present distance across the curve, with its test function; raises Unsolvable."""
         family = self.family
         rates = self.derivatives
         length = self.length + self.distance * float(self.direction[0])

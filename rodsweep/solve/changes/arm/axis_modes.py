@@ -90,7 +90,6 @@ class AxisModesOfPath:
 
         Raises Unsolvable if no elements resolve the arm.
         """
-
         try:
             return self.problem.eigenvalues_near_axis(p, highest, known)
         except FloatingPointError as unresolved:
