@@ -82,6 +82,10 @@ class Path:
         """The rod at p. Raises ValueError if the rod is invalid, for example crushed."""
         return self.rod.with_coordinate(self.name, p)
 
+    def text_at(self, p: float) -> str:
+        """Text with the value of the varying parameter at p, such as "F = 30"."""
+        return f"{self.name} = {self.parameter.value(p):.9g}"
+
 
 @compiled
 def coefficients_at(p: float, origin: Coefficients, direction: Coefficients) -> Coefficients:

@@ -100,7 +100,7 @@ class Tracer:
         found = self.problem.spectrum(p, request)
         self.proved = self.proved and found.certified
         if not np.isfinite(found.eigenvalues).all():
-            raise Unsolvable(f"{self.path.rod_at(p)}: {found.status.name} {found.message}".rstrip())
+            raise Unsolvable(f"{self.path.text_at(p)}: {found.status.name} {found.message}".rstrip())
         w = found.eigenvalues.copy()
         slope = np.empty(ANCHOR_MODES, dtype=complex)
         for i, guess in enumerate(found.eigenvalues):
@@ -150,10 +150,9 @@ class Tracer:
             if change is not None:
                 return [change]
             if b - a <= LEADER.smallest_step * max(abs(a), abs(b)):
-                where = self.path.rod_at(a)
                 raise Unsolvable(
-                    f"no point was found near {where} at which the leading eigenvalue turns from real to "
-                    "complex or back"
+                    f"no point was found near {self.path.text_at(a)} at which the leading eigenvalue turns "
+                    "from real to complex or back"
                 )
         middle = a + share * (b - a)
         intervals.divide((a, middle), (middle, b))

@@ -93,7 +93,7 @@ class AxisModesOfPath:
         try:
             return self.problem.eigenvalues_near_axis(p, highest, known)
         except FloatingPointError as unresolved:
-            raise Unsolvable(f"{self.problem.path.rod_at(p)}: {unresolved}") from None
+            raise Unsolvable(f"{self.problem.path.text_at(p)}: {unresolved}") from None
 
     def _modes_near_axis(self, p: float, beside: Complex | None) -> AxisModes | None:
         """The place at p from a count and the modes near the imaginary axis; None if the count is undecided.
@@ -116,10 +116,10 @@ class AxisModesOfPath:
             modes = _needed_modes(found)
             found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
         if found.unstable_count < 0:
-            raise Unsolvable(f"{self.problem.path.rod_at(p)}: {found.status.name} {found.message}".rstrip())
+            raise Unsolvable(f"{self.problem.path.text_at(p)}: {found.status.name} {found.message}".rstrip())
         if _needed_modes(found) > max(modes, AXIS_MODES.max_known_modes):
             raise Unsolvable(
-                f"{self.problem.path.rod_at(p)}: {found.unstable_count} modes grow, more than "
+                f"{self.problem.path.text_at(p)}: {found.unstable_count} modes grow, more than "
                 "the search follows"
             )
         slopes = found.eigenvalues.copy()

@@ -122,7 +122,7 @@ class CrossingSearch:
                 intervals.divide(*parts)
                 return
             if b - a <= ARM_CROSSINGS.smallest_step * max(abs(a), abs(b)):
-                raise Unsolvable(f"the crossing near {self.problem.path.rod_at(a)} could not be located")
+                raise Unsolvable(f"the crossing near {self.problem.path.text_at(a)} could not be located")
         middle = a + share * (b - a)
         intervals.divide((a, middle), (middle, b))
 
