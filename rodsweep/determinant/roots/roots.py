@@ -198,8 +198,8 @@ def _refined_all(
 ) -> tuple[Complex, NDArray[np.bool_]]:
     """Returns (w, mask), both (k,). w: eigenvalues refined to roots of D. mask: whether w[i] is a root.
 
-    first: eigenvalues of the mesh, (k,). near: whether first[i] approximates a root, (k,). error, wave: errors
-    and wave numbers, (k,), updated in place.
+    first: eigenvalues of the mesh, (k,). near: whether first[i] approximates a root, (k,). error, wave:
+    errors and wave numbers, (k,), updated in place.
     """
     w = first.copy()
     reach = _separate(w, error, coefficients)
