@@ -58,7 +58,7 @@ class ArmCountSettings(CompiledSettings):
     """Largest radius of a circle with the dominant wave, in units of Im w: the wave may have branch points on
     the real axis."""
     max_step_ratio: float = 0.9
-    """If the reaches do not overlap after a step, the next trial step is at most this fraction of the step."""
+    """If the reaches of two nodes do not overlap, the step is shortened at least by this factor."""
     safe_step: float = 0.99
     """A step within the reach of a node is at most this number times the reach, because of rounding."""
     ranges: ClassVar = {
