@@ -39,8 +39,8 @@ BOUNDARY = BoundarySettings()
 
 
 class BoundarySolution(NamedTuple):
-    """A point v = (x, y, h) on a stability boundary, the 2 x 3 Jacobian of its equations there, and the error
-    of v.
+    """A point v = (x, y, h) on a stability boundary, the Jacobian of the two equations at v, (2, 3), and the
+    error of v.
     """
 
     v: Array

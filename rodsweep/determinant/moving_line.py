@@ -43,8 +43,8 @@ class MovingLineSettings(CompiledSettings):
     """The half-widths of every rectangle are enlarged by this fraction, so that rounding leaves no gap
     between rectangles."""
     min_fraction: float = 1e-6
-    """The proof fails if it needs a rectangle with (width in p)/(width of the interval of p) or half-height/
-    (distance of the line from the imaginary axis) below this number."""
+    """The proof fails if a rectangle is needed whose width in p is below this fraction of the interval of p,
+    or whose half-height is below this fraction of the distance of the line from the imaginary axis."""
     ranges: ClassVar = {"half_height_growth": (1.0, math.inf), "largest_half_height": (0.0, 1.0)}
 
 

@@ -2,7 +2,7 @@
 
 The propagator of an element is smooth in p, like the coefficients along the arm. On elements that resolve all
 arms of the interval, the propagators of a few arms, at Chebyshev points in p, are interpolated. This gives
-the propagators of every arm and their derivatives by p. The last Chebyshev coefficients are an error estimate.
+the propagators of every arm and their derivatives by p. The last Chebyshev coefficients show the error.
 """
 
 import math

@@ -27,8 +27,8 @@ class ArmRootSettings(CompiledSettings):
     doubles at 1. Minors in the middle of an arm may exceed the minors at the tip. Measured: relative errors
     of at most 4e-15 in 1000 eigenvalues of stepped arms, compared with 19 digits."""
     max_w_ratio: float = 16.0
-    """Roots use the elements of a larger |w| needed later if it is at most this number times |w| of the
-    roots. Rounding errors grow with the number of elements, which is then at most four times larger."""
+    """If D is needed later at a larger |w|, at most this number times |w| of the roots, the roots use the
+    elements for the larger |w|: at most four times as many. Rounding errors grow with their number."""
 
 
 ARM_ROOTS = ArmRootSettings()

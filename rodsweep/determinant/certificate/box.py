@@ -125,7 +125,7 @@ def squared_amplification_between(first: Coefficients, last: Coefficients) -> fl
 
 def zero_free_radius(path: Path, start: float, stop: float, largest: float) -> float:
     """A radius r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r and every p of a path from start to
-    stop.
+    stop; 0 if r underflows.
     """
     ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
     T = max(c2 + gamma3 for *_, c2, gamma3 in ends)
@@ -141,7 +141,8 @@ def zero_free_radius(path: Path, start: float, stop: float, largest: float) -> f
 
 
 def zero_free_radius_of_rod(coefficients: Coefficients, largest: float) -> float:
-    """A radius r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r, for one uniform rod."""
+    """A radius r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r, for one uniform rod; 0 if r
+    underflows."""
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
     return _zero_free_radius(largest, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0))

@@ -40,7 +40,7 @@ class BoxProofSettings(CompiledSettings):
     first_radius_ratio: float = 0.45
     """First trial ratio t of the half-width of a box to the radius of the bidisc on which D is bounded."""
     radius_ratio_factor: float = 0.6
-    """Factor between one trial ratio t and the next."""
+    """The next trial ratio is this number times the previous trial ratio t."""
     max_radius_ratios: int = 30
     """Maximum number of trial ratios t, of which the last is 2e-7."""
     min_half_width: float = 1e-9

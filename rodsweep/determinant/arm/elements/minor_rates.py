@@ -43,8 +43,8 @@ def add_eliminated_start_value(minor: int, start: float, turning: Array, values:
 
 @compiled_for_vectors
 def fill_drag_rates(W: float, local: Array, values: Array, rates: Array) -> None:
-    """Writes the rates of s^m, theta^s and y^m that are proportional to w, from the values one power of w
-    lower.
+    """Writes the terms proportional to w in the rates of s^m, theta^s and y^m, from the values of the minors
+    at the previous power of w.
 
     values, rates: (MINORS, STAGES, WIDTH). W: unit of w.
     """
