@@ -1,4 +1,4 @@
-"""rodsweep: when a follower-loaded soft rod in a viscous fluid oscillates and flutters.
+"""rodsweep: oscillation and flutter of a soft rod under a follower load in a viscous fluid.
 
 The Python interface, `import rodsweep as rs`, is described in docs/python.md. Importing the package starts
 neither MPI nor PETSc and loads only this module: each public name is imported when it is first used.
@@ -48,11 +48,11 @@ _PLACES = {
     "sweep": "sweep",
     "table": "api.answers.tabling.table",
 }
-"""Module path of every public name, relative to the package. `sweep` is a callable package."""
+"""Import path of every public name, relative to the package. `sweep` is a callable package."""
 
 
 def __getattr__(name: str) -> Any:
-    """Imports a public name when it is first used; AttributeError for an unknown name."""
+    """Imports the public name `name` when it is first used. Raises AttributeError for an unknown name."""
     if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module, _, own = _PLACES[name].rpartition(".")

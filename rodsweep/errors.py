@@ -1,7 +1,7 @@
 """The two kinds of error that end a command early: bad input, and an incomplete environment.
 
-A parameter point that fails is no such error: the point keeps a status (`rodsweep.solve.status`) and the
-sweep continues. Any other exception is a bug.
+A parameter point that cannot be solved raises no error: the point gets a status (`rodsweep.solve.status`) and
+the sweep continues. Any other exception is a bug.
 """
 
 from typing import Self
@@ -11,38 +11,39 @@ BUG_STATUS = 70
 
 
 class Refusal(Exception):
-    """Error that the command line shows as one sentence, without a traceback.
+    """Error that the command line prints as one sentence, without a traceback.
 
-    collective: whether every rank of a run raises the error at the same place.
+    collective: whether every MPI rank of a run raises the error at the same statement.
     """
 
     collective = False
     exit_status = BUG_STATUS
 
     def on_all_ranks(self) -> Self:
-        """Marks the error as collective: every rank has a copy and raises it at the same place."""
+        """Marks this error as collective, which means that every MPI rank raises a copy, and returns it."""
         self.collective = True
         return self
 
 
 class InputError(Refusal):
-    """Bad input: the sentence names the key, the value and what is allowed."""
+    """Bad input. The message names the key, the value and the allowed values."""
 
     exit_status = 2
 
 
 class EnvironmentIncomplete(Refusal):
-    """The machine lacks a component or a permission; the sentence names it."""
+    """A component or a permission is missing on this machine. The message names the missing item."""
 
     exit_status = 3
 
 
 def import_refusal(modules: str, reason: object, extra: str = "solvers") -> EnvironmentIncomplete:
-    """EnvironmentIncomplete for modules whose import failed; its sentence says how to install the modules.
+    """EnvironmentIncomplete for modules whose import failed, with a message that says how to install them.
 
-    modules: names for the sentence. reason: error of the import. extra: name of the optional dependencies
-    that install the modules from PyPI. Modules of a Linux distribution are compiled for its NumPy; with
-    another major version of NumPy their import fails with a message about binary incompatibility.
+    modules: names of the modules, for the message. reason: error raised by the import. extra: name of the
+    optional dependencies that install the modules from PyPI. The modules of a Linux distribution are compiled
+    for the distribution's NumPy; with another major version of NumPy the import fails with a message about
+    binary incompatibility.
     """
     if "binary incompatibility" in str(reason):
         remedy = "they are compiled for another NumPy: on Debian 12 pip install 'rodsweep[debian12]'"

@@ -1,8 +1,8 @@
 """Progress reports of long solves: a solver reports its position, and a listener shows it or ends the solve.
 
-The solver does not know its listener. Without a listener a report costs a fraction of a microsecond. Solvers
-report only where stopping is safe: no compiled code that calls back into Python is on the stack, and no data
-are half changed.
+A solver has no reference to the listeners. Without a listener a report costs a fraction of a microsecond.
+Solvers report only where stopping is safe: no compiled code that calls back into Python is on the stack, and
+no data are half changed.
 """
 
 from collections.abc import Callable, Iterator
@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 
 class SolvePosition(NamedTuple):
-    """Position of a running solve, as a listener shows it.
+    """Position of a running solve, for display by a listener.
 
-    words: the position in words, such as "branch 2 of 3". share: fraction of the work that is done, from 0 to
-    1; None if unknown.
+    words: text of the position, such as "branch 2 of 3". share: completed fraction of the work, from 0 to 1;
+    None if unknown.
     """
 
     words: str = ""
@@ -24,22 +24,20 @@ class SolvePosition(NamedTuple):
 
 
 MakePosition = Callable[[], SolvePosition]
-"""Function that makes the position of a report. A listener calls it only to show the report."""
+"""Function that returns the position of a solve. A listener calls the function only to show the position."""
 Listener = Callable[[MakePosition], None]
-"""Function called at every report of a solve. It raises `SolveStopped` to end the solve."""
+"""Function called at every report of a solve. A listener raises `SolveStopped` to end the solve."""
 
 
 class SolveStopped(BaseException):
-    """Raised by a listener to end a running solve. Solvers that catch their own errors do not catch this
-    one.
-    """
+    """Raised by a listener to end a running solve. Solvers never catch this exception."""
 
 
 class _SolvePart(NamedTuple):
     """Named part of a solve.
 
-    shares: fractions of the work of the whole solve that are done at the start and at the end of the part;
-    None if unknown.
+    shares: completed fractions of the work of the whole solve at the start and at the end of the part; None
+    if unknown.
     """
 
     name: str
@@ -61,10 +59,9 @@ _parts: ContextVar[tuple[_SolvePart, ...]] = ContextVar("parts", default=())
 
 @contextmanager
 def reporting_to(listener: Listener) -> Iterator[None]:
-    """Sends the reports of all solves in the `with` block to the listener, after the listeners of outer
-    blocks.
+    """Calls the listener at every report of a solve in the `with` block, after the listeners of outer blocks.
 
-    The positions are relative to the block: names of parts that enclose the block do not precede the words.
+    The positions are relative to the block: their text omits the names of parts that enclose the block.
     """
     token = _listeners.set((*_listeners.get(), (listener, len(_parts.get()))))
     try:
@@ -77,8 +74,8 @@ def reporting_to(listener: Listener) -> Iterator[None]:
 def solve_part(name: str, shares: tuple[float, float] | None = None) -> Iterator[None]:
     """Marks the reports in the `with` block as reports of a named part of a larger solve, such as a branch.
 
-    name: precedes the words of each report. shares: fractions of the work of the larger solve that are done
-    at the start and at the end of the part; None if unknown.
+    name: prefix of the text of each report. shares: completed fractions of the work of the larger solve at
+    the start and at the end of the part; None if unknown.
     """
     token = _parts.set((*_parts.get(), _SolvePart(name, shares)))
     try:
@@ -90,15 +87,18 @@ def solve_part(name: str, shares: tuple[float, float] | None = None) -> Iterator
 def report(place: MakePosition = SolvePosition) -> None:
     """Reports the position of the solve to all listeners.
 
-    place: makes the position; by default the report is empty and only lets a listener end the solve.
+    place: function that returns the position. By default the position is empty, and the report only lets a
+    listener end the solve.
     """
     for listener, outside in _listeners.get():
         listener(partial(_in_whole, place, outside))
 
 
 def _in_whole(place: MakePosition, outside: int) -> SolvePosition:
-    """Position within the whole solve. place: within the innermost part. outside: number of outer parts of
-    which the whole solve is a part itself.
+    """Position within the whole solve that a listener observes.
+
+    place: function that returns the position within the innermost part. outside: number of parts that enclose
+    the listener's `with` block.
     """
     position = place()
     if not position.words:

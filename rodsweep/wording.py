@@ -4,12 +4,13 @@ SIBILANT_ENDINGS = ("s", "x", "z", "ch", "sh")
 """Endings of nouns whose plural ends in "es"."""
 
 LONGEST_IN_MS = 0.9995
-"""Duration in seconds from which `duration` writes seconds: three digits round a longer one to 1000 ms."""
+"""`duration` writes durations of at least this many seconds in seconds; in milliseconds, three digits would
+round such a duration to 1000 ms or more."""
 
 
 def counted(count: int, noun: str) -> str:
-    """A count with its noun: "1 branch", "2 branches". Of a noun of several words the last word becomes
-    plural.
+    """`count` followed by `noun` in its singular or plural: "1 branch", "2 branches". If the noun has several
+    words, the last word gets the plural ending.
     """
     return f"{int(count)} {noun if count == 1 else plural(noun)}"
 
@@ -22,17 +23,17 @@ def plural(noun: str) -> str:
 
 
 def is_or_are(count: int) -> str:
-    """ "is" for a count of one, else "are"."""
+    """ "is" if count == 1, else "are"."""
     return "is" if count == 1 else "are"
 
 
 def has_or_have(count: int) -> str:
-    """ "has" for a count of one, else "have"."""
+    """ "has" if count == 1, else "have"."""
     return "has" if count == 1 else "have"
 
 
 def some_of(count: int, whole: int, noun: str) -> str:
-    """A count out of a total with its noun: `some_of(2, 4, "row")` is "2 of 4 rows"."""
+    """`count` out of the total `whole`, with the noun: `some_of(2, 4, "row")` is "2 of 4 rows"."""
     return f"{int(count)} of {counted(whole, noun)}"
 
 

@@ -1,5 +1,5 @@
 """The characteristic determinant D(w) and all computations that need only D: no mesh and no PETSc.
 
-D without cancellation, the a-priori box of eigenvalues, Newton's method, proved counts of eigenvalues, the
-covering that finds all changes of the spectrum along a path, and curves of such changes in a plane.
+Contents: D without cancellation, the a-priori box of eigenvalues, Newton's method, proved counts of
+eigenvalues, the covering that finds all changes of stability along a path, and stability boundaries.
 """

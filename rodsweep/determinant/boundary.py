@@ -22,26 +22,25 @@ class BoundarySettings:
     """Settings of Newton's method for a point on a stability boundary."""
 
     max_steps: int = 12
-    """Maximum number of Newton steps to a point; beyond, Newton's method has failed."""
+    """Newton's method fails if it has not converged after this number of steps."""
     max_step: float = 0.5
-    """Largest Newton step, in units of the lengths of the axes and of h; after a larger step Newton's method
-    has failed."""
+    """Newton's method fails after a step larger than this number, in units of the scaled axes or of h."""
     converged_step: float = 4.0
-    """Newton step, in units of the rounding error of the point, at which Newton's method has converged."""
+    """Newton's method has converged if |step| <= this number times the rounding error of the point."""
     min_determinant: float = EXPONENTS.least_divisor
-    """Least |determinant| of the 3 x 3 matrix of a Newton step; below it the matrix is singular and Newton's
-    method fails. It is far below that of any regular matrix."""
+    """Newton's method fails if |determinant| of the 3 x 3 matrix of a step is below this number; the
+    determinants of regular matrices are far larger."""
     stagnant_step: float = 1e-10
-    """Newton step below which a step that is not half of its predecessor is rounding error: Newton's method
-    has converged."""
+    """Newton's method has also converged if |step| is below this number and more than half of the previous
+    |step|: such a step is rounding error."""
 
 
 BOUNDARY = BoundarySettings()
 
 
 class BoundarySolution(NamedTuple):
-    """A point v = (x, y, h) on a stability boundary, the 2 x 3 Jacobian of its equations there, and the error
-    of v.
+    """A point v = (x, y, h) on a stability boundary, the Jacobian of the two equations at v, (2, 3), and the
+    error of v.
     """
 
     v: Array
@@ -71,8 +70,8 @@ class Boundary:
         return (self.sign * size, 0.0) if self.sign else (0.0, size)
 
     def equations(self, v: Array) -> tuple[Array, Array, float]:
-        """(residual, (2,); Jacobian, (2, 3); rounding error of the residual) of the two equations of the
-        boundary at v.
+        """Returns (residual, (2,); Jacobian, (2, 3); rounding error of the residual) of the two equations of
+        the boundary at v = (x, y, h).
         """
         return self._double_equations(v) if self.sign else self._hopf_equations(v)
 
@@ -82,10 +81,8 @@ class Boundary:
         return BoundarySolution(v, jacobian, error).tangent
 
     def point_near(self, guess: Array, normal: NDArray[np.floating]) -> BoundarySolution | None:
-        """The point of the boundary on the plane through `guess`, (3,), that is perpendicular to `normal`,
-        (3,).
-
-        None if Newton's method fails.
+        """The point of the boundary on the plane through `guess`, (3,), perpendicular to `normal`, (3,); None
+        if Newton's method fails.
         """
         v = guess.copy()
         last = math.inf

@@ -1,9 +1,9 @@
-"""The functions s(M, P^2) and d(M, P^2) of which D consists, by a series for small z+- or from the roots q.
+"""The functions s(M, P^2) and d(M, P^2) that give D, computed by a series for small z+- or from the roots q.
 
 With the squares z+- of the exponents of D, s = E(z+) + E(z-) and d = (E(z+) - E(z-))/(z+ - z-) are even in P,
 and entire in M = (z+ + z-)/2 and P^2. All derivatives of D follow from s, d, s' = ds/dM, d' = dd/dM and d* =
-(dd/dP^2)/4, because ds/dP^2 = 4 d'. Both methods also return the rounding errors of s and d, in units of a
-relative rounding error.
+(dd/dP^2)/4, because ds/dP^2 = 4 d'. Both methods also return the rounding errors of s and d. Every rounding
+error here is in units of `exponents.NOISE_UNIT`.
 """
 
 import cmath
@@ -18,14 +18,15 @@ from .exponents import ROUND_OFF, HyperbolicFunctions, hyperbolic_functions, mod
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvenFunctionSettings(CompiledSettings):
-    """Limits that select the formula for the even functions s and d of the exponents, see the module."""
+    """Thresholds that select the formula for the even functions s and d (see the module docstring)."""
 
     series_terms: int = 13
     """Number of terms of the series of s and d."""
     by_series_below: float = 1.5
-    """If |M| + 2 |P| is smaller, `even_functions_by_series` computes s and d."""
+    """If |M| + 2 |P| is below this number, `even_functions_by_series` computes s and d."""
     by_squares_below: float = 0.1
-    """If |z+ z-| / (|M|^2 + 4 |P|^2) is smaller, `even_sum_by_squares` computes s and d."""
+    """Otherwise, if |z+ z-| / (|M|^2 + 4 |P|^2) is at most this number, `even_sum_by_squares` computes s and
+    d; else `even_functions_by_roots` does."""
 
     def __post_init__(self) -> None:
         n = self.series_terms
@@ -61,11 +62,10 @@ def _noise_by_roots(
     results: tuple[complex, complex],
     blurs: tuple[float, float, float],
 ) -> tuple[float, float]:
-    """Rounding errors of s and d as `even_functions_by_roots` computes them, to first order, in units of a
-    relative rounding error.
+    """Rounding errors of s and of d as computed by `even_functions_by_roots`, to first order.
 
     squares: (M, P^2, u, v). apart: u - v. of_u, of_v: hyperbolic functions of sqrt(u) and sqrt(v). results:
-    (s, d). blurs: exp(-S) and the rounding errors of M and P^2, in the same unit.
+    (s, d). blurs: (exp(-S), rounding error of M, rounding error of P^2).
     """
     M = modulus(squares[0])
     square = modulus(squares[1])
@@ -97,11 +97,11 @@ def _noise_by_roots(
 def even_functions_by_roots(
     M: complex, square: complex, blur_M: float, blur_square: float
 ) -> tuple[EvenFunctions, float, float]:
-    """(s, d and their derivatives; rounding error of s; of d) from the roots q, if neither z+ nor z- is
-    small.
+    """Returns (s and d with derivatives, rounding error of s, rounding error of d), from the roots q1 and q2
+    of the dispersion relation; for z+ and z- that are not small.
 
-    square = P^2; blur_M, blur_square: rounding errors of M and P^2. u = q1^2 and v = q2^2 solve t^2 - M t +
-    P^2 = 0; with C = cosh q1 cosh q2 - 1, H = sinh q1 sinh q2/(q1 q2) and R = z+ z- = M^2 - 4 P^2 =
+    square: P^2. blur_M, blur_square: rounding errors of M and P^2. u = q1^2 and v = q2^2 solve t^2 - M t +
+    P^2 = 0. With C = cosh q1 cosh q2 - 1, H = sinh q1 sinh q2/(q1 q2) and R = z+ z- = M^2 - 4 P^2 =
     (u - v)^2,
 
         s = 2 (M C - 2 P^2 H)/R,   d = (M H/2 - C)/R.
@@ -146,8 +146,8 @@ def even_functions_by_roots(
 def even_functions_by_series(
     M: complex, P: complex, blur_M: float, blur_square: float
 ) -> tuple[EvenFunctions, float, float]:
-    """(s, d and their derivatives; rounding error of s; of d) by the series E(z) = sum z^n/(2n + 2)! for
-    small z+ and z-.
+    """Returns (s and d with derivatives, rounding error of s, rounding error of d), by the series E(z) =
+    sum z^n/(2n + 2)!; for small z+ and z-.
 
     blur_M, blur_square: rounding errors of M and P^2.
     """

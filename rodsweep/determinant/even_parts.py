@@ -4,9 +4,9 @@ In the notation of `rodsweep.determinant.value`, D = 1 + (w/2) [z+' E(z+) + z-' 
 
     z+' E(z+) + z-' E(z-) = T s + 4 N d,   s = E(z+) + E(z-),   d = (E(z+) - E(z-))/(z+ - z-),
 
-with N = g nu + 2 X w. Three methods evaluate s and d: a series for small z+ and z-; closed forms in the roots
-q if neither z+ nor z- is small (both in `even_functions`); and closed forms in z+ and z-, which give the sum
-directly, if one of the two is small.
+with N = g nu + 2 X w. Three methods evaluate s and d: a series if z+ and z- are small; closed forms in the
+roots q if neither z+ nor z- is small (both methods are in `even_functions`); and, if only one of z+ and z- is
+small, closed forms in z+ and z-, which give the sum directly.
 """
 
 import cmath
@@ -18,8 +18,8 @@ from .even_functions import EVEN_FUNCTIONS, EvenFunctions, even_functions_by_roo
 from .exponents import EXPONENTS, NOISE_UNIT, entire_cosh, modulus, squared_exponents
 
 EvenSum = tuple[EvenFunctions, complex, float]
-"""(s and d with derivatives, sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error). `even_parts` returns
-the rounding error of D, `even_sum_by_squares` that of the sum."""
+"""(s and d with derivatives, sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error). The rounding error is
+of D exp(-S) in results of `even_parts`, and of the sum in results of `even_sum_by_squares`."""
 
 
 @compiled
@@ -30,12 +30,12 @@ def _noise_by_squares(
     slopes: tuple[complex, complex],
     blurs: tuple[float, float],
 ) -> float:
-    """Rounding error of the sum z+' E(z+) + z-' E(z-) of `even_sum_by_squares`, in units of a relative
-    rounding error.
+    """Rounding error of the sum z+' E(z+) + z-' E(z-) as computed by `even_sum_by_squares`, in units of
+    `NOISE_UNIT`, like all rounding errors of the arguments.
 
-    sizes: |w| and |P|. roots: sqrt z+ and sqrt z-. slopes: z+' and z-'. blurs: rounding errors of M and P^2.
-    The error of z follows from the terms that cancel in z. An exponent q = sqrt z has half of the error of z
-    over |q|, plus a quarter of |q|.
+    sizes: (|w|, |P|). roots: (sqrt z+, sqrt z-). slopes: (z+', z-'). blurs: rounding errors of M and P^2. The
+    error of z follows from the terms that cancel in z; the error of an exponent q = sqrt z is half the error
+    of z divided by |q|, plus |q|/4.
     """
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
@@ -71,11 +71,12 @@ def _noise_by_squares(
 
 @compiled
 def even_sum_by_squares(w: complex, coefficients: Coefficients, blur_M: float, blur_square: float) -> EvenSum:
-    """The functions s and d of D, the sum z+' E(z+) + z-' E(z-), and its rounding error, if z+ or z- is much
-    the smaller.
+    """Returns (s and d with derivatives, sum z+' E(z+) + z-' E(z-), rounding error of the sum), for z+ and z-
+    of very different moduli.
 
-    The derivative of the smaller one follows from the derivative of the product z+ z-, because T +- P' would
-    cancel for large w. blur_M, blur_square: rounding errors of M and P^2.
+    The derivative of the smaller of z+ and z- follows from the derivative of the product z+ z-, because
+    z+-' = T +- 2 P' cancels for large w. blur_M, blur_square: rounding errors of M and P^2. All rounding
+    errors are in units of `NOISE_UNIT`.
     """
     F, nu, c2, gamma3 = coefficients
     P, plus, minus = squared_exponents(w, coefficients)
@@ -87,7 +88,7 @@ def even_sum_by_squares(w: complex, coefficients: Coefficients, blur_M: float, b
     slope_minus = T - turn
     product_slope = 2 * (c2 - gamma3) ** 2 * w - 2 * g * (T * F + 2 * nu)
     if modulus(plus) < modulus(minus):
-        # d(z+ z-)/dw is a polynomial; the slope of the smaller z cancels if taken from T -+ P'.
+        # d(z+ z-)/dw is a polynomial in w; T - 2 P' or T + 2 P' would cancel for the smaller z.
         slope_plus = (product_slope - plus * slope_minus) / minus
     else:
         slope_minus = (product_slope - minus * slope_plus) / plus
@@ -111,11 +112,11 @@ def even_sum_by_squares(w: complex, coefficients: Coefficients, blur_M: float, b
 
 @compiled
 def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
-    """s and d with derivatives, the sum z+' E(z+) + z-' E(z-), and the rounding error of D, for a uniform rod
-    at w != 0.
+    """Returns (s and d with derivatives, sum z+' E(z+) + z-' E(z-), rounding error of D), all times exp(-S),
+    for a uniform rod at w != 0.
 
-    The rounding error is a first-order sum over the rounding errors of M, of P^2 and of every later
-    operation. It consists of moduli that do not vanish where D does.
+    The rounding error sums, to first order, the rounding errors of M, of P^2 and of every later operation. It
+    is a sum of moduli that do not vanish at a zero of D.
     """
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
@@ -130,8 +131,7 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
     stiffness = nu * soft + X * size
     blur_M = T * size + abs(F) * soft
     blur_square = size * stiffness
-    # Three formulas: the series for small z, the roots q where they are well apart, else z+ and z-
-    # themselves.
+    # Three formulas: a series for small z+ and z-, the roots q if neither z+ nor z- is small, else z+ and z-.
     size_M = modulus(M)
     size_square = modulus(square)
     small = size_M + 2 * math.sqrt(size_square) < EVEN_FUNCTIONS.by_series_below

@@ -1,6 +1,7 @@
-"""The squares z+- of the exponents of D(w), and entire functions of these squares from which D is composed.
+"""The squares z+- of the exponents of D(w), and the entire functions of these squares that give D.
 
-The notation is that of `rodsweep.determinant.value`. Near 0 series replace closed forms, which would cancel.
+The notation is defined in `rodsweep.determinant.value`. Near 0, series replace closed forms, which would
+cancel.
 """
 
 import cmath
@@ -16,33 +17,33 @@ from ..model.rod import Coefficients
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExponentSettings(CompiledSettings):
-    """Settings for the exponents of D and for the entire functions of them."""
+    """Settings for the exponents of D and for entire functions of the exponents."""
 
     least_divisor: float = 1e-300
-    """Least modulus of a divisor: a smaller one is replaced by this number. It is far below all numbers of D
-    that are not 0, and its inverse is finite."""
+    """A divisor with a smaller modulus is replaced by this number, which is far below every nonzero number in
+    the formulas of D and has a finite inverse."""
     largest_exponent: float = 600.0
-    """Largest argument x of exp(x); a larger x is replaced by this number, since exp overflows at 709."""
+    """In exp(x), an x above this number is replaced by this number, since exp overflows at 709."""
     cosh_series_below: float = 0.1
-    """|z| below which E(z) and dE/dz are computed by series, because the closed form of dE/dz would
-    cancel."""
-    sinh_series_below: float = 0.25
-    """|q^2| below which sinh(q)/q and its slope are computed by series, because the closed form of the slope
+    """For |z| below this number, E(z) and dE/dz are computed by series, because the closed form of dE/dz
     would cancel."""
+    sinh_series_below: float = 0.25
+    """For |q^2| below this number, sinh(q)/q and its slope are computed by series, because the closed form of
+    the slope would cancel."""
     ranges: ClassVar = {"largest_exponent": (0.0, 709.0)}
 
 
 EXPONENTS = ExponentSettings()
 
 ROUND_OFF = sys.float_info.epsilon
-"""Spacing of the double-precision numbers just above 1."""
+"""Distance from 1 to the next larger double-precision number."""
 NOISE_UNIT = 2 * ROUND_OFF
-"""Unit in which rounding errors of D and of its terms are summed: two relative rounding errors."""
+"""Unit of the rounding errors of the terms of D: twice the spacing of double-precision numbers at 1."""
 
 
 class HyperbolicFunctions(NamedTuple):
-    """cosh q, sinh(q)/q and its slope (1/q) d(sinh(q)/q)/dq, all times exp(-Re q) and, but for this factor,
-    entire in q^2.
+    """cosh q, sinh(q)/q and the slope (1/q) d(sinh(q)/q)/dq, three entire functions of q^2, all times
+    exp(-Re q).
     """
 
     cosh: complex
@@ -52,7 +53,7 @@ class HyperbolicFunctions(NamedTuple):
 
 @compiled
 def modulus(z: complex) -> float:
-    """|z|, computed faster than by abs; the square of |z| must not overflow and may underflow to 0."""
+    """|z|, faster than abs(z). |z|^2 must not overflow; if |z|^2 underflows, the result is 0."""
     return math.sqrt(z.real * z.real + z.imag * z.imag)
 
 
@@ -60,12 +61,12 @@ def modulus(z: complex) -> float:
 def squared_exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex, complex]:
     """(P, z+, z-) of a uniform rod at w != 0, in the notation of `rodsweep.determinant.value`.
 
-    The smaller of z+ and z- follows from their product, without cancellation.
+    The smaller of z+ and z- follows from the product z+ z-, without cancellation.
     """
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
     P = cmath.sqrt(w * (g * nu + c2 * gamma3 * w))
-    # z+- = total +- 2 P. Their product is a polynomial in w, in which P has cancelled exactly.
+    # z+- = total +- 2 P. The product z+ z- is a polynomial in w, without P.
     total = (c2 + gamma3) * w - F * g
     plus = total + 2 * P
     minus = total - 2 * P
@@ -95,7 +96,7 @@ def entire_cosh(z: complex, root: complex, scale: float) -> tuple[complex, compl
 
 @compiled
 def hyperbolic_functions(v: complex, root: complex) -> HyperbolicFunctions:
-    """cosh q, sinh(q)/q and its slope, for q = `root` and v = q^2, times exp(-Re q)."""
+    """cosh q, sinh(q)/q and (1/q) d(sinh(q)/q)/dq, times exp(-Re q), for q = `root`; v: q^2."""
     if modulus(v) < EXPONENTS.sinh_series_below:
         first = 1 + v / 6 * (1 + v / 20 * (1 + v / 42 * (1 + v / 72 * (1 + v / 110 * (1 + v / 156)))))
         second = 1 + v / 28 * (1 + v / 54 * (1 + v / 88 * (1 + v / 130 * (1 + v / 180))))

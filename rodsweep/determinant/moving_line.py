@@ -33,19 +33,18 @@ class MovingLineSettings(CompiledSettings):
     """Settings for the rectangles that prove that no eigenvalue crosses a moving line."""
 
     first_half_height: float = 0.35
-    """Half-height, in y, of the first rectangle tried, in units of the line's distance from the imaginary
-    axis."""
+    """Half-height (in y) of the first rectangle over the distance of the line from the imaginary axis."""
     half_height_growth: float = 1.6
-    """Ratio of the half-height of the next rectangle to that of the rectangle just proved."""
+    """After a proved rectangle, the half-height of the next rectangle is larger by this factor."""
     largest_half_height: float = 0.6
-    """Largest half-height of a rectangle, in units of |w| at its lower edge, because its discs must not
-    contain w = 0."""
+    """Largest half-height of a rectangle divided by |w| at its lower edge. The discs about the centre of the
+    rectangle must not contain w = 0."""
     overlap: float = 1e-7
-    """Relative excess of the half-widths of every rectangle, so that rounding leaves no gap between
-    rectangles."""
+    """The half-widths of every rectangle are enlarged by this fraction, so that rounding leaves no gap
+    between rectangles."""
     min_fraction: float = 1e-6
-    """Smallest width of a rectangle in p, over the width of the interval, and smallest half-height, over the
-    line's distance from the imaginary axis. If a smaller rectangle is needed, the proof fails."""
+    """The proof fails if a rectangle is needed whose width in p is below this fraction of the interval of p,
+    or whose half-height is below this fraction of the distance of the line from the imaginary axis."""
     ranges: ClassVar = {"half_height_growth": (1.0, math.inf), "largest_half_height": (0.0, 1.0)}
 
 
@@ -53,9 +52,7 @@ MOVING_LINE = MovingLineSettings()
 
 
 class IntervalEnd(NamedTuple):
-    """One end of an interval of a path: p, the coefficients of the rod at p, and the real part of the line
-    there.
-    """
+    """An end of an interval of a path: p, coefficients of the rod at p, and `line`: Re w of the line at p."""
 
     p: float
     coefficients: Coefficients
@@ -63,11 +60,10 @@ class IntervalEnd(NamedTuple):
 
 
 class Strip(NamedTuple):
-    """A part of the strip (y, p) that is not yet proved free of zeros of D: everything above y for an
-    interval of p.
+    """The part above y of the strip over a subinterval of p; D may still have zeros in this part.
 
-    p_start, p_stop: ends of the interval, as fractions of the whole interval of p. half_y: half-height of the
-    next rectangle to try.
+    p_start, p_stop: ends of the subinterval, as fractions of the whole interval of p. half_height: of the
+    next rectangle to try, in y.
     """
 
     p_start: float
@@ -78,8 +74,9 @@ class Strip(NamedTuple):
 
 @compiled
 def interpolate_ends(share: float, first: IntervalEnd, last: IntervalEnd) -> IntervalEnd:
-    """The interval end interpolated linearly between `first` (share 0) and `last` (share 1), without
-    cancellation.
+    """p, coefficients and line interpolated linearly between `first` (share = 0) and `last` (share = 1).
+
+    The interpolation has no cancellation.
     """
     a = 1 - share
     b = share
@@ -95,14 +92,14 @@ def interpolate_ends(share: float, first: IntervalEnd, last: IntervalEnd) -> Int
 def is_free_of_zeros(
     at: IntervalEnd, y: float, direction: Coefficients, half: tuple[float, float], tilt: float
 ) -> tuple[bool, float, float]:
-    """(whether D is proved to have no zero on the rectangle about l(p) + i y, cost in y, cost in p).
+    """Returns (proved, cost in y, cost in p). proved: whether D is proved to have no zero on the rectangle
+    about w = l(p) + i y; cost: see `covering.examine_box`.
 
-    half: half-widths of the rectangle in y and p. tilt: dl/dp. Splitting the variable with the higher cost
-    helps most; the costs are those of `covering.examine_box`. Raises ValueError for a half-width that is not
-    positive.
+    at: p, coefficients and line at the centre. direction: d(F, nu, c2, gamma3)/dp. half: half-widths of the
+    rectangle in y and in p. tilt: dl/dp. Raises ValueError for a half-width that is not positive.
     """
     half_y, half_p = half
-    if not (half_y > 0 and half_p > 0):  # the bounds below would hold for negative ones, and prove nothing
+    if not (half_y > 0 and half_p > 0):  # negative half-widths would pass the tests and prove nothing
         raise ValueError("the half-widths of a rectangle must be above 0")
     w = complex(at.line, y)
     D, D_w, D_p, S, noise = determinant_along(w, at.coefficients, direction)
@@ -129,11 +126,12 @@ def is_free_of_zeros(
 def proves_no_crossing(
     first: IntervalEnd, last: IntervalEnd, direction: Coefficients, most: int
 ) -> tuple[bool, int]:
-    """(whether it is proved that no eigenvalue crosses the moving line, number of rectangles examined).
+    """Returns (proved, number of rectangles examined). proved: whether it is proved that no eigenvalue
+    crosses the moving line.
 
     first, last: ends of the interval, in either order. direction: d(F, nu, c2, gamma3)/dp. most: maximum
-    number of rectangles. The proof fails for equal ends, and for a line that is not left of the imaginary
-    axis.
+    number of rectangles. The proof fails if both ends have equal p, if the line is not left of the imaginary
+    axis, or if no a-priori bound on the eigenvalues exists.
     """
     if first.p > last.p:
         first, last = last, first
@@ -164,7 +162,7 @@ def proves_no_crossing(
                 largest = MOVING_LINE.largest_half_height * math.hypot(at.line, y)
                 half_y = min(MOVING_LINE.half_height_growth * half_y, largest)
             elif cost_p > cost_y:
-                # Split in p at the height reached: what lies below is proved for both halves.
+                # Split in p from the height y upwards: the strip below y is already proved for both halves.
                 stack.append(Strip((start + stop) / 2, stop, y, half_y))
                 stack.append(Strip(start, (start + stop) / 2, y, half_y))
                 break

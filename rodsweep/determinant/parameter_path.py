@@ -31,7 +31,7 @@ class CoefficientDerivatives(NamedTuple):
 
 
 class ValueAlong(NamedTuple):
-    """D, dD/dw and dD/dp times exp(-S), and the magnitude `noise` of the rounding error of D exp(-S)."""
+    """D, D_w = dD/dw and D_p = dD/dp, all times exp(-S). noise: bound of the rounding error of D exp(-S)."""
 
     D: complex
     D_w: complex
@@ -66,7 +66,7 @@ class Path:
 
     @property
     def origin(self) -> Coefficients:
-        """(F, nu, c2, gamma3) at p = 0, which need not be those of a valid rod."""
+        """The coefficients (F, nu, c2, gamma3) extrapolated to p = 0, where the rod may be invalid."""
         return coefficients_of({**self.rod.values, self.name: self.parameter.value(0.0)})
 
     def coordinate(self, value: float) -> float:
@@ -74,7 +74,7 @@ class Path:
         return self.parameter.coordinate(value)
 
     def value(self, p: float, error: float) -> tuple[float, float]:
-        """(value of the varying parameter at p, error of this value); error: error of p."""
+        """Returns (value of the varying parameter at p, error of this value). error: error of p."""
         # k = 1/p, so dk = dp/p^2.
         return self.parameter.value(p), error / p**2 if self.is_compliance else error
 
@@ -121,8 +121,7 @@ def coefficient_derivatives(coefficients: Coefficients, direction: Coefficients)
 def exponent_slopes(
     w: complex, at: ExponentDerivatives, change: CoefficientDerivatives
 ) -> tuple[complex, complex]:
-    """(dz+/dp, dz-/dp) at w. at: `exponent_derivatives` at w. change: derivatives of the coefficients by
-    p."""
+    """(dz+/dp, dz-/dp) at w. at: result of `exponent_derivatives` at w. change: derivatives by p."""
     P_p = 0j
     if at.P != 0:
         P_p = w * (change.G1 + change.X1 * w) / (2 * at.P)

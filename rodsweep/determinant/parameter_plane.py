@@ -18,23 +18,22 @@ class PlaneSettings:
     """Settings for derivatives of D by differences along the scaled axes of a plane."""
 
     end_tolerance: float = 1e-12
-    """Distance beyond an end of a scaled axis that is rounding error: such a coordinate is moved to the
-    end."""
+    """A coordinate beyond an end of a scaled axis by less than this number is moved to the end: the excess is
+    rounding error."""
     difference_step: float = 1e-3
-    """Step of differences along a scaled axis, where the axis has length 1."""
+    """Largest step of differences along a scaled axis, which has length 1."""
     step_to_crushing: float = 0.01
-    """Largest step of a difference, as a fraction of the distance from the point at which the rod is
-    crushed."""
+    """Largest step of a difference, as a fraction of the distance along the axis to a crushed rod."""
 
 
 PLANE = PlaneSettings()
 
 
 CENTRAL_STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
-"""Central difference of fourth order for a first derivative: (offset in steps, weight times step) of each
-value."""
+"""Central difference of fourth order for a first derivative: pairs (offset in steps, weight times step)."""
 ONE_SIDED_STENCIL = ((0, -25 / 12), (1, 4.0), (2, -3.0), (3, 4 / 3), (4, -1 / 4))
-"""One-sided difference of fourth order for a first derivative, for points at the limit of a parameter."""
+"""One-sided difference of fourth order for a first derivative, as pairs (offset in steps, weight times
+step)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,8 +75,9 @@ class PlaneAxis:
 
 
 class ValueOnPlane(NamedTuple):
-    """D and its derivatives by w, x and y, times exp(-S); rounding: rounding error of D, with those of w, x
-    and y.
+    """D and the derivatives of D by w, x and y, times exp(-S).
+
+    rounding: rounding error of D exp(-S), including the effect of rounding in w, x and y.
     """
 
     D: complex
@@ -107,7 +107,7 @@ class Plane:
         return self.rod.changed(**{first.name: first.value(x), second.name: second.value(y)})
 
     def determinant(self, w: complex, x: float, y: float) -> ValueOnPlane:
-        """D and its derivatives by w, x and y, at w, for the rod at scaled coordinates (x, y)."""
+        """D and the derivatives of D by w, x and y, at w, for the rod at scaled coordinates (x, y)."""
         rod = self.rod_at(x, y)
         if not self.standard:
             return self._of_arms(w, x, y)
@@ -123,16 +123,15 @@ class Plane:
         return scaled_determinant(w, rod.coefficients) if self.standard else arm_determinant(rod).value(w)
 
     def stencil(self, x: float, y: float, which: int) -> tuple[tuple[tuple[float, float], ...], float]:
-        """(stencil, step) of a difference along axis number `which`, 0 or 1, at scaled coordinates (x, y).
-
-        The stencil is one-sided where a neighbour would be an invalid rod.
+        """Returns (stencil, step) of a difference along axis number `which`, 0 or 1, at scaled coordinates
+        (x, y). The stencil is one-sided if the rod two steps back is invalid.
         """
         h = self.small_step(x, y, which, PLANE.difference_step)
         back = (x - 2 * h, y) if which == 0 else (x, y - 2 * h)
         return (CENTRAL_STENCIL if self.is_valid(*back) else ONE_SIDED_STENCIL), h
 
     def _of_arms(self, w: complex, x: float, y: float) -> ValueOnPlane:
-        """`determinant` of arms, whose derivatives by x and y are differences of fourth order."""
+        """`determinant` for arms without closed form; derivatives by x and y are fourth-order differences."""
         D, D_w, S, noise = self.value(w, x, y)
         slopes = []
         for which in range(2):
@@ -148,15 +147,16 @@ class Plane:
 
     @staticmethod
     def _along(w: complex, rod: Rod, axis: PlaneAxis) -> tuple[ValueAlong, complex]:
-        """(D and derivatives along the parameter of an axis, derivative of D by the scaled coordinate of this
-        axis).
+        """Returns (D with derivatives by w and by the parameter of `axis`, derivative of D by the scaled
+        coordinate of `axis`).
         """
         value = determinant_along(w, rod.coefficients, rod.direction(axis.name))
         return value, value.D_p * axis.path_variable_slope(getattr(rod, axis.name))
 
     def small_step(self, x: float, y: float, which: int, largest: float) -> float:
-        """A step along axis number `which`: at most `largest`, and at most 1 % of the distance from
-        crushing."""
+        """A difference step along axis number `which`: `largest`, or the fraction `step_to_crushing` of the
+        distance to a crushed rod, if shorter. Where the rod cannot be crushed, `largest`.
+        """
         rod = self.rod_at(x, y)
         axis = self.axes[which]
         force = rod.crushing_force

@@ -24,18 +24,19 @@ class StabilityChangeSettings(CompiledSettings):
     """Settings for crossings of the imaginary axis between two forces."""
 
     same_crossing_distance: float = 1e-8
-    """Relative distance below which two zeros of D(i eta; F) are one crossing; Newton's method converges to
-    rounding error, far below it."""
+    """Two zeros of D(i eta; F) with a smaller relative distance are the same crossing. Newton's method
+    converges to rounding error, far below this number."""
 
 
 STABILITY_CHANGES = StabilityChangeSettings()
 
 
 class ForceChange(NamedTuple):
-    """A change of stability at the force F. `kind` is a word of `rodsweep.results.layouts.thresholds`.
+    """A change of stability at the force F.
 
-    error: absolute error estimate of F. F and error in k3/L^2. growth_rate, frequency: real and imaginary
-    part of the eigenvalues that change, in 1/tau2.
+    kind: a kind of change listed in `rodsweep.results.layouts.thresholds`. F, error: the force and its
+    absolute error estimate, in k3/L^2. growth_rate, frequency: real and imaginary part, in 1/tau2, of the
+    eigenvalue that crosses the imaginary axis or is double.
     """
 
     kind: str
@@ -46,17 +47,17 @@ class ForceChange(NamedTuple):
 
 
 RodsOverForce = tuple[Coefficients, Coefficients]
-"""Rods that differ in F only: their coefficients at F = 0, and the derivative of the coefficients by F."""
+"""Rods that differ in F only: (coefficients at F = 0, derivative of the coefficients by F)."""
 
 
 def onset_between(
     rods: RodsOverForce, ends: tuple[float, float], before: Complex, after: Complex
 ) -> ForceChange | None:
-    """The double real eigenvalue between two forces; None if Newton's method finds none.
+    """The double real eigenvalue between the two forces `ends`; None if Newton's method does not find it.
 
-    ends: both forces. before, after: leading eigenvalues at both, (modes,). The two leading eigenvalues are
-    real before and complex after. The square of half their difference is almost linear in F, and its zero is
-    the starting point.
+    before, after: leading eigenvalues at the first and second force, (modes,). The two leading eigenvalues
+    are real at the first force and complex at the second. ((w1 - w2)/2)^2 is almost linear in F; Newton's
+    method starts at its zero.
     """
     low, high = ends
     first = before[0].item()  # Python's numbers, for speed
@@ -75,10 +76,10 @@ def onset_between(
 def stability_change_between(
     rods: RodsOverForce, ends: tuple[float, float], before: Complex, after: Complex, unstable: int
 ) -> ForceChange | None:
-    """The loss or return of stability between two forces, `ends`.
+    """The loss or return of stability between the two forces `ends`.
 
-    before, after: leading eigenvalues at both forces, (modes,). unstable: number of growing modes at the
-    unstable force. None unless the crossings found, two modes each, explain this number.
+    before, after: leading eigenvalues at the first and second force, (modes,). unstable: number of growing
+    modes at the unstable force. Returns None unless the number of crossings found is unstable/2.
     """
     zeros = sorted(crossings_between(*ends, before, after, *rods).tolist())
     if not zeros or 2 * len(zeros) != unstable:
@@ -92,11 +93,12 @@ def stability_change_between(
 def crossings_between(
     low: float, high: float, before: Complex, after: Complex, origin: Coefficients, direction: Coefficients
 ) -> Array:
-    """(F, frequency, error of F) of all distinct zeros of D(i eta; F) that Newton's method finds, (n, 3).
+    """Array of (F, frequency, error of F), (n, 3), of all distinct zeros of D(i eta; F) that Newton's method
+    finds.
 
-    before, after: eigenvalues at the forces `low` and `high`, (modes,). Starting points are all frequencies
-    of these eigenvalues at three forces: both ends, and the zero of the linear interpolant of the leading
-    growth rate.
+    before, after: eigenvalues at the forces `low` and `high`, (modes,). origin, direction: coefficients at
+    F = 0 and their derivative by F. Newton's method starts from all frequencies of these eigenvalues at three
+    forces: `low`, `high`, and the zero of the linear interpolant of the leading growth rate.
     """
     a = before[0].real
     b = after[0].real

@@ -15,8 +15,8 @@ and the determinant, Appendix C, simplifies to
     D(w) = 1 + (w/2) [ z+' E(z+) + z-' E(z-) ],   E(z) = (cosh sqrt(z) - 1)/z,   ' = d/dw.
 
 E is entire and the sum is even in P, so the formula is regular where roots q coincide, and in every limit
-(k1, k2 = inf, gamma3 = 0). `rodsweep.determinant.even_parts` evaluates the sum. Functions return D exp(-S),
-with S = max Re sqrt(z+-), because D spans hundreds of decades.
+(k1, k2 = inf, gamma3 = 0). `rodsweep.determinant.even_parts` evaluates the sum. D spans hundreds of decades,
+so functions return D exp(-S) with S = max Re sqrt(z+-).
 """
 
 import math
@@ -35,21 +35,21 @@ class DeterminantSettings(CompiledSettings):
     """Settings for values of D and for differences of its derivatives."""
 
     typical_noise: float = 0.1
-    """Rounding error of D in units of its bound `noise`: the upper quartile of measured errors, whose median
-    is 0.05 and maximum 0.7."""
+    """The rounding error of D is estimated by this fraction of its bound `noise`. Measured fractions have the
+    median 0.05, the upper quartile 0.1 and the maximum 0.7."""
     zero_replacement: float = 1e-200
-    """Value of w, in 1/tau2, at which D(0) is computed, so that no formula divides by 0. D - 1 is below
-    rounding error there."""
+    """D(0) is computed at this w, in 1/tau2, so that no formula divides by 0. At this w, |D - 1| is below
+    rounding error."""
     second_difference_step: float = 1e-4
-    """Step of the difference of D' for D'', in units of |w|. The relative error of D'' is about its square,
-    enough to distinguish a double root from two roots."""
+    """Step of the central difference of D' for D'', divided by |w|. The relative error of D'' is about the
+    square of this number: enough to distinguish a double root from two close roots."""
 
 
 DETERMINANT = DeterminantSettings()
 
 
 class DeterminantValue(NamedTuple):
-    """D and D' = dD/dw times exp(-S), and the magnitude `noise` of the rounding error of D exp(-S)."""
+    """D and D_w = dD/dw, both times exp(-S). S: scale. noise: bound of the rounding error of D exp(-S)."""
 
     D: complex
     D_w: complex
@@ -58,7 +58,7 @@ class DeterminantValue(NamedTuple):
 
 
 class ExponentDerivatives(NamedTuple):
-    """P, its derivatives P' and P'' by w, and z+ and z-, of the module `rodsweep.determinant.value`."""
+    """P, its derivatives P_w and P_ww by w, z+ (`plus`) and z- (`minus`), see the module docstring."""
 
     P: complex
     P_w: complex
@@ -69,7 +69,7 @@ class ExponentDerivatives(NamedTuple):
 
 @compiled
 def exponent_derivatives(w: complex, coefficients: Coefficients) -> ExponentDerivatives:
-    """P, P', P'', z+ and z- of a uniform rod at w != 0."""
+    """P with its first two derivatives by w, z+ and z- of a uniform rod at w != 0."""
     F, nu, c2, gamma3 = coefficients
     P, plus, minus = squared_exponents(w, coefficients)
     P1 = 0j
@@ -82,9 +82,9 @@ def exponent_derivatives(w: complex, coefficients: Coefficients) -> ExponentDeri
 
 @compiled
 def scaled_determinant(w: complex, coefficients: Coefficients) -> DeterminantValue:
-    """D and D' of a uniform rod at w, times exp(-S).
+    """D and dD/dw of a uniform rod at w, times exp(-S).
 
-    w = 0 is replaced by `DETERMINANT.zero_replacement`, where D is 1 too.
+    w = 0 is replaced by `DETERMINANT.zero_replacement`, where D equals D(0) = 1 within rounding.
     """
     if w == 0:
         w = complex(DETERMINANT.zero_replacement, 0.0)
@@ -93,9 +93,7 @@ def scaled_determinant(w: complex, coefficients: Coefficients) -> DeterminantVal
 
 @compiled
 def determinant_from_parts(w: complex, coefficients: Coefficients, parts: EvenSum) -> DeterminantValue:
-    """D and D' times exp(-S) at w, from the functions s and d and their derivatives, as `even_parts` returns
-    them.
-    """
+    """D and dD/dw times exp(-S) at w. parts: result of `even_parts` at w."""
     even, total, noise = parts
     F, nu, c2, gamma3 = coefficients
     T = c2 + gamma3
@@ -108,7 +106,7 @@ def determinant_from_parts(w: complex, coefficients: Coefficients, parts: EvenSu
 
 @compiled
 def second_difference(after: DeterminantValue, before: DeterminantValue, S: float, h: float) -> complex:
-    """D'' exp(-S) by a central difference, from D' at w + h (`after`) and at w - h (`before`)."""
+    """D'' exp(-S) by the central difference of D' between w + h (`after`) and w - h (`before`)."""
     # Each value has its own scale exp(-S); the difference needs one common scale.
     return (after.D_w * math.exp(after.S - S) - before.D_w * math.exp(before.S - S)) / (2 * h)
 
@@ -125,8 +123,9 @@ def second_derivative(w: complex, S: float, coefficients: Coefficients) -> compl
 
 @compiled
 def distance_to_next_root(w: complex, coefficients: Coefficients) -> float:
-    """Estimated distance 2 |D'/D''| from an eigenvalue w to the nearest other one; accurate if both are
-    close.
+    """Estimated distance 2 |D'/D''| from an eigenvalue w of a uniform rod to the nearest other eigenvalue.
+
+    The estimate is accurate if the two eigenvalues are close.
     """
     here = scaled_determinant(w, coefficients)
     return 2 * abs(here.D_w) / max(abs(second_derivative(w, here.S, coefficients)), EXPONENTS.least_divisor)
@@ -134,15 +133,15 @@ def distance_to_next_root(w: complex, coefficients: Coefficients) -> float:
 
 @compiled
 def newton_correction(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
-    """(|D/D'|, length, wave number) of a uniform rod at w.
+    """Returns (error, length, wave number) of a uniform rod at w.
 
-    |D/D'|, in 1/tau2, is the distance to an eigenvalue to first order: an error estimate that does not depend
-    on how w was computed. A |D| below its rounding error is replaced by this error. The estimate is valid
-    only well below `length`, the change of w over which an exponent of D changes by one. The wave number, in
-    1/L, bounds |q| of the exponents exp(+-q u) of an eigenfunction at w (Sec. VI).
+    error: |D/D'|, in 1/tau2, the distance from w to an eigenvalue to first order, however w was computed. If
+    |D| is below its rounding error, the rounding error replaces |D|. length: change of w, in 1/tau2, over
+    which an exponent of D changes by 1; `error` is valid only well below `length`. wave number: bound, in
+    1/L, of |q| in the exponentials exp(+-q u) of an eigenfunction at w (Sec. VI).
     """
     value, slope, _, noise = scaled_determinant(w, coefficients)
-    # A value that happens to be far below its rounding error proves no better root.
+    # |D| far below its rounding error is accidental and does not mean a smaller error of w.
     error = max(abs(value), DETERMINANT.typical_noise * noise) / max(abs(slope), EXPONENTS.least_divisor)
     P, P1, _, plus, minus = exponent_derivatives(w, coefficients)
     root_plus = math.sqrt(abs(plus))

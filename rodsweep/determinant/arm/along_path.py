@@ -3,8 +3,8 @@ eigenvalues.
 
 D depends on p through all coefficients along the arm. Where a family of arms
 (`rodsweep.determinant.arm.family`) contains the arm at p, D and its derivative by p come from the family.
-Elsewhere derivatives by p are central differences between determinants of neighbouring arms. The differences
-need not be accurate: only Newton's method and predictors use them, and the residual D decides convergence.
+Elsewhere derivatives by p are differences between determinants of neighbouring arms. The differences need not
+be accurate: only Jacobians of Newton's method and predictors use them.
 """
 
 import math
@@ -22,8 +22,7 @@ from .newton import refine_eigenvalue_and_error
 
 CENTRAL_DIFFERENCE = ((1, 0.5), (-1, -0.5))
 FORWARD_DIFFERENCE = ((0, -1.5), (1, 2.0), (2, -0.5))
-"""CENTRAL_DIFFERENCE and FORWARD_DIFFERENCE, of second order: (offset in steps, weight times step) of each
-value."""
+"""Differences of second order for a first derivative: pairs (offset in steps, weight times step)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,19 +30,17 @@ class ArmDoubleEigenvalueSettings:
     """Settings for double eigenvalues of arms along a path, and for differences by the path variable."""
 
     rounding_over_noise: float = 5.0
-    """Rounding error of D at a double eigenvalue, in units of its `noise`: at most 4.7 at 44
-    double eigenvalues of stepped arms, compared with 19 digits."""
+    """Rounding error of D at a double eigenvalue divided by `noise`; measured: at most 4.7 at 44 double
+    eigenvalues of stepped arms, compared with 19 digits."""
     compared_level_factors: tuple[int, ...] = (1, 4, 16)
-    """Multiples of |w|. D on the elements for each multiple is compared to estimate its rounding error at a
-    double eigenvalue."""
+    """D at w is computed on the elements for each of these multiples of |w|. The differences estimate the
+    rounding error of D at a double eigenvalue."""
     spread_factor: float = 3.0
-    """Safety factor on the largest difference between values of D on different elements, as an estimate of
-    rounding."""
+    """The rounding error of D is estimated as this number times max - min of D on different elements."""
     max_shortenings: int = 20
-    """Maximum number of times that a difference step is divided by `step_divisor`, down to 1e-12 of the first
-    step."""
+    """Maximum number of divisions of a difference step by `step_divisor`, to 1e-12 of the first step."""
     step_divisor: float = 4.0
-    """Divisor of a difference step whose neighbour is not a valid arm."""
+    """A difference step is divided by this number if a neighbour is not a valid arm."""
 
 
 ARM_DOUBLE_EIGENVALUES = ArmDoubleEigenvalueSettings()
@@ -65,12 +62,12 @@ class ArmAlongPath:
         return arm_determinant(self.path.rod_at(p))
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
-        """(w, dw/dp, error of w) of the eigenvalue w near the guess, at p."""
+        """Returns (w, dw/dp, error of w) of the eigenvalue w near `guess`, for the arm at p."""
         family = self.family(p)
-        # The family holds for |w| <= W: half of W leaves Newton's method room.
+        # The family is valid for |w| <= W; Newton's iterates from |guess| < W/2 stay in this disc.
         if family is not None and abs(guess) < family.W / 2:
             w, slope, error = eigenvalue_in_family(family, guess, p)
-            # Beside a double eigenvalue the interpolation errors of the family are magnified.
+            # Near a double eigenvalue the interpolation errors of the family are magnified.
             if error <= ROOTS.double_root_correction * abs(w):
                 return w, slope, error
         here = self.determinant(p)
@@ -79,7 +76,7 @@ class ArmAlongPath:
         return w, -self.derivative_by_p(w, p, value.S) / value.D_w, error
 
     def derivative_by_p(self, w: complex, p: float, S: float) -> complex:
-        """dD/dp exp(-S) at w and p, by a difference between neighbouring arms."""
+        """dD/dp exp(-S) at w and p, by a difference between neighbouring arms. S: scale of the result."""
         stencil, h = self._stencil(p, math.inf)
         slope = 0j
         for offset, weight in stencil:
@@ -126,7 +123,7 @@ class ArmAlongPath:
                 return FAILED
             small = abs(in_p) <= ROOT_NEWTON.converged_step * e_p
             if small and (abs(in_x) <= ROOT_NEWTON.converged_step * e_x or abs(in_x) > last / 2):
-                # Only now: the spread takes D on further elements.
+                # Only after convergence, because D on further elements is expensive.
                 more = max(self._rounding_error_from_spread(x, p, S) / blur, 1.0)
                 e_p = max(more * e_p, abs(in_p)) + ARM_FAMILY.interpolation_error * abs(p)
                 return LocatedZero(x, p, max(more * e_x, abs(in_x)), e_p)
@@ -134,11 +131,10 @@ class ArmAlongPath:
         return FAILED
 
     def _rounding_error_from_spread(self, x: float, p: float, S: float) -> float:
-        """Estimated rounding error of D exp(-S) at real w = x: a factor times the differences of D between
-        different elements.
+        """Estimated rounding error of D exp(-S) at real w = x: `spread_factor` times (max - min) of D on
+        different divisions of the arm into elements. S: scale of the result.
 
-        Minors that are large in the middle of an arm have rounding errors that the `noise` of D
-        does not contain.
+        Minors that are large in the middle of an arm have rounding errors that `noise` does not contain.
         """
         arm = self.determinant(p)
         values = [
@@ -162,7 +158,7 @@ class ArmAlongPath:
         return value.D.real * scale, value.D_w.real * scale
 
     def _stencil(self, p: float, largest: float) -> tuple[tuple[tuple[int, float], ...], float]:
-        """(stencil, step) of a difference by p, with a step of at most `largest`.
+        """Returns (stencil, step) of a difference by p, with a step of at most `largest`.
 
         The step is shortened until both neighbours are valid arms: not crushed, no negative compliance or
         drag. The stencil is one-sided at a compliance or a drag of 0.

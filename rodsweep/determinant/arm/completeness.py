@@ -1,4 +1,4 @@
-"""Proof that no eigenvalue of an arm is missing from a list of known ones, from D at a few real points.
+"""Proof, from D at a few real points, that a list of an arm's eigenvalues is complete right of a line.
 
 D is entire of order 1/2 with D(0) = 1, so that D'/D(x) = sum 1/(x - w_n) over all eigenvalues. With points
 x_1 < ... < x_k right of the hull of the spectrum and c_j = prod_(i != j) 1/(x_i - x_j),
@@ -35,30 +35,30 @@ class CompletenessSettings(CompiledSettings):
     """Settings for proofs of completeness, and for the points x_j at which D'/D is summed."""
 
     spare_eigenvalues: int = 2
-    """Number of eigenvalues requested beyond the modes to prove: with two, 59 of 100 random arms still need a
-    count, without 73. A count costs more than two eigenvalues."""
+    """Number of eigenvalues requested beyond the modes to prove. With 2 additional eigenvalues, 59 of 100
+    random arms need a count; with 0, 73 arms. A count costs more than two eigenvalues."""
     point_counts: tuple[int, ...] = (3, 6)
-    """Numbers k of points x_j of successive trials: few lie closer to the hull, many suffice for a wider
-    hull."""
+    """Numbers k of points x_j of successive trials. Fewer points can lie closer to the hull; more points
+    suffice for a wider hull."""
     max_last_point: tuple[float, ...] = (1.5, 6.0)
-    """Largest x_k, for each of `point_counts`, in units of the largest known |w|. Most proofs with a larger
-    x_k fail, because unknown eigenvalues contribute like known ones; most that succeed have a smaller x_k."""
+    """Largest x_k divided by the largest known |w|, for each of `point_counts`. Most proofs with a larger x_k
+    fail, because there unknown and known eigenvalues contribute almost equally."""
     min_first_point: float = 0.35
-    """Smallest x_1, in units of the distance of the line from the imaginary axis."""
+    """Smallest x_1 divided by the distance of the line from the imaginary axis."""
     min_first_distance: float = 1e-6
-    """Smallest x_1, in 1/tau2, for a line and a hull near 0."""
+    """Smallest x_1, in 1/tau2; needed if the line and the hull are close to 0."""
     point_spread: float = 1.0
-    """x_k - x_1, in units of x_1."""
+    """(x_k - x_1)/x_1."""
     widening_factor: float = 1.3
     """Factor by which the points x_j move outwards until every term of R has a real part >= 0."""
     strip_count: int = 24
     """Number of vertical strips of the hull right of the line, each with its own bound of Re phi."""
     max_remainder: float = 0.7
-    """Largest |R| of a proof, rounding error included, over the least contribution of an unknown
-    eigenvalue."""
+    """Completeness is proved if R with its rounding error, and -R, are below this fraction of the least
+    contribution of an unknown eigenvalue."""
     rounding_of_slope: float = 10.0
-    """Relative rounding error of D'/D, in units of the relative `noise` of D: at most 0.08 between two sets
-    of elements, over 45 random arms."""
+    """Relative rounding error of D'/D divided by noise/|D|. Measured: at most 0.08 between two sets of
+    elements, over 45 random arms."""
     ranges: ClassVar = {"widening_factor": (1.0, math.inf), "max_remainder": (0.0, 1.0)}
 
     def proof_trials(self) -> list[tuple[int, float]]:
@@ -70,9 +70,10 @@ COMPLETENESS = CompletenessSettings()
 
 
 class Remainder(NamedTuple):
-    """Remainder R of the sum of phi over all eigenvalues, less the known ones (see the module).
+    """The sum R of phi over all unknown eigenvalues (see the module docstring).
 
-    rounding: rounding error of R. least_contribution: of an unknown eigenvalue right of the line.
+    rounding: rounding error of R. least_contribution: lower bound of the contribution of an unknown
+    eigenvalue right of the line to R.
     """
 
     R: float
@@ -83,10 +84,10 @@ class Remainder(NamedTuple):
 def prove_complete(
     line: float, known: Complex, error: Array, determinant: ArmDeterminant, hull: Hull
 ) -> tuple[bool, int]:
-    """(whether all eigenvalues with Re w >= line are proved to be known, number of evaluations of D).
+    """Returns (whether all eigenvalues with Re w >= line are proved to be known, number of evaluations of D).
 
-    known, error: known eigenvalues, (n,), and their absolute errors, (n,). Known eigenvalues without their
-    conjugate are ignored.
+    known, error: known eigenvalues, (n,), and their absolute errors, (n,). Complex eigenvalues whose
+    conjugate is not known are treated as unknown.
     """
     if not math.isfinite(hull.a) or not line <= 0:
         return False, 0
@@ -123,8 +124,7 @@ def largest_w_of_proof(line: float, hull: Hull, known: Complex) -> float:
 
 
 def cheapest_proof(line: float, hull: Hull, known: Complex, modes: int) -> tuple[int, float]:
-    """(number of leading eigenvalues that the cheapest proof must know, largest |w| at which this proof
-    evaluates D).
+    """Returns (number of leading eigenvalues that the cheapest proof needs, largest |w| of this proof).
 
     known: approximate eigenvalues, (n,), leading first. The cheapest proof has the smallest |w|, and so the
     fewest elements. The number is at least `modes`, or 0 if no proof is possible.
@@ -142,7 +142,7 @@ def cheapest_proof(line: float, hull: Hull, known: Complex, modes: int) -> tuple
 
 
 def _last_proof_point(points: Array) -> float:
-    """The last point x_k of a proof, (k,); inf without points."""
+    """The last of the points x_j of a proof, (k,); inf if `points` is empty."""
     return float(points[-1]) if len(points) else math.inf
 
 
@@ -150,7 +150,7 @@ def _last_proof_point(points: Array) -> float:
 def proves_completeness(found: Remainder) -> bool:
     """Whether R excludes an unknown eigenvalue right of the line.
 
-    It does not if R is far below 0: a known eigenvalue is then no root of D.
+    False also if R is far below 0: some known eigenvalue is then not a root of D.
     """
     allowed = COMPLETENESS.max_remainder * found.least_contribution
     return found.R + found.rounding < allowed and -allowed < found.R
@@ -176,7 +176,9 @@ def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
 
 @compiled
 def _turn_of_hull(points: Array, a: float, c: float) -> float:
-    """An upper bound of sum_j arg(x_j - v) over all v in the hull."""
+    """An upper bound of sum_j arg(x_j - v) over all v in the hull with constants a and c; inf if a point x_j
+    may lie in the hull.
+    """
     b = 1 - c
     total = 0.0
     for x in points:
@@ -194,8 +196,8 @@ def _turn_of_hull(points: Array, a: float, c: float) -> float:
 def remainder_of_sum(
     line: float, known: Complex, error: Array, hull: Hull, points: Array, level: tuple[float, Array]
 ) -> Remainder:
-    """The remainder R, its rounding error, and the smallest contribution of an unknown eigenvalue right of
-    the line.
+    """The sum R over the unknown eigenvalues, with its rounding error and the least contribution of an
+    unknown eigenvalue right of the line.
 
     known, error: known eigenvalues, (n,), closed under conjugation, and their errors, (n,). points: x_j,
     (k,). level: (W, propagators), W at least the last point.
@@ -244,6 +246,6 @@ def _least_right_of(line: float, points: Array, a: float, c: float) -> float:
         for x in points:
             size /= math.hypot(x - start, height)
             turn += math.atan2(height, x - stop)
-        # Off the real axis both of a pair contribute.
+        # Off the real axis both eigenvalues of a conjugate pair contribute.
         least = min(least, 2 * size * math.cos(turn) if turn < math.pi / 2 else 0.0)
     return least

@@ -24,12 +24,11 @@ from .local_waves import ArmSamples, arm_samples, scales_at, scales_at_all
 from .value import determinant_along_chain
 
 BoundedPropagators = tuple[float, Array]
-"""(W, propagators that hold for |w| <= W, (elements, terms, PADDED))."""
+"""(W, propagators that are valid for |w| <= W, (elements, terms, PADDED))."""
 
 
 class ArmDeterminant:
-    """Characteristic determinant D(w) of one arm; propagators are made for |w| <= W and kept for later values
-    of w.
+    """Characteristic determinant D(w) of one arm. Propagators for |w| <= W are made once and reused.
 
     known: (W, propagators) of this arm made earlier. Methods raise FloatingPointError if `max_elements`
     elements do not resolve the arm.
@@ -86,10 +85,10 @@ class ArmDeterminant:
         return arm_samples(float(self.rod.F), local, (lengths * weights).ravel())
 
     def level(self, size: float, highest: float | None = None) -> BoundedPropagators:
-        """(W, propagators for |w| <= W) with the smallest existing W >= size, or new ones.
+        """Returns (W, propagators that are valid for |w| <= W, (elements, terms, PADDED)) with W >= size.
 
-        Propagators: (elements, terms, PADDED). highest: largest W of existing propagators that serve, in
-        units of `size`; by default `ARM_ELEMENTS.highest`. Beyond it, propagators on fewer elements are made.
+        Existing propagators with the smallest such W are reused if W <= highest * size; otherwise new
+        propagators are made. highest: by default `ARM_ELEMENTS.highest`.
         """
         highest = ARM_ELEMENTS.highest if highest is None else highest
         size = max(size, ARM_ELEMENTS.smallest_level)
@@ -110,7 +109,7 @@ class Samples(NamedTuple):
     """Samples of n arms between the breaks of their profile.
 
     points: material coordinates u, (points,). local: `LocalCoefficients` at the points, each (n, points).
-    squares: those of `ArmSamples`, (4, n, points).
+    squares: as in `ArmSamples`, (4, n, points).
     """
 
     points: Array

@@ -1,8 +1,8 @@
 """The propagators of all arms on an interval of a path, as polynomials in the path variable p.
 
 The propagator of an element is smooth in p, like the coefficients along the arm. On elements that resolve all
-arms of the interval, the propagators of a few arms, at Chebyshev points, determine those of all others and
-their derivatives by p. The last Chebyshev coefficients show the interpolation error.
+arms of the interval, the propagators of a few arms, at Chebyshev points in p, are interpolated. This gives
+the propagators of every arm and their derivatives by p. The last Chebyshev coefficients show the error.
 """
 
 import math
@@ -27,7 +27,7 @@ from .elements.settings import ARM_ELEMENTS
 from .value import ARM_VALUE, chain_along, determinant_along_chain
 
 LINEAR_SCALE = math.inf
-"""`ArmFamily.scale` of series in p itself, not in a logarithm of p."""
+"""Value of `ArmFamily.scale` for series in p itself, not in a logarithm of p."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,18 +35,19 @@ class ArmFamilySettings(CompiledSettings):
     """Settings for the number and spacing of the arms from which a family is interpolated."""
 
     arm_counts: tuple[int, ...] = (12, 17, 24, 24, 34)
-    """Number of arms in each trial. In 21 of 24 random paths from 0 to three times a load the first
-    suffices."""
+    """Number of arms in each trial. The first number suffices on 21 of 24 random paths from 0 to three times
+    a load."""
     spacing_scales: tuple[float, ...] = (LINEAR_SCALE, LINEAR_SCALE, LINEAR_SCALE, 0.05, 0.05)
-    """`ArmFamily.scale` of each trial, over the interval's length. The stretch of compressed rubber has
-    branch points at complex forces of the size of its stiffness, near which a logarithmic spacing needs fewer
-    arms."""
+    """`ArmFamily.scale` divided by the length of the interval of p, for each trial. The stretch of compressed
+    rubber has branch points at complex forces of the size of its stiffness; near these, a logarithmic spacing
+    needs fewer arms."""
     max_entries: int = 500_000
-    """Maximum number of entries of one arm's propagators; beyond, arms one by one are faster."""
+    """No family is made if the propagators of one arm have more entries: single arms are then faster."""
     converged_tail: float = 1e-15
-    """Last two Chebyshev coefficients of a propagator, over its largest entry, that are rounding errors."""
+    """The series has converged if the last two Chebyshev coefficients of every propagator are at most this
+    number times its largest entry."""
     coefficient_tail_factor: float = 10.0
-    """Factor on `converged_tail` for the coefficients along the arms."""
+    """The tolerance for series of the coefficients along the arms is `converged_tail` times this factor."""
 
     @property
     def interpolation_error(self) -> float:
@@ -221,10 +222,10 @@ def determinant_in_family(family: ArmFamily, w: complex, p: float) -> Determinan
 
 @compiled
 def eigenvalue_in_family(family: ArmFamily, guess: complex, p: float) -> tuple[complex, complex, float]:
-    """(w, dw/dp, error of w) of the eigenvalue near the guess, for the arm at p of a family, by Newton's
-    method.
+    """Returns (w, dw/dp, error of w) of the eigenvalue near `guess`, for the arm at p of a family.
 
-    Not for a nearly double eigenvalue. Steps end where rounding stops their decrease; a real w stays real.
+    Newton's method ends when rounding stops the decrease of the steps. A real guess gives a real w. Not for
+    nearly double eigenvalues.
     """
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)

@@ -1,4 +1,4 @@
-"""Local exponents of D along an arm: those of a uniform rod with the coefficients at a point of the arm.
+"""Local exponents of D along an arm: exponents of a uniform rod with the coefficients at a point of the arm.
 
 The minors of `rodsweep.determinant.arm.elements.collocation` grow like exp(+-sqrt(z+-) u), with
 
@@ -55,8 +55,8 @@ def size_of(real: float, imag: float) -> float:
 
 @compiled_for_vectors
 def scales_at(w: complex, samples: ArmSamples) -> tuple[float, float]:
-    """(wave number, length) at w: |q| averaged along the arm over both pairs of exponents, and 1 over the
-    mean of the larger |dq/dw|.
+    """Returns (wave number, length) at w. wave number: |q| averaged along the arm over both pairs of
+    exponents. length: 1/(mean along the arm of the larger |dq/dw|).
     """
     number = 0.0
     fast = 0.0
@@ -81,7 +81,7 @@ def scales_at(w: complex, samples: ArmSamples) -> tuple[float, float]:
 
 @compiled
 def scales_at_all(w: Complex, samples: ArmSamples) -> Array:
-    """`scales_at` of each w, (n,): an array (2, n)."""
+    """Wave numbers and lengths of `scales_at` at every w, (n,), as an array, (2, n)."""
     found = np.empty((2, len(w)))
     for n in range(len(w)):
         # Conjugates, which stand next to each other, have the same scales.

@@ -27,8 +27,7 @@ T = TypeVar("T")
 def refine_mesh_eigenvalues(
     raw: Complex, determinant: ArmDeterminant, hull: Hull, most_waves: float, largest: float = 0.0
 ) -> Roots:
-    """Roots of an arm's D refined from the eigenvalues `raw` of a mesh, complex, (n,), that approximate a
-    root of D.
+    """Roots of an arm's D refined from those eigenvalues `raw` of a mesh, (n,), that approximate a root of D.
 
     most_waves: largest wave number |q| that the mesh resolves. largest: |w| at which D will be needed
     afterwards. Infinite eigenvalues, which rounding makes finite, are dropped: they lie outside the hull,
@@ -67,9 +66,7 @@ def refine_mesh_eigenvalues(
 
 
 def _values_at_roots(w: list[complex], function: Callable[[complex], T]) -> list[T]:
-    """The value of a function at each w; computed once for neighbouring conjugates, at which the value is
-    equal.
-    """
+    """The values of `function` at all w. Two successive conjugates have equal values, computed once."""
     values: list[T] = []
     for k, value in enumerate(w):
         pair = k > 0 and value == w[k - 1].conjugate()
@@ -78,7 +75,8 @@ def _values_at_roots(w: list[complex], function: Callable[[complex], T]) -> list
 
 
 def _make_elements(determinant: ArmDeterminant, size: float, largest: float) -> None:
-    """Makes elements for all |w| up to `size`, or up to `largest` if this needs only few more elements."""
+    """Makes elements for all |w| up to `largest` if `largest` is at most `max_w_ratio` times `size`, else for
+    all |w| up to `size`."""
     if size < largest <= ARM_ROOTS.max_w_ratio * size:
         with suppress(FloatingPointError):  # too many elements: they are needed later, if at all
             determinant.level(largest)
@@ -96,9 +94,9 @@ def _is_in_eigenvalue_box(w: complex, hull: Hull) -> bool:
 def _separate_close_roots(
     w: list[complex], error: list[float], determinant: ArmDeterminant
 ) -> tuple[list[complex], list[float]]:
-    """(w, reach), after each two eigenvalues closer than their errors have been moved to two roots of D.
+    """Returns (w, reach), with every two eigenvalues closer than their errors moved to two roots of D.
 
-    error: errors of w. reach: half the distance of a moved eigenvalue from its partner; inf for the unmoved.
+    error: errors of w. reach: half the distance of an eigenvalue from its partner; inf if it was not moved.
     """
     w = w.copy()
     reach = [math.inf] * len(w)
@@ -142,8 +140,8 @@ def _refined_all(guesses: list[tuple[complex, float]], determinant: ArmDetermina
 
 
 def _with_equal_roots(found: list[_LocatedRoot], determinant: ArmDeterminant) -> Array:
-    """Errors of the roots, (n,). If two are one root of D, at least the distance 2 |D'/D''| of the next
-    root."""
+    """Errors of the roots, (n,). For two entries that are the same root of D, the error is at least the
+    distance 2 |D'/D''| of the next root."""
     error = [root.error for root in found]
     for i, one in enumerate(found):
         for j in range(i + 1, len(found)):

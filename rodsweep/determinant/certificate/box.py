@@ -30,7 +30,7 @@ class BoxSettings(CompiledSettings):
     """Settings for the a-priori box of all eigenvalues."""
 
     padding: float = 0.01
-    """Length added to both bounds of the box, in units of the depth."""
+    """This fraction of the depth is added to both bounds of the box."""
     least_padding: float = 1e-6
     """Length added to both bounds of the box, in 1/tau2; far below |w| of the first eigenvalue of a rod at
     rest, 12."""
@@ -46,16 +46,15 @@ class ZeroFreeDiscSettings:
     """Settings for the disc about w = 0 in which D has no zero."""
 
     max_departure: float = 0.5
-    """Largest |D - 1| in the disc about w = 0. D has no zero where |D - 1| < 1, so any bound below 1 would
-    do."""
+    """Bound of |D - 1| in the disc about w = 0. Any bound below 1 excludes zeros of D."""
 
 
 ZERO_FREE_DISC = ZeroFreeDiscSettings()
 
 
 def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
-    """Bounds (max Re w, max |Im w|), in 1/tau2, of all eigenvalues with Re w >= -depth, depth >= 0; inf
-    without a bound.
+    """Bounds (max Re w, max |Im w|), in 1/tau2, of all eigenvalues with Re w >= -depth, depth >= 0; inf if
+    no bound exists.
     """
     return box_from_amplification(sqrt(squared_amplification(rod)), depth)
 
@@ -73,8 +72,7 @@ def box_from_amplification(a: float, depth: float) -> tuple[float, float]:
 
 @lru_cache(maxsize=1)
 def squared_amplification(rod: Rod) -> float:
-    """The constant a^2 of the a-priori box, in its smallest value over all weights rho; inf if no bound
-    exists.
+    """The smallest constant a^2 of the a-priori box over all weights rho; inf if no bound exists.
 
     For g > 0 the minimum is F^2 g/(nu + |F| sqrt(c2 gamma3)), in every limit. For g < 0 (a pull beyond the
     shear stiffness) rho g - nu has no zero, and gamma3 = 0 gives no bound.
@@ -91,8 +89,8 @@ def squared_amplification(rod: Rod) -> float:
 
 
 def squared_amplification_over(path: Path, start: float, stop: float) -> float:
-    """An upper bound of `squared_amplification` over all rods of a path with p from start to stop; inf
-    without a bound.
+    """An upper bound of `squared_amplification` over all rods of a path with p from start to stop; inf if no
+    bound is known.
     """
     ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
     return squared_amplification_between(ends[0], ends[1])
@@ -103,8 +101,8 @@ def squared_amplification_between(first: Coefficients, last: Coefficients) -> fl
     """An upper bound of `squared_amplification` over all rods between two rods of a path; inf if no
     bound is known.
 
-    Every factor of the bound is monotone along a path, so its extremes are at the two rods; nu g is not, and
-    not used.
+    Every factor of the bound is monotone along a path, so its extremes are at the two rods. The product nu g
+    is not monotone and not used.
     """
     load = max(abs(first.F), abs(last.F))
     # F passes 0 between loads of opposite signs.
@@ -127,7 +125,7 @@ def squared_amplification_between(first: Coefficients, last: Coefficients) -> fl
 
 def zero_free_radius(path: Path, start: float, stop: float, largest: float) -> float:
     """A radius r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r and every p of a path from start to
-    stop.
+    stop; 0 if r underflows.
     """
     ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
     T = max(c2 + gamma3 for *_, c2, gamma3 in ends)
@@ -143,7 +141,8 @@ def zero_free_radius(path: Path, start: float, stop: float, largest: float) -> f
 
 
 def zero_free_radius_of_rod(coefficients: Coefficients, largest: float) -> float:
-    """A radius r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r, for one uniform rod."""
+    """A radius r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r, for one uniform rod; 0 if r
+    underflows."""
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
     return _zero_free_radius(largest, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0))

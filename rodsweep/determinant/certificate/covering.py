@@ -40,20 +40,20 @@ class BoxProofSettings(CompiledSettings):
     first_radius_ratio: float = 0.45
     """First trial ratio t of the half-width of a box to the radius of the bidisc on which D is bounded."""
     radius_ratio_factor: float = 0.6
-    """Factor between one trial ratio t and the next."""
+    """The next trial ratio is this number times the previous trial ratio t."""
     max_radius_ratios: int = 30
     """Maximum number of trial ratios t, of which the last is 2e-7."""
     min_half_width: float = 1e-9
-    """Half-widths of a box, in units of eta and |p|, below which an undecided box is left open instead of
-    divided."""
+    """An undecided box is left open, not divided, if its half-widths are below this number times eta and
+    |p|."""
     max_boxes: int = 1_000_000
-    """Maximum number of boxes to examine; undecided boxes beyond it are left open."""
+    """After this number of examined boxes, further undecided boxes are left open, not divided."""
     same_zero_distance: float = 1.5
-    """Distance of a zero from the centre of a regular box, in half-widths, within which a zero found before
-    is the one zero of this box."""
+    """A known zero within this distance of the centre of a regular box, in half-widths of the box, is the
+    only zero in the doubled box."""
     outside_distance: float = 0.01
-    """Distance of a zero outside a regular box from its edge, in half-widths, beyond which the zero is left
-    to the neighbouring box that contains it."""
+    """A zero outside a regular box, farther from its edge than this number of half-widths, is left to the
+    neighbouring box that contains it."""
     ranges: ClassVar = {
         "first_radius_ratio": (0.0, 1.0),
         "radius_ratio_factor": (0.0, 1.0),
@@ -66,8 +66,8 @@ BOX_PROOF = BoxProofSettings()
 EMPTY = 0
 REGULAR = 1
 UNDECIDED = 2
-"""Outcomes of examining a box: EMPTY, no zero of D; REGULAR, at most one zero in the doubled box; UNDECIDED,
-no proof of either."""
+"""Outcomes of `examine_box`. EMPTY: D has no zero in the box. REGULAR: at most one zero in the doubled box.
+UNDECIDED: neither is proved."""
 
 
 class Box(NamedTuple):
@@ -94,8 +94,8 @@ def distance_from_zero_bound(value: complex, a: complex, b: complex) -> float:
 
 @compiled
 def mean_growth_rates(centre: BidiscCentre) -> DerivativePair:
-    """(L, K): growth rates d sqrt(z)/dw and d sqrt(z)/dp, averaged over the two exponentials of D by their
-    sizes.
+    """(L, K): the rates d sqrt(z)/dw and d sqrt(z)/dp, averaged over the two exponentials of D with their
+    moduli as weights.
     """
     root_plus = cmath.sqrt(centre.plus)
     root_minus = cmath.sqrt(centre.minus)
@@ -115,8 +115,8 @@ def is_remainder_below(
     """Whether the Taylor remainder M t^2/(1 - t)^power of D exp(-L dw - K dp) over a box is proved to be
     below `room`.
 
-    t: trial ratio of the box to the bidisc on which M bounds the function. rates: (L, K). half: half-widths
-    of the box.
+    t: half-widths of the box divided by the radii of the bidisc on which M bounds the function; several t are
+    tried. rates: (L, K). half: half-widths of the box.
     """
     t = BOX_PROOF.first_radius_ratio
     last = math.inf
@@ -137,11 +137,11 @@ def is_remainder_below(
 def examine_box(
     w: complex, coefficients: Coefficients, direction: Coefficients, half: tuple[float, float]
 ) -> tuple[int, float, float]:
-    """(EMPTY, REGULAR or UNDECIDED, cost in eta, cost in p) of the box about w = i eta with half-widths
-    `half`.
+    """Returns (outcome, cost in eta, cost in p) for the box about w = i eta with half-widths `half`.
 
-    Cost: change of the exponents of D across an undecided box in this variable, by which the variable to
-    divide is chosen; 0 for other boxes.
+    outcome: EMPTY, REGULAR or UNDECIDED. cost: for an undecided box, the change of the exponents of D across
+    the box in this variable; the variable with the higher cost is divided. 0 for other boxes. coefficients,
+    direction: coefficients at the centre and their derivative by p.
     """
     D, D_w, D_p, S, noise = determinant_along(w, coefficients, direction)
     centre = bidisc_centre(w, coefficients, coefficient_derivatives(coefficients, direction), S)
@@ -182,7 +182,7 @@ def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[f
     in_w = max(abs(plus[0]) / root_plus, abs(minus[0]) / root_minus) * half[0] / 2
     in_p = max(abs(plus[1]) / root_plus, abs(minus[1]) / root_minus) * half[1] / 2
     stiffness = abs((nu + F * c2) * nu) + c2 * gamma3 * size
-    # Besides the exponents the radicand of P must not change much, for the bounds on the bidisc.
+    # The bounds on the bidisc also need a small change of the radicand of P.
     factor = abs(centre.derivatives.G1) + abs(centre.derivatives.X1) * size
     return max(in_w, half[0] / size), max(in_p, factor * half[1] / max(stiffness, EXPONENTS.least_divisor))
 
@@ -191,7 +191,7 @@ def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[f
 def cover_with_boxes(
     first: Array, origin: Coefficients, direction: Coefficients
 ) -> tuple[list[LocatedZero], list[Box], int]:
-    """(zeros of D(i eta; p), boxes left open, number of examined boxes) in the boxes `first`, (n, 4).
+    """Returns (zeros of D(i eta; p) in the boxes `first`, (n, 4); boxes left open; number of examined boxes).
 
     origin, direction: coefficients at p = 0 and their derivative by p.
     """

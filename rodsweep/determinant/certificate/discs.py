@@ -22,15 +22,15 @@ class DiscSettings(CompiledSettings):
     """Settings for upper bounds of D over discs in w and bidiscs in (w, p)."""
 
     rounding_over_noise: float = 4.0
-    """Bound of the rounding error of D, in units of its `noise`; the worst of 20 000 unfavourable values had
+    """|rounding error of D| <= this number times `noise`; the largest ratio of 20 000 unfavourable values was
     0.7."""
     clearance: float = 0.9
-    """Largest change of D, in units of |D|, that a proof may allow for: below 1, so that D cannot vanish."""
+    """A proof needs a change of D over the disc below this number times |D|; below 1, so that D is not 0."""
     max_expansion_change: float = 0.5
-    """Largest relative change x of z over a disc at which sqrt(z) is expanded about its centre. The
-    remainder, like x^2/(1 - x), is small up to here."""
+    """sqrt(z) is expanded about the centre of a disc if the relative change x of z over the disc is below
+    this number. The remainder is proportional to x^2/(1 - x)."""
     max_factor_change: float = 0.98
-    """Largest relative change of each of the two factors of P^2 over a disc; a larger disc has no bound."""
+    """If either factor of P^2 changes over a disc by more than this fraction, the bound is inf."""
     ranges: ClassVar = {
         "clearance": (0.0, 1.0),
         "max_expansion_change": (0.0, 1.0),
@@ -48,10 +48,10 @@ Radii = tuple[float, float]
 
 
 class BidiscCentre(NamedTuple):
-    """The centre (w, p) of a bidisc, with the exponents of D there.
+    """The centre (w, p) of a bidisc, with the exponents of D at the centre.
 
-    coefficients: of the rod at p. derivatives: of these coefficients by p. S: scale of D. P, plus, minus: P,
-    z+ and z-. slopes_plus, slopes_minus: (dz/dw, dz/dp) of z+ and of z-.
+    coefficients: (F, nu, c2, gamma3) at p. derivatives: of T, N, G and X by p. S: scale of D. P, plus, minus:
+    P, z+ and z-. slopes_plus, slopes_minus: (dz/dw, dz/dp) of z+ and of z-.
     """
 
     w: complex
@@ -69,8 +69,7 @@ class BidiscCentre(NamedTuple):
 def bidisc_centre(
     w: complex, coefficients: Coefficients, change: CoefficientDerivatives, S: float
 ) -> BidiscCentre:
-    """The centre of a bidisc at w, for the rod `coefficients`; change: derivatives by p. S: scale of D at
-    w."""
+    """The centre of a bidisc at w. change: derivatives by p of T, N, G and X. S: scale of D at w."""
     at = exponent_derivatives(w, coefficients)
     along_plus, along_minus = exponent_slopes(w, at, change)
     drag = coefficients.c2 + coefficients.gamma3
@@ -94,9 +93,9 @@ def bounds_of_E_on_bidisc(
 ) -> Radii:
     """Bounds of |E(z)| and |dE/dz| over a bidisc about z, both times |exp(-L dw - K dp)| exp(-S).
 
-    slopes: (dz/dw, dz/dp). rates: (L, K). bend: bound of the nonlinear change of z. Each exponent +-sqrt(z) -
-    L dw - K dp has two bounds, of which the smaller applies: one from |sqrt(z)| alone, one from the Taylor
-    polynomial of sqrt(z) if the disc is away from z = 0. Then |E| <= exp(Re sqrt z)/2 and |dE/dz| <=
+    slopes: (dz/dw, dz/dp). rates: (L, K). bend: bound of the nonlinear change of z. S: scale of D. The
+    exponents +-sqrt(z) - L dw - K dp are bounded by means of |sqrt(z)| and, away from z = 0, by the Taylor
+    polynomial of sqrt(z); the smaller bound is used. Then |E| <= exp(Re sqrt z)/2 and |dE/dz| <=
     cosh(Re sqrt z)/24; closed forms give smaller bounds for large z.
     """
     root = cmath.sqrt(z)
@@ -118,8 +117,7 @@ def bounds_of_E_on_bidisc(
     exponentials = math.exp(min(grow - S, largest)) + math.exp(min(decay - S, largest))
     # The -1 of E = (cosh - 1)/z and its derivative.
     exponentials += 2 * math.exp(min(drift - S, largest))
-    # Bounds that hold near z = 0 too, where those by 1/|z| are useless: E(0) = 1/2 is an eighth of four
-    # exponentials.
+    # These bounds hold near z = 0 too, unlike bounds by 1/|z|: E(0) = 1/2 is an eighth of four exponentials.
     E = 1 / 8
     E1 = 1 / 48
     if abs(z) > change:

@@ -28,18 +28,19 @@ class DominanceSettings(CompiledSettings):
     """Settings for discs in which one exponential of D dominates."""
 
     first_radius: float = 0.25
-    """Radius of the first trial disc, in units of the distance of its edge point from the nearest branch
-    point of z+-."""
+    """(radius of the first trial disc) / (distance of the start of its step from the nearest branch point of
+    z+-)."""
     max_halvings: int = 2
-    """Maximum number of halvings of a trial disc before dominance counts as not proved."""
+    """The segment of proved dominance ends if a trial disc halved this many times is still not proved."""
     overlap: float = 1e-3
-    """Relative excess of a disc's radius over half the step that it covers, so that rounding leaves no gap
-    between discs."""
+    """The radius of a disc exceeds half the step that the disc covers by this fraction, so that rounding
+    leaves no gap between discs."""
     end_rounding: float = 1e-15
-    """Relative distance from the end of a segment that is rounding error: a few units in the last place."""
+    """A step ends at the end of the segment if the relative distance to the end is below this number, the
+    size of rounding errors."""
     largest_factor_change: float = 0.5
-    """Largest relative change of each factor of A over a disc; the phase of each factor then stays within a
-    right angle."""
+    """Dominance is proved only on discs over which no factor of A changes by more than this fraction; the
+    phase of each factor then changes by less than a right angle."""
     ranges: ClassVar = {"first_radius": (0.0, 1.0), "largest_factor_change": (0.0, 1.0)}
 
 
@@ -56,7 +57,7 @@ class Exponent(NamedTuple):
 
 @compiled
 def _ordered(w: complex, coefficients: Coefficients) -> tuple[complex, Exponent, Exponent]:
-    """(P, dominant exponent, recessive exponent) at w; the dominant one has the larger Re sqrt(z)."""
+    """(P, dominant exponent, recessive exponent) at w; the dominant exponent has the larger Re sqrt(z)."""
     P, P_w, _, plus, minus = exponent_derivatives(w, coefficients)
     drag = coefficients.c2 + coefficients.gamma3
     of_plus = Exponent(plus, drag + 2 * P_w, cmath.sqrt(plus))
@@ -68,10 +69,10 @@ def _ordered(w: complex, coefficients: Coefficients) -> tuple[complex, Exponent,
 
 @compiled
 def _bend_and_turn(w: complex, rho: float, P: complex, coefficients: Coefficients) -> tuple[float, float]:
-    """Bounds over the disc |dw| <= rho of (nonlinear part of z+-, change of dz+-/dw); inf if the disc is too
-    large.
+    """Returns upper bounds (nonlinear part of z+-, change of dz+-/dw) over the disc |dw| <= rho about w; inf
+    if the disc is too large.
 
-    z+- = T w - F g +- 2 P, so only P has a nonlinear part, which 2 - sqrt(1 - e) majorises.
+    Only the term 2 P of z+- = T w - F g +- 2 P is nonlinear in w; 2 - sqrt(1 - e) majorises sqrt(1 + e).
     """
     F, nu, c2, gamma3 = coefficients
     X = c2 * gamma3
@@ -104,8 +105,7 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     L = slope / (2 * root)
     drift = abs(L) * rho
     curve = nonlinear_root_bound(root, bend, x)
-    # If the recessive exponent changes little, the two are compared by their rates; otherwise by crude
-    # extremes.
+    # Exponents are compared by their rates if the recessive exponent changes little, otherwise by extremes.
     lowest = root.real - drift - curve
     change_other = abs(slope_other) * rho + bend
     highest = math.sqrt(max((abs(z_other) + z_other.real) / 2 + change_other, 0.0))
@@ -131,8 +131,8 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
 
 @compiled
 def dominant_factors(w: complex, coefficients: Coefficients) -> tuple[complex, complex]:
-    """(w z'/z, sqrt z) of the dominant exponential A of D at w, up to the factor 1/4: factor and exponent of
-    A.
+    """Returns (w z'/z, sqrt z) at w: four times the factor, and the exponent, of the dominant exponential A
+    of D.
     """
     _, dominant, _ = _ordered(w, coefficients)
     return w * dominant.slope / dominant.z, dominant.root
@@ -140,7 +140,7 @@ def dominant_factors(w: complex, coefficients: Coefficients) -> tuple[complex, c
 
 @compiled
 def _phase_beside(w: complex, factors: tuple[complex, complex], coefficients: Coefficients) -> float:
-    """arg(1 + e) = arg(D/A) at w, the phase of D beside the phase of A. factors: `dominant_factors` at w."""
+    """arg(1 + e) = arg(D/A), the phase of D minus the phase of A, at w. factors: `dominant_factors` at w."""
     D, _, _, _ = scaled_determinant(w, coefficients)
     factor, root = factors
     return cmath.phase(D / (factor * cmath.exp(complex(0.0, root.imag))))
@@ -150,10 +150,10 @@ def _phase_beside(w: complex, factors: tuple[complex, complex], coefficients: Co
 def phase_over_dominated_segment(
     start: complex, direction: complex, length: float, coefficients: Coefficients
 ) -> tuple[float, float, int]:
-    """(length of the segment from `start` on which dominance is proved, change of arg D over it, number of
-    discs).
+    """Returns (length, change, discs). length: of the segment from `start` on which dominance is proved, at
+    most the argument `length`. change: of arg D over this segment. discs: number of examined discs.
 
-    direction: unit vector of the segment. length: its greatest length.
+    direction: unit vector of the segment.
     """
     F, nu, c2, gamma3 = coefficients
     X = c2 * gamma3
@@ -186,7 +186,7 @@ def phase_over_dominated_segment(
         t = length if t + 2 * rho >= length * (1 - DOMINANCE.end_rounding) else t + 2 * rho
         w = start + direction * t
         after = dominant_factors(w, coefficients)
-        # The phase of A in closed form, however many turns it makes over the stretch.
+        # The change of arg A over the step, in closed form; it may exceed 2 pi.
         total += (after[1] - here[1]).imag + cmath.phase(after[0] / here[0])
         here = after
     if t > 0.0:

@@ -24,13 +24,12 @@ class CoveringSettings:
     max_eta_ratio: float = 4.0
     """Largest ratio of the upper to the lower end of a first box in eta."""
     max_nu_decrease: float = 0.5
-    """Largest decrease of nu over an interval of p, in units of nu at its start."""
+    """nu decreases over an interval of p by at most this fraction of nu at the start of the interval."""
     min_interval: float = 1e-6
-    """Shortest interval, in units of the longest, near p = 0, where each interval doubles a drag or
-    compliance p."""
+    """Shortest interval divided by the longest interval. Near p = 0 intervals are short, because a drag or
+    compliance p at most doubles over an interval."""
     min_last_interval: float = 1e-3
-    """Shortest last interval of p, in units of the interval before it; a shorter one is merged with the
-    interval before it."""
+    """If the last interval of p is below this fraction of the previous interval, the two are merged."""
     padding: float = 1e-6
     """Length added to the upper bound of eta, in 1/tau2, because the bound is 0 at F = 0."""
 
@@ -61,7 +60,7 @@ def path_intervals(path: Path, start: float, stop: float) -> list[tuple[float, f
 def first_boxes(path: Path, start: float, stop: float) -> Array | None:
     """Boxes (eta_from, eta_to, p_from, p_to) that contain every crossing with p from start to stop, (n, 4).
 
-    None without an a-priori bound.
+    None if no a-priori bound exists.
     """
     boxes = []
     for a, b in path_intervals(path, start, stop):

@@ -4,11 +4,12 @@ All eigenvalues with Re w >= -depth lie in the box of `rodsweep.determinant.cert
 is the winding number of the entire function D around the box. D is real on the real axis, so the upper half
 of the box suffices: count = (change of arg D along the upper half)/pi.
 
-The change of phase is proved. Where one exponential of D dominates, long steps are possible
-(`rodsweep.determinant.certificate.dominance`); elsewhere the proof steps from node to node. Within the
-`reach` of a node D has no zero, and its phase, without a linear part, changes by less than pi/2. A step is
-accepted only if one end lies within the reach of the other end. If the reach is 0, the rounding error of D
-cannot separate a zero of D from the line, and the count fails.
+The change of phase is proved. Where one exponential of D dominates, large discs without a zero of D are
+proved (`rodsweep.determinant.certificate.dominance`); elsewhere the contour is covered by smaller discs about
+points called nodes. Within the `reach` of a node D has no zero, and the phase of D, without a linear part,
+changes by less than pi/2. A step between two nodes is accepted only if one node lies within the reach of the
+other node. If the reach is 0, the rounding error of D cannot separate a zero of D from the node, and the
+count fails.
 """
 
 import cmath
@@ -35,23 +36,21 @@ class CountSettings(CompiledSettings):
     width_added: float = 50.0
     """Length added to the width of the box, in 1/tau2, because a wider box is cheaper to walk around."""
     min_height: float = 0.5
-    """Smallest height of the box, in units of the line's distance from the imaginary axis."""
+    """Smallest height of the box divided by the distance of the line from the imaginary axis."""
     integer_tolerance: float = 1e-3
-    """Distance of the computed winding number from the nearest integer beyond which the count fails."""
+    """The count fails if the computed winding number differs from the nearest integer by more than this."""
     walk_length: float = 0.25
-    """Length, in units of |w|, of a walk from node to node before dominance is tried again; doubled after
-    each failure."""
+    """After a failed proof of dominance at w, the phase is followed by nodes over this length times |w|
+    before dominance is tried again. The length doubles after each failure."""
     max_step: float = 1.9
-    """Longest step tried from a node, in units of its reach. Beyond 1 the reach of the next node must cover
-    the step."""
+    """The first step tried from a node is this number times its reach. A step beyond the reach needs a next
+    node whose reach covers the step."""
     safe_step: float = 0.999
-    """Step from a node, in units of its reach, that is certainly within the reach despite rounding."""
+    """If the first step fails, the step is this number times the reach: below 1, because of rounding."""
     min_reach: float = 1e-13
-    """Reach of a node, in units of |w|, below which the contour is taken to meet a zero of D, and the count
-    fails."""
+    """The count fails if the reach of a node is below this number times |w|: a zero of D is too close."""
     max_edge_nodes: int = 20_000
-    """Maximum number of nodes on one edge of the box; the paper's rods need about 30 on all edges
-    together."""
+    """Maximum number of nodes on one edge of the box; the paper's rods need about 30 nodes on all edges."""
     ranges: ClassVar = {"safe_step": (0.0, 1.0)}
 
 
@@ -67,7 +66,7 @@ NO_INTEGER = "the winding number of D is not an integer within rounding errors"
 class EigenvalueCount:
     """Number of eigenvalues right of a vertical line, and number of nodes on the contour.
 
-    number: None for a failed count, whose reason is `why_not`.
+    number: None if the count failed. why_not: reason of the failure.
     """
 
     number: int | None
@@ -77,10 +76,10 @@ class EigenvalueCount:
 
 @compiled
 def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
-    """(change of arg D along the segment from start to end, number of nodes), by long steps where one
-    exponential of D dominates, elsewhere from node to node.
+    """Returns (change of arg D along the segment from `start` to `end`, number of nodes).
 
-    The number of nodes is negative after a failure.
+    Where one exponential of D is proved to dominate, `phase_over_dominated_segment` gives the change;
+    elsewhere `phase_change_by_nodes` does. If the change cannot be proved, returns (0, -number of nodes).
     """
     length = abs(end - start)
     direction = (end - start) / length
@@ -111,9 +110,10 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
 
 @compiled
 def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
-    """(change of arg D along the segment from start to end, number of nodes), from node to node.
+    """Returns (change of arg D along the segment from `start` to `end`, number of nodes), by zero-free discs
+    about successive nodes on the segment.
 
-    The number of nodes is negative after a failure.
+    If the reach of a node is too small, or too many nodes are needed, returns (0, -number of nodes).
     """
     length = abs(end - start)
     direction = (end - start) / length
@@ -135,7 +135,7 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
             if inside or abs(there.w - here.w) < max(here.reach, there.reach):
                 break
             ahead = COUNT.safe_step * here.reach
-        # The linear part of arg D may be many turns; only the rest, less than pi/2, is read off the values.
+        # The linear part of the change may exceed 2 pi; the values of D give the rest, less than pi/2.
         turn = ((here.L if here.reach >= there.reach else there.L) * (there.w - here.w)).imag
         total += turn + cmath.phase(there.D / here.D * cmath.exp(complex(0.0, -turn)))
         t = length if there.w == end else t + ahead
@@ -147,10 +147,10 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
 def contour_phase_change(
     line: float, foot: float, corner: complex, coefficients: Coefficients
 ) -> tuple[float, int]:
-    """(change of arg D, number of nodes) along the upper half of the box.
+    """Returns (change of arg D along the upper half of the box, number of nodes).
 
     The contour goes from the real axis up to `corner`, left to Re w = line, and down to the height `foot`.
-    The number of nodes is negative after a failure.
+    The number of nodes is negative if the change could not be proved.
     """
     top = complex(line, corner.imag)
     right, nodes = phase_change(complex(corner.real, 0.0), corner, coefficients)
@@ -170,7 +170,7 @@ def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
     """Proved number of transverse eigenvalues of a uniform rod with Re w > line, for any real `line`, in
     1/tau2.
 
-    No exception is raised: a failed proof is a Count without a number, with the reason.
+    A failed proof raises no exception: `number` is then None and `why_not` the reason.
     """
     real, imag = eigenvalue_box(rod, max(-line, 0.0))
     if not math.isfinite(imag) or not math.isfinite(real):

@@ -32,11 +32,11 @@ class NodeDiscSettings(CompiledSettings):
     """Settings for the disc about a node on which D is bounded."""
 
     branch_distance: float = 3.0
-    """Least distance of a node from the nearest branch point, in units of the radius of its disc."""
+    """Least ratio of the distance of a node from the nearest branch point to the radius of its disc."""
     factor_change: float = 0.4
     """Largest relative change of z+- over a disc, so that the exponents of D change by order one."""
     min_root_modulus: float = 1e-3
-    """|z+-| below which sqrt(z+-) does not limit the radius of a disc."""
+    """If |z+-| is below this number, sqrt(z+-) does not limit the radius of the disc."""
     ranges: ClassVar = {"branch_distance": (1.0, math.inf)}
 
 
@@ -44,7 +44,7 @@ NODE_DISC = NodeDiscSettings()
 
 
 class ZeroFreeDiscNode(NamedTuple):
-    """A point w with D exp(-S), L = D'/D, and the reach: the distance from w within which D has no zero."""
+    """A point w with D exp(-S), L = D'/D, and the reach: radius of a disc about w proved free of zeros."""
 
     w: complex
     D: complex
@@ -66,7 +66,7 @@ def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -
     if c2 * gamma3 > 0:
         rho = min(rho, stiffness / (NODE_DISC.branch_distance * c2 * gamma3))
     rho = min(rho, (S + 1) / max(abs(L), EXPONENTS.least_divisor))
-    # Both exponentials count by what they contribute: a recessive one, with much slack, may change faster.
+    # A recessive exponential contributes little to D (large slack), so it may change more over the disc.
     for sign, z in ((1.0, plus), (-1.0, minus)):
         slope = c2 + gamma3 + sign * 2 * P1
         root = cmath.sqrt(z)

@@ -24,31 +24,31 @@ class RootNewtonSettings(CompiledSettings):
     """Settings of Newton's method for eigenvalues, crossings and double eigenvalues."""
 
     max_steps: int = 15
-    """Maximum number of Newton steps to a crossing; twice as many to a double eigenvalue."""
+    """Maximum number of Newton steps to a crossing, and half the maximum number to a double eigenvalue."""
     max_refinements: int = 12
     """Maximum number of Newton steps to an eigenvalue."""
     largest_step: float = 20.0
-    """Largest Newton step to a crossing, in units of the expected sizes of eta and p; a larger step is a
-    failure."""
+    """Newton's method for a crossing fails after a step larger than this number times the expected sizes of
+    eta and p."""
     converged_step: float = 4.0
-    """Newton step, in units of the rounding error of the zero, at which Newton's method has converged."""
+    """Newton's method has converged if |step| <= this number times the rounding error of the zero."""
     jacobian_step: float = 1e-5
     """Relative step of the differences in the Jacobian of a double eigenvalue, which need not be accurate."""
     stagnant_step: float = 1e-9
-    """Newton step relative to p. A smaller step that is not half of its predecessor is rounding error:
-    Newton's method has converged."""
+    """Newton's method has also converged if |step| is below this number times |p| and more than half of the
+    previous |step|: such a step is rounding error."""
     real_tolerance: float = 1e-14
-    """|Im w|/|w| below which an eigenvalue is taken to be real: the size of rounding errors."""
+    """An eigenvalue w is set to Re w if |Im w| <= this number times |w|, the size of rounding errors."""
 
 
 ROOT_NEWTON = RootNewtonSettings()
 
 
 class LocatedZero(NamedTuple):
-    """A crossing at w = i eta, or a double eigenvalue at w = x, with p and the errors of both; all nan after
-    a failure.
+    """A crossing at w = i eta, or a double eigenvalue at w = x, on a path at p; all fields are nan after a
+    failure.
 
-    eta_or_x: eta or x. error: its error. error_of_p: error of p.
+    eta_or_x: eta or x. error: error of eta_or_x. error_of_p: error of p.
     """
 
     eta_or_x: float
@@ -68,7 +68,8 @@ def crossing_newton(
     """The zero of D(i eta; p) near the guess (eta, p), with errors from rounding and the last Newton step.
 
     origin, direction: coefficients at p = 0 and their derivative by p. scale: expected sizes of eta and p.
-    `FAILED` after a step beyond `ROOT_NEWTON.largest_step`, at eta <= 0, or without convergence.
+    Returns `FAILED` if a step exceeds `ROOT_NEWTON.largest_step`, if eta <= 0, or if the method does not
+    converge.
     """
     last = math.inf
     for _ in range(ROOT_NEWTON.max_steps):
@@ -159,8 +160,8 @@ def _real(
 def refine_eigenvalue(w: complex, coefficients: Coefficients, farthest: float = math.inf) -> complex:
     """The eigenvalue of a uniform rod near w, by Newton's method until rounding error stops the convergence.
 
-    A real guess w gives a real eigenvalue. farthest: a first Newton step of at least this length is not
-    taken.
+    A real guess w gives a real eigenvalue. farthest: if the first Newton step is at least this long, w is
+    returned unchanged.
     """
     real = w.imag == 0
     last = 2 * farthest
@@ -186,7 +187,9 @@ def refine_eigenvalue(w: complex, coefficients: Coefficients, farthest: float = 
 def eigenvalue_newton(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> tuple[complex, complex, float]:
-    """(w, dw/dp, error of w) of the simple eigenvalue of a uniform rod near the guess w."""
+    """Returns (w, dw/dp, error of w) of the simple eigenvalue w of a uniform rod near the guess w. direction:
+    d(F, nu, c2, gamma3)/dp.
+    """
     w = refine_eigenvalue(w, coefficients)
     value = determinant_along(w, coefficients, direction)
     return w, -value.D_p / value.D_w, max(abs(value.D), value.noise) / abs(value.D_w)

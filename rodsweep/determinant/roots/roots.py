@@ -2,9 +2,9 @@
 
 The mesh has to be only as fine as Newton's method needs. The accuracy of an eigenvalue is then the accuracy
 of D, at the cost of a few evaluations of D. Two eigenvalues closer than the errors of the mesh are first
-moved to the roots of the quadratic Taylor polynomial of D about their middle. The polynomial decides whether
-the two are real or complex: Newton's method from two real guesses would not converge to a complex pair, nor
-the reverse.
+moved to the roots of the quadratic Taylor polynomial of D about their middle. These roots are real or complex
+as the eigenvalues are; Newton's method from two real guesses would not converge to a complex pair, and from a
+complex pair not to real eigenvalues.
 """
 
 import cmath
@@ -33,11 +33,10 @@ class Roots(NamedTuple):
     """Eigenvalues of a mesh refined to roots w of D, sorted by descending real part, then frequency; all
     arrays are (k,).
 
-    indices: index of each root in the list of the mesh. error: absolute error estimates. displacement:
-    distance of the mesh's eigenvalue from the root, in units of |w| or of the length over which D changes,
-    whichever is larger. wave_number: largest |q|, in 1/L. on_the_axis: whether the root is imaginary within
-    its error. unmatched_ahead: number of eigenvalues of the mesh inside the a-priori box and right of all
-    roots that approximate no root.
+    indices: index of each root in the list of eigenvalues of the mesh. error: absolute error estimates.
+    displacement: |eigenvalue of the mesh - root| / max(|w|, length over which D changes). wave_number:
+    largest |q|, in 1/L. on_the_axis: whether the root is imaginary within its error. unmatched_ahead: number
+    of eigenvalues of the mesh that lie in the a-priori box right of all roots and do not approximate a root.
     """
 
     indices: NDArray[np.int64]
@@ -51,12 +50,12 @@ class Roots(NamedTuple):
 
 @compiled
 def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
-    """(distance from w to the nearest root of D, length, wave number), as `newton_correction`, but also near
-    double roots.
+    """Returns (estimated distance from w to the nearest root of D, length, wave number), as
+    `newton_correction`, but also near double roots.
 
-    e is |D| or, if larger, its rounding error. The Newton correction e/|D'| is valid if |D'|^2 is large
-    against e |D''|. Closer to a double root, at the distance |D'/D''| from the middle of both roots, the
-    roots cannot be separated within sqrt(2 e/|D''|) of the middle.
+    With e = max(|D|, rounding error of D), the Newton correction e/|D'| is valid if |D'|^2 is large against
+    e |D''|. Otherwise w lies at the distance |D'/D''| from the middle of two roots, and these lie within
+    sqrt(2 e/|D''|) of the middle.
     """
     error, length, wave = newton_correction(w, coefficients)
     if error > ROOTS.double_root_correction * abs(w):
@@ -74,7 +73,7 @@ def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, fl
 def two_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, complex]:
     """The two roots of the quadratic Taylor polynomial of D about `middle`, for a uniform rod.
 
-    For a real `middle` the two are both real, or complex conjugates.
+    For a real `middle` the roots are both real or complex conjugates.
     """
     D, D1, S, _ = scaled_determinant(middle, coefficients)
     if middle.imag == 0:
@@ -85,8 +84,8 @@ def two_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, com
 
 @compiled
 def roots_of_parabola(middle: complex, D: complex, D1: complex, D2: complex) -> tuple[complex, complex]:
-    """The two roots of the quadratic polynomial about `middle` with value D, first derivative D1 and second
-    D2.
+    """The two roots of the quadratic polynomial with value D, first derivative D1 and second derivative D2 at
+    `middle`.
     """
     if D2 == 0:
         return middle, middle
@@ -96,10 +95,10 @@ def roots_of_parabola(middle: complex, D: complex, D1: complex, D2: complex) -> 
 
 @compiled
 def _separate(w: Complex, error: Array, coefficients: Coefficients) -> Array:
-    """Moves every two eigenvalues closer than their errors to two roots of D, in place.
+    """Replaces, in w, every two eigenvalues closer than their errors by estimates of two roots of D.
 
-    w, error: (n,). Returns half the distance of each moved eigenvalue from its partner, (n,); inf for the
-    unmoved.
+    w, error: eigenvalues and their errors, (n,). Returns for each eigenvalue half its distance from its
+    partner, (n,); inf if the eigenvalue was not moved.
     """
     reach = np.full(len(w), math.inf)
     for i in range(len(w)):
@@ -152,7 +151,7 @@ def sort_descending(w: Complex, order: NDArray) -> None:
 
 @compiled
 def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_waves: float) -> Roots:
-    """Roots of D refined from the eigenvalues `raw` of a mesh, complex, (n,), that approximate a root of D.
+    """Roots of D refined from those eigenvalues `raw` of a mesh, (n,), that approximate a root of D.
 
     amplification: square root of `rodsweep.determinant.certificate.box.squared_amplification`. most_waves:
     largest wave number |q| that the mesh resolves. Infinite eigenvalues, which rounding makes finite, are
@@ -170,7 +169,7 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
         if abs(raw[i].imag) <= ROOT_NEWTON.real_tolerance * abs(raw[i]):
             first[i] = complex(raw[i].real, 0.0)
         error[i], length[i], wave[i] = root_error(first[i], coefficients)
-        # No eigenvalue lies outside the box; what the mesh has there is its artefact.
+        # No eigenvalue lies outside the box: eigenvalues of the mesh outside the box are artefacts.
         real, imag = box_from_amplification(amplification, max(-first[i].real, 0.0))
         inside[i] = first[i].real <= real and abs(first[i].imag) <= imag
         near[i] = inside[i] and wave[i] <= most_waves and error[i] <= ROOTS.largest_of_pair * length[i]
@@ -197,10 +196,10 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
 def _refined_all(
     first: Complex, error: Array, wave: Array, near: NDArray[np.bool_], coefficients: Coefficients
 ) -> tuple[Complex, NDArray[np.bool_]]:
-    """(w, mask): eigenvalues refined to roots of D, and whether each is a root; both (k,).
+    """Returns (w, mask), both (k,). w: eigenvalues refined to roots of D. mask: whether w[i] is a root.
 
-    first: eigenvalues of the mesh, (k,). near: which of these approximate a root. error, wave, both (k,), are
-    updated in place.
+    first: eigenvalues of the mesh, (k,). near: whether first[i] approximates a root, (k,). error, wave:
+    errors and wave numbers, (k,), updated in place.
     """
     w = first.copy()
     reach = _separate(w, error, coefficients)
@@ -224,10 +223,10 @@ def _refined_all(
 
 @compiled
 def _raise_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coefficients) -> None:
-    """Raises the errors of two eigenvalues that are one root to the distance 2 |D'/D''| of the next root, in
-    place.
+    """Raises, in place, the errors of two entries of w that are the same root of D to the distance
+    2 |D'/D''| of the next root.
 
-    w, error: (n,).
+    w, error: roots and their errors, (n,).
     """
     for i in range(len(w)):
         for j in range(i + 1, len(w)):

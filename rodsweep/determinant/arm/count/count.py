@@ -2,8 +2,8 @@
 
 The number is the change of arg D along the upper half of a box that contains all these eigenvalues, divided
 by pi, as in `rodsweep.determinant.certificate.winding_number`. The phase between two nodes follows from the
-tangents log D(w) + L (v - w), L = D'/D, at both nodes, if the error of each tangent is below pi/2 where the
-two meet.
+tangents log D(w) + L (v - w), L = D'/D, at both nodes, if the error of each tangent is below pi/2 at a common
+point between the nodes.
 
 Known eigenvalues close to the line are divided out: D above stands for D(w)/prod (w - w_n), whose zeros are
 far from the line. The known eigenvalues right of the line are then added to the count.
@@ -39,11 +39,12 @@ class PhaseLost(ArithmeticError):
 
 
 class BoundaryTraversal(NamedTuple):
-    """State of a walk along the contour of a count: on side number `side`, at a distance from its start.
+    """State of a traversal of the contour of a count: on side number `side` of the box, at `distance` from
+    the start of this side.
 
-    phase_change: of arg D so far. node: the last of `nodes` nodes. reach_growth: change of the reach per
-    distance. next_distance: distance of the next node, 0 if not chosen yet. needed_size: |w| for which
-    propagators are needed to go on; 0 at the end, inf if the phase is lost.
+    phase_change: of arg D so far. nodes: number of nodes so far. node: the last node. reach_growth: change of
+    the reach per distance. next_distance: distance of the next node, 0 if not chosen yet. needed_size: |w|
+    for which propagators are needed to continue; 0 at the end, inf if the change of phase is not determined.
     """
 
     side: int
@@ -65,8 +66,8 @@ def count_right_of(
 ) -> EigenvalueCount:
     """Number of transverse eigenvalues of an arm with Re w > line, for any real `line`, in 1/tau2.
 
-    known, error: some eigenvalues, (n,), and their errors, (n,), which make the count faster. No exception is
-    raised: a failed count is a Count without a number, with the reason.
+    known, error: some eigenvalues, (n,), and their errors, (n,), which make the count faster. A failed count
+    raises no exception: `number` is then None and `why_not` the reason.
     """
     if not math.isfinite(hull.a):
         return EigenvalueCount(None, 0, "no a-priori bound on the eigenvalues applies to this rod")
@@ -116,13 +117,13 @@ def _corner(line: float, hull: Hull) -> complex:
 
 
 def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: Complex) -> tuple[float, int]:
-    """(change of arg D, without the known eigenvalues, along the upper half of the box; number of nodes).
+    """Returns (change along the upper half of the box of arg D with `known` divided out; number of nodes).
 
     Raises `PhaseLost` if a node's reach is too small, or too many nodes are needed.
     """
     corner = _corner(line, hull)
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
-    # Elements for the largest |w| first: they serve most others.
+    # The elements for the largest |w| come first, because they serve most other w of the contour.
     largest = largest_w_of_count(line, determinant, hull)
     level = determinant.level(largest, ARM_COUNT.max_level_ratio)
     samples = determinant.samples, determinant.gauss_samples
@@ -149,8 +150,7 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
     samples: tuple[ArmSamples, ArmSamples],
     level: BoundedPropagators,
 ) -> BoundaryTraversal:
-    """Continues a walk along the box until its end, or until propagators for a larger or smaller |w| are
-    needed.
+    """Continues a traversal of the box to the end, or until propagators for another |w| are needed.
 
     box: (corners, largest |w| for which propagators are known to exist). level: (W, propagators) in use.
     samples: of the arm, for the lengths over which D changes and for the dominant wave.
@@ -191,7 +191,7 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
 
 @compiled
 def _overlapping_distance(reach: float, growth: float) -> float:
-    """Distance of the next node at which the reaches of both nodes just overlap, if the reach grows by
+    """Distance to the next node at which the reaches of both nodes just overlap, if the reach changes by
     `growth` per distance.
     """
     overlap = ARM_COUNT.reach_overlap
@@ -200,8 +200,8 @@ def _overlapping_distance(reach: float, growth: float) -> float:
 
 @compiled
 def _shortened_distance(reach: float, growth: float, ahead: float) -> float:
-    """A smaller distance of the next node than `ahead`; repeated calls end within the reach of the present
-    node.
+    """A distance to the next node below `ahead`; repeated calls give a distance within the reach of the
+    present node.
     """
     nearer = min(_overlapping_distance(reach, growth), ARM_COUNT.max_step_ratio * ahead)
     return nearer if nearer > reach else min(ARM_COUNT.safe_step * reach, ahead / 2)
@@ -212,8 +212,8 @@ def _phase_between(here: PhaseNode, there: PhaseNode, samples: ArmSamples) -> fl
     """The change of arg D between two nodes whose reaches overlap, from their tangents and values of D."""
     share = here.reach / (here.reach + there.reach)
     between = here.w + share * (there.w - here.w)
-    # The tangents at both nodes predict the turn. D gives the remainder, which is below half a turn because
-    # the reaches overlap.
+    # The tangents at both nodes predict the change. The values of D give the remainder, which is below pi
+    # because the reaches overlap.
     expected = tangent(here, between, samples).imag - tangent(there, between, samples).imag
     rest = there.direction / here.direction * cmath.exp(complex(0.0, -expected))
     return expected + cmath.phase(rest)

@@ -1,8 +1,8 @@
 """Eigenvalues of an arm close to the imaginary axis, by Newton's method from points on the axis.
 
 With the dominant wave Phi, D exp(-Phi) varies slowly on the axis but for its zeros close by. Newton's method
-on this function, with the zeros found before divided out, therefore shows at each point of the axis whether a
-further zero is close. It is not proved that all are found.
+on this function, with the zeros found before divided out, converges to a further zero if a zero is close to
+the starting point. It is not proved that all zeros close to the axis are found.
 """
 
 import math
@@ -28,16 +28,16 @@ class NearAxisSettings(CompiledSettings):
     first_height: float = 0.01
     """Im w of the first starting point, in 1/tau2; crossings of all arms of the surveys lie above 1."""
     height_ratio: float = 1.25
-    """Ratio of Im w of one starting point to that of its predecessor."""
+    """Ratio of Im w of a starting point to Im w of the previous starting point."""
     max_distance: float = 0.5
-    """Largest first Newton step, and largest distance of an eigenvalue from its starting point, in units of
-    Im w of the starting point."""
+    """Newton's method stops if a step, or the distance of w from the starting point, exceeds this number
+    times Im w of the starting point."""
     max_steps: int = 12
     """Maximum number of Newton steps from one starting point."""
     converged_step: float = 1e-9
-    """Relative length of the last Newton step; Newton's method on D refines the eigenvalue later."""
+    """Newton's method has converged if |step| <= this number times |w|; eigenvalues are refined later."""
     max_modes: int = 64
-    """Maximum number of eigenvalues, the known ones included."""
+    """Maximum number of eigenvalues, including the known eigenvalues."""
     ranges: ClassVar = {"height_ratio": (1.0, math.inf), "max_distance": (0.0, 1.0)}
 
 
@@ -45,10 +45,10 @@ NEAR_AXIS = NearAxisSettings()
 
 
 def modes_near_axis(determinant: ArmDeterminant, top: float, known: Complex) -> Complex:
-    """Eigenvalues close to the imaginary axis with Im w up to `top`, one of each pair, (n,), the known ones
-    first.
+    """The known eigenvalues, followed by further eigenvalues close to the imaginary axis with Im w up to
+    `top`, one of each conjugate pair, (n,).
 
-    known: eigenvalues found before, (m,). Raises FloatingPointError if no elements resolve the arm there.
+    known: eigenvalues found before, (m,). Raises FloatingPointError if no elements resolve the arm.
     """
     found = known[: NEAR_AXIS.max_modes]
     height = NEAR_AXIS.first_height
@@ -64,8 +64,8 @@ def modes_near_axis(determinant: ArmDeterminant, top: float, known: Complex) -> 
 
 @compiled
 def _modes_from(heights: Array, known: Complex, level: BoundedPropagators, samples: ArmSamples) -> Complex:
-    """The known eigenvalues, (n,), and those that Newton's method finds from i times each of `heights`,
-    (k,)."""
+    """The known eigenvalues, (n,), followed by the eigenvalues that Newton's method finds from w = i height,
+    for each of `heights`, (k,). level: (W, propagators)."""
     found = np.empty(NEAR_AXIS.max_modes, np.complex128)
     n = len(known)
     found[:n] = known
@@ -81,9 +81,7 @@ def _modes_from(heights: Array, known: Complex, level: BoundedPropagators, sampl
 
 @compiled
 def _mode_near(start: complex, known: Complex, level: BoundedPropagators, samples: ArmSamples) -> complex:
-    """The eigenvalue close to `start` that is not among the known ones, (n,); nan if no such eigenvalue is
-    close.
-    """
+    """The eigenvalue close to `start` that is not in `known`, (n,); nan if no further eigenvalue is close."""
     w = start
     for _ in range(NEAR_AXIS.max_steps):
         value = determinant_along_chain(w, level[0], level[1])

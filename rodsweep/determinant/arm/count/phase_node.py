@@ -1,7 +1,7 @@
-"""Nodes on the contour of a count, each with a tangent of log D and the distance within which it holds.
+"""Nodes on the contour of a count, each with a tangent of log D and the radius in which the tangent is valid.
 
 The phase of D between two nodes follows from the tangents log D(w) + L (v - w), L = D'/D, at both nodes, if
-the error of each tangent is below pi/2 where the two meet.
+the error of each tangent is below pi/2 at a common point between the nodes.
 
 Outside the hull of the spectrum this condition is proved from D'/D alone. D is entire of order 1/2, so that D
 = prod (1 - w/w_n), and with the distance d of w from the hull and the unit normal n towards w
@@ -35,11 +35,11 @@ from .settings import ARM_COUNT
 
 
 class PhaseNode(NamedTuple):
-    """A point w on the contour with a tangent h of log D, and the distance from w within which h holds.
+    """A point w on the contour with a tangent h of log D.
 
-    direction, L: D/|D| and D'/D, both after division of D by the known eigenvalues. wave: (Phi, dPhi/dw) if h
-    contains the dominant wave, else 0. reach: this distance. radius: radius of the circle that gave
-    the reach, 0 without a circle.
+    direction, L: D/|D| and D'/D, with the known eigenvalues divided out of D. wave: (Phi, dPhi/dw) if h
+    contains the dominant wave, else (0, 0). reach: distance from w within which the error of h is below pi/2.
+    radius: radius of the circle from which the reach follows; 0 if the reach follows from the hull.
     """
 
     w: complex
@@ -52,7 +52,7 @@ class PhaseNode(NamedTuple):
 
 @compiled
 def tangent(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
-    """The tangent h(v) of log D at a node, less log D(w) (see the module)."""
+    """The tangent h(v) of log D at a node, without the constant log D(w) (see the module docstring)."""
     Phi, slope = node.wave
     ahead = (node.L - slope) * (v - node.w)
     return ahead + dominant_wave(v, samples) - Phi if Phi != 0 else ahead
@@ -114,7 +114,7 @@ def _node_inside(
         if rho <= ARM_COUNT.max_wave_radius * w.imag:
             wave = (dominant_wave(w, samples), slope_of_wave(w, samples))
         tried = PhaseNode(w, node.direction, node.L, wave, 0.0, rho)
-        # No smaller circle reaches farther than half of this one could.
+        # Smaller circles give at most this reach.
         enough = max(best.reach, _reach_of_circle(rho / 2, ARM_COUNT.between_points_factor, room))
         reach = math.inf
         size = -math.inf  # log of the largest |f| of the points of the circle

@@ -21,37 +21,34 @@ class ArmCountSettings(CompiledSettings):
     between_points_factor: float = 1.5
     """Safety factor on the largest |f| at the points of a circle, for larger values between the points."""
     max_change: float = 0.9
-    """Largest allowed change of f within the reach of a node, in units of |D|."""
+    """Within the reach of a node, the change of f is at most this number times |D|."""
     rounding_over_noise: float = 100.0
-    """Bound of the rounding error of D, in units of its `noise`; if |D| is smaller, the reach of the node is
-    0."""
+    """|rounding error of D| <= this number times `noise`. If |D| is below this bound, the reach is 0."""
     max_log_slope: float = 1.0
-    """Largest |L| times the unit of the radii, so that circles get smaller close to a zero of D."""
+    """Radii of circles are in units of max_log_slope/|L| if this is below the length over which D changes, so
+    that circles get smaller close to a zero of D."""
     max_known_error: float = 1e-3
-    """Largest error of a known eigenvalue that is divided out of D, in units of its distance from the
-    line."""
+    """A known eigenvalue is divided out of D only if its error is below this fraction of its distance from
+    the line."""
     max_known_distance: float = 1.0
-    """Largest distance from the line of known eigenvalues that are divided out of D, in units of |Im w| or
-    |line|, whichever is larger. If farther ones were divided out too, D would no longer follow its dominant
-    wave."""
+    """A known eigenvalue is divided out of D only if its distance from the line is below this number times
+    max(|Im w|, |line|). D without farther eigenvalues would not follow the dominant wave."""
     min_reach: float = 1e-12
-    """Reach of a node, in units of |w|, below which the contour is taken to meet a zero of D, and the count
-    fails."""
+    """The count fails if the reach of a node is below this number times |w|: a zero of D is too close."""
     max_level_ratio: float = 16.0
-    """Largest bound W of existing propagators that serve a node, in units of the |w| needed. Beyond it new
-    ones on fewer elements are made, which pays because a count evaluates D many times."""
+    """Existing propagators for |w| <= W serve a node if W <= this number times the |w| needed. Otherwise
+    propagators on fewer elements are made, because a count evaluates D many times."""
     max_nodes: int = 5000
     """Maximum number of nodes on all sides of the box; cones with tapers from 0.1 to 1 need 15 to 210."""
     reach_overlap: float = 0.95
-    """Distance of the next node, in units of the sum of the expected reaches of both nodes."""
+    """Distance to the next node divided by the sum of the expected reaches of both nodes."""
     largest_growth: float = 0.5
     """Largest expected growth of the reach per distance; the next node is then at most 3.6 reaches away."""
     min_reach_fraction: float = 0.2
-    """Fraction of a circle's radius. If the reach falls below it, the next smaller circle is tried at once,
-    which may reach 0.27 of the larger radius."""
+    """If the reach is below this fraction of a circle's radius, the next smaller circle is tried at once."""
     first_radius: float = 12.0
-    """Radius of the first circle at the first node of a side of the box, without the dominant wave, in units
-    of the length over which D changes."""
+    """Radius of the first circle at a node without a previous circle, in units of the length over which D
+    changes."""
     smallest_radius: float = 0.75
     """Radius of the smallest circle at any node, in units of the length over which D changes. Every trial
     halves the radius."""
@@ -61,9 +58,9 @@ class ArmCountSettings(CompiledSettings):
     """Largest radius of a circle with the dominant wave, in units of Im w: the wave may have branch points on
     the real axis."""
     max_step_ratio: float = 0.9
-    """Largest ratio of a new step to the step before it, whose two reaches did not overlap."""
+    """If the reaches of two nodes do not overlap, the step is shortened at least by this factor."""
     safe_step: float = 0.99
-    """Step from a node, in units of its reach, that is certainly within the reach despite rounding."""
+    """A step within the reach of a node is at most this number times the reach, because of rounding."""
     ranges: ClassVar = {
         "max_tangent_error": (0.0, math.pi / 2),
         "max_change": (0.0, 1.0),
@@ -78,8 +75,8 @@ class ArmCountSettings(CompiledSettings):
     def directions(self) -> tuple[complex, ...]:
         """Unit vectors to the points of a circle, in the order of evaluation.
 
-        Each four in succession differ most in (v - w)^2, so that most circles too large for f are given up
-        after one or two points.
+        Successive points differ much in (v - w)^2, so that circles on which |f| is too large are mostly
+        rejected after one or two points.
         """
         order = np.arange(self.circle_points).reshape(-1, 2, 2).swapaxes(1, 2).ravel()
         return tuple(np.exp(2j * np.pi * (order + 0.5) / self.circle_points).tolist())

@@ -15,10 +15,10 @@ these two solutions. The other five minors then obey a linear system of their ow
     (y^theta)' = c3 y^m - c2 theta^s
     (y^m)'     = (g + nu) theta^m + c2 s^m + (w gamma3 - F g) y^theta
 
-from s^m = 1 at the clamp, the others 0, to D = s^m at the tip. A growing exponential of one solution cannot
-hide the other one, as it does where the solutions themselves are integrated.
+from s^m = 1 at the clamp, all other minors 0, to D = s^m at the tip. Integrating the two solutions themselves
+would lose the second solution in the rounding errors of the growing exponential; the minors do not.
 
-Elements are solved by collocation at their Gauss points, for one power of w after the other: the terms of the
+Elements are solved by collocation at their Gauss points, for one power of w after another: the terms of the
 propagator satisfy C_n' = A_0 C_n + A_1 C_(n-1). `ARM_ELEMENTS.lanes` elements are solved together. The last
 axis of arrays, WIDTH, combines the initial value, one of `MINORS`, and the element; loops over it are vector
 instructions. STAGES, LANES and MAX_TERMS are the settings of these names.
@@ -63,8 +63,8 @@ class IntegrationMatrices(NamedTuple):
 
 @compiled
 def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: IntegrationMatrices) -> Array:
-    """Coefficients of the propagators in powers of w/W, (n, elements, terms, PADDED); no terms if MAX_TERMS
-    are too few.
+    """Coefficients of the propagators in powers of w/W, (n, elements, terms, PADDED); terms is 0 if MAX_TERMS
+    powers do not suffice.
 
     F: forces of n arms, (n,). local: `LocalCoefficients`, (6, n, elements, STAGES). lengths: (elements,).
     """
@@ -88,8 +88,8 @@ def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: I
 
 @compiled
 def fill_terms(F: Array, W: float, coefficients: Array, method: IntegrationMatrices, terms: Array) -> int:
-    """Fills the coefficients of propagators, `terms`; returns the number of terms needed, MAX_TERMS + 1 if
-    too many.
+    """Fills `terms`, the coefficients of propagators; returns the number of terms needed, or MAX_TERMS + 1 if
+    MAX_TERMS do not suffice.
 
     F: forces of n arms, (n,). coefficients: `LocalCoefficients` times the lengths of the elements, (n,
     batches, 6, STAGES, LANES). terms: of w/W, (n, batches * LANES, MAX_TERMS, PADDED), all 0 at first.
@@ -138,7 +138,7 @@ def _fill_batch(
     work: tuple[Array, Array],
     terms: Array,
 ) -> int:
-    """Fills the propagators' coefficients of one batch of elements, `terms`; returns the number of terms
+    """Fills `terms`, the coefficients of propagators, for one batch of elements; returns the number of terms
     needed.
 
     terms: (LANES, MAX_TERMS, PADDED). load: (F, W). local: coefficients, (6, STAGES, WIDTH). method:

@@ -19,9 +19,9 @@ def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks
     """Boundaries of elements for |w| <= W, increasing from 0 to 1; each element has an equal share of
     `_density`.
 
-    squares: those of `ArmSamples` of n arms, (4, n, points). tapers: (n,). points: midpoints of equal parts
-    of the intervals between breaks, (points,). If an interval needs more than `max_elements`, or W is not
-    finite, more than `max_elements` boundaries are returned, all 0.
+    squares: of n arms as in `ArmSamples`, (4, n, points). tapers: (n,). points: midpoints of equal parts of
+    the intervals between breaks, (points,). breaks: (pieces + 1,). If an interval needs more than
+    `max_elements` elements, or W is not finite, max_elements + 1 boundaries are returned, all 0.
     """
     density = _density(W, squares, tapers, points)
     pieces = len(breaks) - 1
@@ -53,7 +53,7 @@ def _density(W: float, squares: Array, tapers: Array, points: Array) -> Array:
     """Number of elements per length that the local exponents and the taper need, at points of n arms,
     (points,).
 
-    The arm that needs most elements counts. Arguments as in `element_edges`.
+    At each point the arm that needs most elements is used. Arguments as in `element_edges`.
     """
     density = np.empty(len(points))
     for i in range(len(points)):
@@ -70,8 +70,8 @@ def _density(W: float, squares: Array, tapers: Array, points: Array) -> Array:
 
 
 def halved_where_coarse(edges: Array, local: Array) -> Array:
-    """Boundaries after halving every element that does not resolve the coefficients of an arm; `edges` itself
-    if none.
+    """Boundaries after halving every element that does not resolve the coefficients of an arm; the object
+    `edges` itself if no element is halved.
 
     local: coefficients of n arms at the Gauss points, (6, n, elements, stages).
     """
@@ -98,7 +98,7 @@ def _is_coarse(local: Array, last_terms: Array) -> NDArray[np.bool_]:
     """
     quantities, arms, elements, stages = local.shape
     coarse = np.zeros(elements, np.bool_)
-    # The sixth, g, follows from the others and the force.
+    # The sixth coefficient, g, follows from the other coefficients and the force.
     for q in range(quantities - 1):
         for arm in range(arms):
             for e in range(elements):

@@ -9,11 +9,11 @@ from .settings import ARM_ELEMENTS
 
 @compiled
 def elimination_matrix(F: float, c3: Array, g: Array, Q: Array) -> Array:
-    """M 1 and M Q, in the columns of (STAGES, 1 + STAGES), with the inverse M of 1 + F Q c3 Q g.
+    """[M 1, M Q], (STAGES, 1 + STAGES), with the inverse M of 1 + F Q c3 Q g.
 
-    M eliminates theta^m and y^m: M Q integrates the rates of theta^s and y^theta, and M 1 belongs to a start
-    value of 1. Q: integrals, (STAGES, STAGES). c3, g: coefficients times the length of the element,
-    (STAGES,).
+    M eliminates theta^m and y^m: M Q integrates the rates of theta^s and y^theta; M 1 is the contribution of
+    a start value of 1. Q: matrix of integrals from 0 to each Gauss point, (STAGES, STAGES). c3, g:
+    coefficients at the Gauss points times the length of the element, (STAGES,).
     """
     stages = ARM_ELEMENTS.stages
     # The matrix, the right-hand sides 1 and Q, and columns of zeros: rows are whole vector instructions.

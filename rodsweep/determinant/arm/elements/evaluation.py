@@ -38,7 +38,7 @@ def powers_of(z: complex, terms: int) -> Array:
     powers = np.zeros((_needed_terms(abs(z), terms), 4))
     powers[0, RE] = 1.0
     for n in range(1, len(powers)):
-        # A product of two halves has a few rounding errors, n - 1 factors z would have n - 1.
+        # Multiplying two halves accumulates fewer rounding errors than n - 1 multiplications by z.
         half = complex(powers[n // 2, RE], powers[n // 2, IM])
         here = z if n == 1 else complex(powers[n - n // 2, RE], powers[n - n // 2, IM]) * half
         powers[n, RE] = here.real
@@ -50,7 +50,7 @@ def powers_of(z: complex, terms: int) -> Array:
 
 @compiled_for_vectors
 def fill_propagator(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C and dC/dz into out, (4, PADDED); polynomial, powers: see the module."""
+    """Writes a propagator C and dC/dz into out, (4, PADDED); polynomial, powers: see module docstring."""
     for k in range(PADDED):
         out[RE, k] = polynomial[0, k]
         out[IM, k] = out[RE_SLOPE, k] = out[IM_SLOPE, k] = 0.0
@@ -73,19 +73,21 @@ def fill_propagator(polynomial: Array, powers: Array, out: Array) -> None:
 
 @compiled_for_vectors
 def fill_value(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C, without dC/dz, into out, (2, PADDED); polynomial, powers: see the module."""
+    """Writes a propagator C, without dC/dz, into out, (2, PADDED). polynomial, powers: see the module
+    docstring."""
     _fill_rows(polynomial, powers, (RE, IM), out)
 
 
 @compiled_for_vectors
 def fill_real_propagator(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C and dC/dz at real z into out, (2, PADDED); polynomial, powers: see the module."""
+    """Writes a propagator C and dC/dz at real z into out, (2, PADDED). polynomial, powers: see the module
+    docstring."""
     _fill_rows(polynomial, powers, (RE, RE_SLOPE), out)
 
 
 @compiled_for_vectors
 def _fill_rows(polynomial: Array, powers: Array, rows: tuple[int, int], out: Array) -> None:
-    """Writes the sums of a polynomial with two rows of the powers into out, (2, PADDED)."""
+    """Writes sum_n powers[n, row] polynomial[n], for each of two `rows`, into out, (2, PADDED)."""
     first, second = rows
     for k in range(PADDED):
         out[0, k] = powers[0, first] * polynomial[0, k]
@@ -113,8 +115,8 @@ def _fill_rows(polynomial: Array, powers: Array, rows: tuple[int, int], out: Arr
 
 @compiled_for_vectors
 def fill_real_value(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C at real z, without dC/dz, into out, (PADDED,); polynomial, powers: see the
-    module.
+    """Writes a propagator C at real z, without dC/dz, into out, (PADDED,). polynomial, powers: see the module
+    docstring.
     """
     for k in range(PADDED):
         out[k] = polynomial[0, k]

@@ -22,8 +22,8 @@ NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
 
 @compiled_for_vectors
 def add_start_value(minor: int, start: float, values: Array) -> None:
-    """Adds the start value of a minor to `values`, (MINORS, STAGES, WIDTH), for the solution that starts with
-    this minor.
+    """Adds the start value of a minor to `values`, (MINORS, STAGES, WIDTH), in the lanes of the solution with
+    start value 1 of this minor and 0 of all others.
     """
     for i in range(ARM_ELEMENTS.stages):
         for lane in range(ARM_ELEMENTS.lanes):
@@ -43,8 +43,8 @@ def add_eliminated_start_value(minor: int, start: float, turning: Array, values:
 
 @compiled_for_vectors
 def fill_drag_rates(W: float, local: Array, values: Array, rates: Array) -> None:
-    """Writes the rates of s^m, theta^s and y^m that are proportional to w, from the values one power of w
-    lower.
+    """Writes the terms proportional to w in the rates of s^m, theta^s and y^m, from the values of the minors
+    at the previous power of w.
 
     values, rates: (MINORS, STAGES, WIDTH). W: unit of w.
     """

@@ -12,32 +12,31 @@ MINORS = 5
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmElementSettings(CompiledSettings):
-    """Settings for the elements of an arm and for the propagators that are kept in memory."""
+    """Settings for the elements of an arm and for the cache of propagators."""
 
     longest: float = 3.2
     """Largest |q1 +- q2| h of an element of length h; these are the exponents of the minors. Twelve Gauss
     points integrate exp(3.2) to 1e-19, with rounding errors like those of elements half as long."""
     to_apex: float = 0.5
-    """Longest element, in units of its distance from the apex of the cone, where stiffnesses vanish."""
+    """Largest length of an element divided by the distance from the apex of the cone, where stiffnesses
+    vanish."""
     largest_tail: float = 1e-9
-    """Last two Legendre coefficients of a coefficient over an element, relative to its size, above which the
-    element is halved. The error of a Gauss method is about their square."""
+    """An element is halved if one of the last two Legendre coefficients of nu, c2, ... over the element
+    exceeds this fraction of the largest value. The error of a Gauss method is about its square."""
     max_halvings: int = 12
     """Maximum number of halvings of an element, down to 2e-4 of the first length."""
     smallest_level: float = 16.0
     """Smallest bound W of |w|; for smaller |w| the load and the taper, not w, determine the length of
     elements."""
     headroom: float = 1.1
-    """W of new elements, in units of the |w| for which they are made, so that they also serve slightly larger
-    |w|."""
+    """New elements are made for W = headroom |w|, so that they can be reused for slightly larger |w|."""
     highest: float = 1e3
-    """Largest W of existing elements that serve, in units of |w|. Making new elements costs as much as thirty
-    evaluations of D on twice as many elements."""
+    """Existing elements are reused at w if their W is at most this number times |w|. Making new elements
+    costs as much as thirty evaluations of D on twice as many elements."""
     highest_compared: float = 1.5
-    """`highest` of elements on which D is compared with D on other elements; near 1, so that the two
-    differ."""
+    """Value of `highest` for comparisons of D on different elements; near 1, so that the elements differ."""
     max_elements: int = 4000
-    """Maximum number of elements of an arm; an arm that needs more is refused as unresolved."""
+    """Maximum number of elements of an arm. An arm that needs more elements is not resolved."""
     stages: int = 12
     """Number of Gauss points of an element. Eleven integrate exp(3.2) to 3e-17, twelve to 1e-19: the twelfth
     allows for coefficients that vary. A multiple of 4, as sums take four terms at a time."""
@@ -46,9 +45,9 @@ class ArmElementSettings(CompiledSettings):
     max_terms: int = 28
     """Maximum number of powers of w in a propagator; 24 suffice for exp(3.2)."""
     negligible: float = 1e-18
-    """Size of the term of a power of w, relative to the first term, at which a propagator is truncated."""
+    """The series of a propagator in w ends at the first term below this fraction of the leading term."""
     arms_kept: int = 16
-    """Maximum number of arms whose propagators are cached: it bounds the memory and changes no number."""
+    """Maximum number of arms whose propagators are cached. It limits the memory and changes no result."""
 
     ranges: ClassVar = {"headroom": (1.0, math.inf)}
 
@@ -63,7 +62,7 @@ class ArmElementSettings(CompiledSettings):
 
         At |z| = R > 1 the exponents of an element are at most q sqrt(R), q = `longest`. By Cauchy's bound
         with the best R, term n of the propagator is at most (e q/(2 n))^(2 n) |z|^n. From n on, such a term
-        of the derivative is at most `negligible`, and each term at most half of the one before.
+        of the derivative is at most `negligible`, and each term at most half of the previous term.
         """
         factors = [(math.e * self.longest / (2 * n)) ** 2 for n in range(2, self.max_terms)]
         sizes = [

@@ -1,1 +1,1 @@
-"""The hull of an arm: a convex region of w that contains all its eigenvalues."""
+"""The hull of an arm: a convex region of w that contains all eigenvalues of the arm."""

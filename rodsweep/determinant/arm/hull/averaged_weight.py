@@ -32,9 +32,10 @@ class AveragedWeightSettings(CompiledSettings):
     half_widths: tuple[float, ...] = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
     """Values of the half-width h of the window, in L."""
     jump_distance: float = 1e-6
-    """Distance of two successive points, in L, below which a jump lies between them."""
+    """Two successive points closer than this distance, in L, lie on the two sides of a jump."""
     point_distance: float = 1e-12
-    """Distance, in L, of two points added on both sides of every u at which the slope of alpha jumps."""
+    """Distance, in L, between the two points added on the two sides of every u at which the slope of alpha
+    jumps."""
 
     @property
     def trial_count(self) -> int:
@@ -76,7 +77,7 @@ def averaged_regions(u: Array, local: Array, F: float) -> Array:
 
 @compiled
 def _with_places_beside_jumps(u: Array, h: float) -> Array:
-    """The points u of an arm, (points,), with two further points at each u at the distance h from a jump,
+    """The points u of an arm, (points,), and two further points near each u at the distance h from a jump;
     sorted.
     """
     points = np.empty(5 * len(u))
@@ -95,7 +96,7 @@ def _with_places_beside_jumps(u: Array, h: float) -> Array:
 
 @compiled
 def _places(x: Array, grid: Array) -> GridPositions:
-    """Positions of x, (n,), increasing, in the intervals of a grid; values outside the grid get its end."""
+    """Positions of x, (n,), increasing, in the intervals of `grid`; x outside is moved to the nearer end."""
     interval = np.empty(len(x), np.int64)
     share = np.empty(len(x))
     i = 0
@@ -126,8 +127,8 @@ def _fill(
     window: tuple[GridPositions, GridPositions],
     trial: tuple[float, float, float],
 ) -> None:
-    """Writes the two regions (a, c) of a trial (F, f, h): (t - alpha) nu is bounded by the clamp, and by the
-    drag.
+    """Writes the two regions (a, c) of a trial (F, f, h) into `regions`. In the first region (t - alpha) nu
+    is bounded by theta(0) = 0, in the second by the rotational drag.
 
     window: positions of u - h and of u + h among the points u of the arm.
     """
@@ -169,7 +170,7 @@ def _fill(
 def _averaged(
     u: Array, log_t: Array, integral: Array, window: tuple[GridPositions, GridPositions], h: float
 ) -> tuple[Array, Array, Array]:
-    """(log t at u - h, log t at u + h, 2 h times the mean of log t over [u - h, u + h]), (points,) each.
+    """Returns (log t at u - h, log t at u + h, integral of log t over [u - h, u + h]), all (points,).
 
     integral: integral of log t from the first point to every point, (points,).
     """

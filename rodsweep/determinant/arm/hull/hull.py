@@ -40,7 +40,7 @@ from .weights import clamp_integrals, constant_weights, least_squared_norm, vary
 
 
 def hull_of(rod: Rod) -> Hull:
-    """The smallest hull found for the spectrum of an arm; `NO_BOUND` without a bound."""
+    """The smallest hull found for the spectrum of an arm; `NO_BOUND` if no bound is found."""
     return _hull(_arms([rod]))
 
 
@@ -85,7 +85,8 @@ def _arms(rods: Sequence[Rod]) -> SampledArms:
 
 @lru_cache(maxsize=HULL.max_builds)
 def _points_of(build: Build) -> tuple[Array, Array]:
-    """(lengths of the intervals between breaks, (pieces,); Chebyshev points u in these, (pieces, points))."""
+    """(lengths of the intervals between breaks, (pieces,); Chebyshev points u of these intervals, (pieces,
+    points))."""
     x = (1 - 2 * HULL.end_distance) * _chebyshev().points
     lengths = np.diff(build.breaks)
     u = build.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
@@ -140,8 +141,8 @@ def _chebyshev() -> ChebyshevMatrices:
 def _smallest_region(
     F: Array, lengths: Array, local: Array, averaged: Array, chebyshev: ChebyshevMatrices, largest: float
 ) -> tuple[float, float]:
-    """(a, c) of the smallest region that contains the spectra of all arms, without the margin of a; inf
-    without a bound.
+    """(a, c) of the smallest region that contains the spectra of all arms, without the margin of a; (inf, 0)
+    if no bound is found.
 
     largest: bound of c. averaged: as in `SampledArms`.
     """

@@ -18,15 +18,15 @@ class HullSettings(CompiledSettings):
     """Number of Chebyshev points of each interval between breaks of the profile, where coefficients are
     evaluated and alpha is differentiated."""
     margin: float = 0.05
-    """Relative excess of the constants of a hull, for extremes between the points and for rounding."""
+    """The constants of a hull are enlarged by this fraction, for extremes between the points and for
+    rounding."""
     end_distance: float = 1e-9
-    """Distance of the first and last Chebyshev point from the ends of an interval between breaks, over its
-    length, so that no point lies on a jump."""
+    """Distance of the first and last Chebyshev point from the ends of an interval between breaks, divided by
+    the length of the interval, so that no point lies on a jump."""
     min_remainder: float = 0.1
-    """Least 1 - c of a hull; hulls with c closer to 1 are too large to be useful."""
+    """Hulls with 1 - c below this number are not used: they are too large to be useful."""
     wide_c: float = 0.15
-    """Value of c at which the measure a^2 (1 + (c/wide_c)^4), by which the smallest hull is chosen, is twice
-    that of c = 0."""
+    """The smallest hull is chosen by the measure a^2 (1 + (c/wide_c)^4), which is 2 a^2 at this c."""
     constant_weights: int = 41
     """Number of constant weights alpha tried, from the smallest to the largest |g/nu| along the arm."""
     min_weight: float = 1e-3
@@ -53,8 +53,8 @@ class Hull(NamedTuple):
     c: float
 
     def box(self, depth: float = 0.0) -> tuple[float, float]:
-        """Bounds (max Re w, max |Im w|) of all points of the hull with Re w >= -depth, depth >= 0; inf
-        without a bound.
+        """Bounds (max Re w, max |Im w|) of all points of the hull with Re w >= -depth, depth >= 0; inf if no
+        bound exists.
         """
         a = self.a
         b = 1 - self.c
@@ -72,10 +72,10 @@ NO_BOUND = Hull(inf, 0.0)
 
 @compiled
 def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
-    """(distance, normal): lower bound of the distance of w from the hull, Im w >= 0, and a unit normal
-    towards w.
+    """Returns (distance, normal) for w with Im w >= 0. distance: lower bound of the distance of w from the
+    hull, at most 0 if w lies inside. normal: unit vector towards w.
 
-    The distance is at most 0 for w inside. <normal, w - v> >= distance for every v in the hull.
+    <normal, w - v> >= distance for every v in the hull.
     """
     b = 1 - c
     best = -inf
@@ -95,7 +95,7 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
 
 
 class PathHulls(NamedTuple):
-    """Hulls of all arms of a path: each hull holds for every p between two neighbouring values of p.
+    """Hulls of all arms of a path: hull number i is valid for every p between p[i] and p[i + 1].
 
     p: increasing values of the path variable, (k,). a, c: constants of `Hull`, (k - 1,).
     """

@@ -14,11 +14,10 @@ from .region import HULL
 
 @compiled
 def least_squared_norm(alphas: Array, local: Array, push: float) -> float:
-    """The smallest a^2, over the constant weights alpha, (n,): a is the largest norm of the hull's matrix
-    along all arms.
+    """The smallest a^2 of the constant weights `alphas`, (n,). a: largest norm, along all arms, of the matrix
+    given in `rodsweep.determinant.arm.hull.hull`.
 
-    The matrix is given in `rodsweep.determinant.arm.hull.hull`. local: coefficients at all points,
-    (6, points). push: the largest F^2 c3/gamma2.
+    local: coefficients at all points, (6, points). push: the largest F^2 c3/gamma2.
     """
     least = inf
     for alpha in alphas:
