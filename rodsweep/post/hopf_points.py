@@ -110,8 +110,7 @@ class StoredChanges:
             self.by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
 
     def up_to(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
-        """Changes from the start of the search to the largest parameter value of a line of points.
-        """
+        """Changes from the start of the search to the largest parameter value of a line of points."""
         return sorted({*self.on(line), *self._stored(line, -inf)}, key=sort_position)
 
     def _stored(self, line: ParameterLine, low: float) -> list[LocatedChange]:

@@ -52,8 +52,7 @@ class SpectrumTask(CertifiedTask):
 
     @property
     def stretches(self) -> Stretches | None:
-        """Stretches of points along which eigenvalues are followed; None if eigenvalues are not followed.
-        """
+        """Stretches of points along which eigenvalues are followed; None if eigenvalues are not followed."""
         if not self.config.follows:
             return None
         return stretches_along_longest_axis(self.points.shape, self.points.moved)

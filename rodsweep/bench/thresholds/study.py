@@ -221,6 +221,6 @@ def introduction(rounds: int) -> str:
         f"Relative error of the first onset and of the first Hopf point; medians over the rods and "
         f"{count_text(rounds, 'round')}. rodsweep finds all changes in 0 < F < {F_MAX:g} (or below k1) in "
         "one search. "
-        "In addition to eigenproblems it evaluates D, and it locates each change to rounding error at any "
-        "requested accuracy. Digits = -log10(error), 0 where the threshold was missed."
+        "In addition to eigenproblems it evaluates the determinant D; each change is located to rounding "
+        "error, whatever accuracy is requested. Digits = -log10(error), 0 where the threshold was missed."
     )

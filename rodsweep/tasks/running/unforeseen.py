@@ -107,8 +107,7 @@ class _Guard:
             return self._one_by_one(indices)
 
     def _one_by_one(self, indices: NDArray[np.int64]) -> StretchResult:
-        """Result of a stretch from separate solves of its points. indices: flat indices, (n,).
-        """
+        """Result of a stretch from separate solves of its points. indices: flat indices, (n,)."""
         solve = self.solver().solve
         outcomes = [solve(index) for index in indices.tolist()]
         names = [variable.name for variable in self.layout.variables]

@@ -198,8 +198,8 @@ def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:
 
 
 def crossings_of_arm(view: View) -> list[str]:
-    """One line for each change of stability of the only arm in a file, with load and frequency; an empty list
-    for a rod.
+    """One line for each crossing of the only arm in a file, with kind, load, meaning and frequency; an empty
+    list for a rod.
     """
     if not view.quantities:
         return []
