@@ -41,8 +41,7 @@ class ForceLines:
 
 
 def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-    """Changes of stability on all lines of points along F, as variables of the file; empty if F does not
-    vary.
+    """Thresholds on all lines of points along F, as variables of the file; empty if F does not vary.
 
     values: variables of the points by name, shape (points, own dimensions), arrays or HDF5 datasets.
     """
@@ -91,8 +90,8 @@ def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
 
 
 def _changes_on(lines: ForceLines) -> Iterator[dict[str, float]]:
-    """Yields the changes of stability on some lines of points, one line after another, as values of variables
-    by name."""
+    """Yields the thresholds on some lines of points, one line after another, as values of variables by
+    name."""
     from ...determinant.stability_changes import onset_between, stability_change_between
 
     F = lines.F.tolist()

@@ -198,7 +198,7 @@ def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:
 
 
 def crossings_of_arm(view: View) -> list[str]:
-    """One line for each crossing of the only arm in a file, with kind, load, meaning and frequency; an empty
+    """One line for each threshold of the only arm in a file, with kind, load, meaning and frequency; an empty
     list for a rod.
     """
     if not view.quantities:
