@@ -21,7 +21,9 @@ from .axes import ALL_BUT_LOAD, AXIS_OF, LOAD_AXES, STATUS_OF_ERROR, UncoveredAr
 from .quantities import Drags, Quantities, drags_written, with_relative_load
 from .shape import OF_MATERIAL, SEGMENTS_ALLOWED, Segments, build_of, builds_of, tapers_of, with_length
 
-Allowed = Field(description="a quantity with its unit (SI if the unit is omitted), or a list or a range of quantities")
+Allowed = Field(
+    description="a quantity with its unit (SI if the unit is omitted), or a list or a range of quantities"
+)
 ShareAllowed = Field(description="a number from 0 on, a list or a range")
 DragAllowed = Field(description="range, the name of a drag, or a list of names")
 RatioAllowed = Field(description="a number above -1 and up to 0.5, a list or a range")

@@ -29,7 +29,7 @@ class PhaseDiagramOptions(StrictSection):
     crossings: Crossings = 16
     """Maximum number of stored crossings per row."""
     certify: bool = True
-    """Confirm by winding numbers that no change of stability is missing, and certify every spectrum."""
+    """Confirm by winding numbers that no threshold is missing, and certify every spectrum."""
     curves: bool = True
     """Follow the boundaries between the states from row to row, as curves."""
     criticality: bool = False
