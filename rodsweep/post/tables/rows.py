@@ -77,8 +77,8 @@ def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: b
 def si_columns(
     view: View, variables: Sequence[Variable], columns: Sequence[Column], points: NDArray[np.int64] | None
 ) -> Iterator[Column]:
-    """Yields columns in SI units for those of the `variables` of a list (such as the crossings) that the file
-    stores only in dimensionless form; nothing for a rod.
+    """Yields columns in SI units for the `variables` of a list (such as the crossings) that the file stores
+    only in dimensionless form; nothing for a rod.
 
     columns: columns of `variables`. points: index of the point of each row, (rows,); None if the list belongs
     to the whole file: then only quantities that are equal at all points are used.

@@ -180,7 +180,8 @@ class SkippingSolver:
         return self.layout.empty_point | {SECONDS.name: 0.0, MODEL_APPLIES_NAME: Validity.does_not_apply}
 
     def _together(self, indices: NDArray[np.int64]) -> StretchResult:
-        """Results for the points of a stretch at the flat indices, (n,); only points with a rod are solved."""
+        """Results for the points of a stretch at the flat indices, (n,); only points with a rod are
+        solved."""
         assert self.inner.stretched is not None
         coverage = self.coverage[indices]
         places = np.flatnonzero(coverage == SLENDER)

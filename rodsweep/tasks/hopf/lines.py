@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class HopfLine:
-    """Rods that differ in one parameter, which varies from `start` to `stop`; all other parameters are fixed."""
+    """Rods that differ in one parameter, which varies from `start` to `stop`; all other parameters are
+    fixed."""
 
     name: str
     """The parameter that varies."""

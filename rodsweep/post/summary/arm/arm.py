@@ -42,7 +42,7 @@ THRESHOLD_SENTENCES = {
     "restabilization": "is straight again from {load} on",
     "onset": "a disturbance swings as it dies away from {load} on",
 }
-"""Sentence on the load at which the straight arm changes, by kind of change."""
+"""Sentence on the load at a threshold of the straight arm, by kind of threshold."""
 
 
 def quantity_words(name: str) -> str:
