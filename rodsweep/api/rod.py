@@ -82,7 +82,7 @@ class SoftRod:
             material = material_of(arm) | beside
         for name in REQUIRED:
             if name not in given:
-                raise InputError(f"{name} is missing; a rod needs {words(REQUIRED, 'and')}, or an arm")
+                raise InputError(f"{name} is missing; give {words(REQUIRED, 'and')}, or an arm")
         values = {name: given.get(name, DEFAULTS.get(name)) for name in PARAMETERS}
         self._values = {name: _number(name, value) for name, value in values.items() if value is not None}
         self._material = _material(material)

@@ -45,7 +45,8 @@ def _one_line(message: str) -> str:
 
 
 def main() -> None:
-    """Runs the command line; every error is reported as one sentence on standard error."""
+    """Runs the command line; every error is reported as one sentence on standard error, a bug also with its
+    traceback."""
     code = 0
     message = ""
     _prepare_streams()

@@ -24,8 +24,8 @@ equal accuracy. An HDF5 file beside the text has every number with all settings.
 
 
 def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path | None) -> None:
-    """Runs benchmarks; writes `output` (Markdown) and, in the same folder, a file .h5 and a figure _STUDY.png
-    for each study.
+    """Runs benchmarks; writes `output` (Markdown) and, in the same folder, one file .h5 with the numbers of
+    all studies, and a figure _STUDY.png for each study that can be drawn.
 
     what: name of the study, None for all studies. quick: whether fewer rounds are run. directory: folder of
     the peers, None for the folder `benchmarks` of the running checkout.

@@ -49,7 +49,7 @@ def describe_job(job: Job) -> None:
         console.print(
             f"warning: {cost.too_large} of {sampled} sampled points need more than the "
             f"{RESOLUTION.max_unknowns} unknowns allowed and will end with status failed; use a smaller F, "
-            "fewer modes or a lower accuracy"
+            "fewer modes or a larger number for the accuracy"
         )
 
 

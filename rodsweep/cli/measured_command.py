@@ -32,7 +32,7 @@ repetition at this distance."""
 class InstantSpectra(SpectrumTask):
     """The task spectrum with random eigenvalues from a table, so that all measured time belongs to the sweep.
 
-    All eigenvalues are stable: a sweep locates every change of stability, which takes time.
+    All eigenvalues are stable, because a sweep would spend time on locating changes of stability.
 
     killed: directory in which the rank of the last point records its peak memory before the process is
     killed; None for a run without a kill.

@@ -35,7 +35,7 @@ class Axes(LinearAxes):
     """CSV file with a list of points, instead of axes. Its header names the parameters."""
     columns: Annotated[
         list[Literal[OPTIONAL_PARAMETERS]] | None,  # type: ignore[valid-type]  # read at run time, from the table
-        Field(description=f"a list of {' and '.join(OPTIONAL_PARAMETERS)}"),
+        Field(description=f"a list with names of optional parameters: {', '.join(OPTIONAL_PARAMETERS)}"),
     ] = None
     """Optional parameters among the columns of `points`; by default the optional parameters in the header of
     the file."""

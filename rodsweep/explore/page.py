@@ -44,7 +44,8 @@ class Page:
         self.progress: dict[str, str] = {}
         """Progress of each running solve, as text, by kind of question."""
         self.asked: dict[str, Needs] = {}
-        """Part of the state on which the latest question of each kind depends, see `needs`."""
+        """Part of the state, and dragged tip, on which the latest question of each kind depends, see
+        `needs`."""
         self.contents = PageContents(self.change, self.load)
         self._idle: Callable[[], None] | None = None
         self.contents.connect(document, self._connections())
@@ -144,7 +145,7 @@ class Page:
         self._rest()
 
     def _refuse(self, sentence: str) -> None:
-        """Cancels all solves and shows an error message in place of all pictures but a drawn diagram."""
+        """Cancels all solves and shows an error message in place of all pictures except a drawn diagram."""
         for kind in (*TIP_KINDS, *MANUAL_KINDS):
             self._drop(kind)
         for kind in (*INSTANT_KINDS, *IDLE_KINDS):

@@ -79,7 +79,8 @@ class StoredBranch:
         return self.special[-1].reason not in STOP_REASONS and bool((self.stable >= 0).all())
 
     def near_hopf_points(self) -> list[tuple[Array, Array, NDArray[np.integer]]]:
-        """For each Hopf point at an end: (|at/at_H - 1|, y/|a|, stability) up to the first fold.
+        """For each Hopf point at an end of the branch: (|at/at_H - 1|, y/|a|, stability) up to the first
+        fold.
 
         at_H, a: parameter and amplitude coefficient of the Hopf point. Hopf points with unknown or zero a are
         skipped, and the vertex of the Hopf point is left out. Shapes (n,), (n,) and (n - 1,), n > 1.

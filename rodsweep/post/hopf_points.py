@@ -1,7 +1,8 @@
-"""Changes of stability of the straight rod along a line of points of a result file, located or bracketed.
+"""Thresholds of the straight rod (onsets of oscillation and changes of stability) along a line of points of a
+result file.
 
-Located changes are read from the file; this module does not solve or interpolate. A change that the task did
-not locate is bracketed by two points of the file.
+The thresholds that the task located are read from the file; nothing is solved or interpolated here. Any other
+change of stability is bracketed by two points of the file.
 """
 
 from collections.abc import Mapping
@@ -27,7 +28,7 @@ changes. At all other Hopf points the rod is unstable on both sides."""
 
 @dataclass(frozen=True, slots=True)
 class LocatedChange:
-    """Change of the straight rod at the parameter value `position`. error: absolute error estimate.
+    """Threshold of the straight rod at the parameter value `position`. error: absolute error estimate.
 
     kind: `hopf` if a pair of eigenvalues crosses the imaginary axis and the rod is unstable above `position`;
     `restabilization` if the rod is stable above; `onset` if two real eigenvalues merge into a pair while the
@@ -43,11 +44,12 @@ class LocatedChange:
 
     @property
     def is_hopf(self) -> bool:
-        """Whether the change is a change of stability of the straight rod, not an onset of oscillation."""
+        """Whether the stability of the straight rod changes at the threshold; False for an onset of
+        oscillation."""
         return self.kind != "onset"
 
     def agrees(self, other: "LocatedChange") -> bool:
-        """Whether two located changes have equal kinds, and positions that are equal within the errors."""
+        """Whether two located thresholds have equal kinds, and positions that are equal within the errors."""
         return self.kind == other.kind and abs(self.position - other.position) <= self.error + other.error
 
 
@@ -64,7 +66,7 @@ class BracketedChange:
 
 
 def sort_position(change: LocatedChange | BracketedChange) -> float:
-    """Parameter value by which changes are sorted: the position, or the lower end of a bracketing
+    """Parameter value by which thresholds are sorted: the position, or the lower end of a bracketing
     interval.
     """
     return change.position if isinstance(change, LocatedChange) else change.low
@@ -91,8 +93,8 @@ class StoredChanges:
             self._read(v, name, "change", np.ones(len(v["change_kind"]), bool))
 
     def _read(self, v: Mapping[str, np.ndarray], name: str, prefix: str, along: NDArray[np.bool_]) -> None:
-        """Reads the thresholds selected by the mask `along` from the variables whose names start with
-        `prefix`. name: parameter along which the changes are located.
+        """Reads the onsets and changes of stability selected by the mask `along` from the variables whose
+        names start with `prefix`. name: parameter along which the thresholds are located.
         """
         rods = np.stack([v[f"{prefix}_{other}"] for other in self.others], axis=-1)
         fields = (name, "error", "frequency", "kind")
@@ -110,20 +112,20 @@ class StoredChanges:
             self.by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
 
     def up_to(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
-        """Changes from the start of the search to the largest parameter value of a line of points."""
+        """Thresholds from the start of the search to the largest parameter value of a line of points."""
         return sorted({*self.on(line), *self._stored(line, -inf)}, key=sort_position)
 
     def _stored(self, line: ParameterLine, low: float) -> list[LocatedChange]:
-        """Located changes between the parameter value `low` and the largest parameter value of a line."""
+        """Located thresholds between the parameter value `low` and the largest parameter value of a line."""
         rod = tuple(line.parameters[other] for other in self.others)
         high = line.x.max(initial=-inf)
         return [point for point in self.by_rod.get(rod, []) if _within(point, low, high)]
 
     def on(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
-        """Changes on a line, in increasing order of the parameter.
+        """Thresholds on a line of points, in increasing order of the parameter.
 
-        Two neighbouring points bracket a change if their growth rates differ in sign and the number of
-        located changes of stability between them is even, because a search failed.
+        Two neighbouring points bracket a change of stability if their growth rates differ in sign and the
+        number of located changes of stability between them is even, because a search failed.
         """
         if not len(line.x):
             return []
@@ -143,6 +145,6 @@ class StoredChanges:
 
 
 def _within(point: LocatedChange, low: float, high: float) -> bool:
-    """Whether a located change lies between `low` and `high`, within its error or rounding error."""
+    """Whether a located threshold lies between `low` and `high`, within its error or rounding error."""
     margin = max(point.error, HOPF_POINT_TOLERANCE * abs(point.position))
     return bool(low - margin <= point.position <= high + margin)

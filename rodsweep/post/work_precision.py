@@ -1,4 +1,4 @@
-"""Work-precision figure: error of numerical methods over computing time, as measured by the benchmarks."""
+"""Work-precision figure: error of numerical methods against computing time, as measured by the benchmarks."""
 
 from math import ceil, sqrt
 from pathlib import Path

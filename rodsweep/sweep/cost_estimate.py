@@ -1,6 +1,6 @@
 """Estimated cost of a sweep before its start: time, and for spectra memory and unknowns, from sampled points.
 
-Times are for a single core like the core of docs/performance.md.
+Times are for a single core like the core described in docs/performance.md.
 """
 
 import math
@@ -100,7 +100,7 @@ BASE_MEMORY = 200_000_000
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """Estimated cost of a sweep on a single core like the core of docs/performance.md."""
+    """Estimated cost of a sweep on a single core like the core described in docs/performance.md."""
 
     seconds: float
     """Time of the whole sweep on one rank, in s."""

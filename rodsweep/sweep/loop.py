@@ -25,7 +25,7 @@ class UnitSolver(Protocol):
     """Function that solves a unit, that is, a point, a chain or a stretch of points.
 
     Yields (flat index, result) of each point of a chain, or once (flat indices, results) of all points of a
-    segment.
+    stretch.
     """
 
     def __call__(self, unit: int, /) -> Iterable[tuple[Indices, Any]]: ...

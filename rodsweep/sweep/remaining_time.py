@@ -87,8 +87,8 @@ def in_words(seconds: float) -> str:
 
 
 def rate_in_words(done: int, seconds: float) -> str:
-    """Text of the rate of `done` points in `seconds`: points per second, or the time per point if it exceeds
-    one second.
+    """Text of the rate of `done` points in `seconds`: points per second, or the time per point if this time
+    exceeds one second.
 
     Empty before the first point.
     """

@@ -119,7 +119,7 @@ class NonlinearTask(CertifiedTask):
 
 
 def crushing_clause(config: Config) -> str:
-    """Clause stating that a search over F ends below the force that crushes the arm; empty if no force
+    """Clause stating that a search along F ends below the force that crushes the arm; empty if no force
     crushes the arm.
     """
     if config.standard:

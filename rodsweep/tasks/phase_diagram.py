@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class PhaseDiagramTask(CertifiedTask):
-    """The task phase_diagram. A point of the task is a row: a line of rods over the first parameter."""
+    """The task phase_diagram. A point of the task is a row: a line of rods along the first parameter."""
 
     config: PhaseDiagramConfig
 

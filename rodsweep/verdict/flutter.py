@@ -28,22 +28,16 @@ class FlutterForces:
     thresholds: Thresholds
 
     def first(self, kind: ChangeKind) -> Crossing | None:
-        """The change of stability of the given kind at the smallest force; None if no change has this
-        kind.
-        """
+        """The threshold of the given kind at the smallest force; None if no threshold has this kind."""
         return next((c for c in self.thresholds.crossings if c.kind == kind), None)
 
     def frequency(self, kind: ChangeKind) -> float | None:
-        """Frequency, in Hz, at the first change of stability of the given kind; None if no change has this
-        kind.
-        """
+        """Frequency, in Hz, at the first threshold of the given kind; None if no threshold has this kind."""
         found = self.first(kind)
         return None if found is None else abs(found.frequency) / (2 * pi * self.tau2)
 
     def force(self, kind: ChangeKind) -> float | None:
-        """Force, in k3/L^2, at the first change of stability of the given kind; None if no change has this
-        kind.
-        """
+        """Force, in k3/L^2, at the first threshold of the given kind; None if no threshold has this kind."""
         found = self.first(kind)
         return None if found is None else found.at
 
@@ -55,7 +49,7 @@ class FlutterForces:
         return bool(before) and before[-1] != 0
 
     def up_to(self, end: float) -> "FlutterForces":
-        """A copy without the changes of stability at forces larger than `end`."""
+        """A copy without the thresholds at forces larger than `end`."""
         found = self.thresholds
         crossings = tuple(c for c in found.crossings if c.at <= end)
         cut = replace(found, transitions=replace(found.transitions, crossings=crossings), end=end)
@@ -95,14 +89,14 @@ class FlutterRange:
         return self.forces[0].thresholds.end
 
     def force(self, kind: ChangeKind) -> Span | None:
-        """Range, over the drags, of the force at the first change of stability of the given kind, in k3/L^2;
-        None if no drag has such a change.
+        """Range, over the drags, of the force at the first threshold of the given kind, in k3/L^2; None if no
+        drag has such a threshold.
         """
         return span_of([f.force(kind) for f in self.forces])
 
     def frequency(self, kind: ChangeKind) -> Span | None:
-        """Range, over the drags, of the frequency at the first change of stability of the given kind, in Hz;
-        None if no drag has such a change.
+        """Range, over the drags, of the frequency at the first threshold of the given kind, in Hz; None if no
+        drag has such a threshold.
         """
         return span_of([f.frequency(kind) for f in self.forces])
 
@@ -118,14 +112,14 @@ def span_of(values: list[float | None]) -> Span | None:
 
 
 def flutter_forces(arm: SlenderArm, drag: Drag, end: float = SEARCH_END) -> FlutterForces:
-    """All changes of stability of the straight arm with the given drag, at forces from 0 to `end`."""
+    """All thresholds of the straight arm with the given drag, at forces from 0 to `end`."""
     thresholds = solve_thresholds(rod_with(arm, drag), replace(SEARCH_REQUEST, F_max=end))
     return FlutterForces(tau2=arm.tau2_with(drag), thresholds=thresholds)
 
 
 @exclusive_solve
 def flutter_range(arm: SlenderArm) -> FlutterRange:
-    """All changes of stability of the straight arm for each drag, up to a force common to all drags.
+    """All thresholds of the straight arm for each drag, up to a force common to all drags.
 
     The search with the most likely drag sets this force. If a search stops at a smaller force, this smaller
     force is used for all drags.
@@ -138,9 +132,9 @@ def flutter_range(arm: SlenderArm) -> FlutterRange:
 
 
 def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, FlutterForces]:
-    """Returns (end, forces): the largest force requested, and the changes of stability up to this force. For
-    an arm that is not uniform or not of linear material, `end` exceeds the first flutter force and the load
-    by at least the factor MIN_SEARCH_RATIO, if possible.
+    """Returns (end, forces): the largest force requested, and the thresholds up to this force. For an arm
+    that is not uniform or not of linear material, `end` exceeds the first flutter force and the load by at
+    least the factor MIN_SEARCH_RATIO, if possible.
     """
     known_load = arm.load is not None and arm.share_of_flutter is None
     for end in SEARCH_ENDS_OF_VARIED if arm.shape.varies else (SEARCH_END,):

@@ -15,7 +15,8 @@ from .validity import Assessment
 
 def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
     """Sentences of the verdict on an arm, over the range of drag: whether the model applies, flutter in the
-    plane with the smaller flutter load, then in the second plane.
+    plane with the smaller flutter load, then in the second plane. Only the reason if a search in the first
+    plane failed.
     """
     plane = planes.first
     if plane.found.failures:

@@ -312,7 +312,7 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
             lambda: rs.Rod(F=1, k1=9, k2=9, gama3=0),
             "a rod has no parameter gama3; did you mean gamma3?",
         ),
-        (lambda: rs.Rod(F=1, k1=9, k2=9), "gamma3 is missing; a rod needs k1, k2 and gamma3, or an arm"),
+        (lambda: rs.Rod(F=1, k1=9, k2=9), "gamma3 is missing; give k1, k2 and gamma3, or an arm"),
         (
             lambda: rs.Rod(k1=9, k2=9, gamma3=0).spectrum(),
             "parameters.F is missing; give F, k1, k2 and gamma3",

@@ -128,7 +128,8 @@ class Picture:
     @one_at_a_time
     @refusing_in_python
     def save(self, path: str | Path) -> str:
-        """Draws the figure into a file (.png, .pdf, .svg) and returns a sentence about it."""
+        """Draws the figure into a file (.png, .pdf, .svg; .gif or .mp4 for an animation) and returns a
+        sentence about the figure."""
         return draw(self.views, Path(path), **self.choices)
 
     @one_at_a_time

@@ -30,9 +30,9 @@ class RodPortrait:
     """All results for one rod. Notebooks display the picture, `save` writes the picture into a file, and
     `paragraph` describes the rod.
 
-    Every result behind the picture is an `Answer`: `thresholds`; `criticality` and `branch`, None for a rod
-    without Hopf points or branches; `modes` by kind of threshold; `cycles` by force. `missing` has the reason
-    why a result could not be solved, by task.
+    Every result behind the picture is an `Answer`: `thresholds`; `criticality` and `branch`, None if the task
+    could not be solved; `modes` by kind of threshold; `cycles` by force. `missing` has the reason why a
+    result could not be solved, by task.
     """
 
     rod: str
@@ -54,12 +54,12 @@ class RodPortrait:
 
     @property
     def criticality(self) -> Answer | None:
-        """Criticality of the Hopf points; None if it could not be solved."""
+        """Criticality of the Hopf points; None if the task could not be solved."""
         return self._answer("criticality")
 
     @property
     def branch(self) -> Answer | None:
-        """Branches of cycles from the Hopf points; None if they could not be solved."""
+        """Branches of cycles from the Hopf points; None if the task could not be solved."""
         return self._answer("branch")
 
     @property
@@ -94,7 +94,8 @@ class RodPortrait:
     @one_at_a_time
     @in_sentences(SAVE_EXAMPLE)
     def save(self, path: str | Path) -> str:
-        """Writes the portrait (.png, .pdf, .svg, or .html with tables) and returns a sentence about it."""
+        """Writes the portrait (.png, .pdf, .svg, or .html with tables) and returns a sentence about the
+        file."""
         output = named_file_path(path, SAVE_EXAMPLE)
         require_portrait(output)
         return write_portrait(self.results, output)

@@ -136,8 +136,8 @@ def launcher_words(ranks: int) -> list[str]:
 
 
 def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = True) -> CommandRun:
-    """Runs a sweep on `ranks` ranks and returns its measurements. Raises EnvironmentIncomplete if a run fails
-    that was not to be killed.
+    """Runs a sweep on `ranks` ranks and returns its measurements. Raises EnvironmentIncomplete if a run that
+    is not to be killed fails.
 
     command: first arguments of the measured command. fresh: whether to replace an existing result file.
     """

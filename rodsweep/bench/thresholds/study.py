@@ -1,8 +1,8 @@
 """The thresholds benchmark: first onset and first Hopf point, with errors relative to values of 30 digits.
 
-rodsweep finds all stability changes of a rod and can prove the list complete; peers find only the first onset
-or the first Hopf point. The contenders of the races ONSET and HOPF are functions of a `ThresholdCase` that
-return a `FirstThreshold`.
+rodsweep finds all thresholds of a rod and can prove the list complete; peers find only the first onset or the
+first Hopf point. The contenders of the races ONSET and HOPF are functions of a `ThresholdCase` that return a
+`FirstThreshold`.
 """
 
 from collections.abc import Iterable, Sequence
@@ -31,8 +31,8 @@ ONSET, HOPF = "onset", "hopf"
 """Kinds of thresholds, which are also names of the races, of fields of `ThresholdCase`, and of kinds in
 rodsweep's results."""
 WRONG_THRESHOLD = 0.3
-"""With at least this relative error, a computed threshold belongs to a different stability change, and the
-exact threshold was missed."""
+"""With at least this relative error, a computed threshold is a different threshold of the rod, and the exact
+threshold was missed."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ ARM_CASES = (
 """Arms that vary along their length."""
 ARM_INTRODUCTION = (
     "The same tables for arms: a cone with half the radius at its tip, and five segments with radii of 1, "
-    "0.6, 1.2, 0.5 and 0.8. rodsweep finds all changes in 0 < F < 60 to the requested accuracy of 1e-10."
+    "0.6, 1.2, 0.5 and 0.8. rodsweep finds all thresholds in 0 < F < 60 to the requested accuracy of 1e-10."
 )
 """Description of the tables of arms for the report."""
 KIND_TITLES = {ONSET: "onset", HOPF: "Hopf point"}
@@ -159,8 +159,8 @@ def contenders(kind: str) -> list[Contender]:
 
 
 def rodsweep_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThreshold:
-    """The first threshold of the kind `kind` by rodsweep, from the list of all changes of the rod. certify:
-    whether rodsweep proves this list complete."""
+    """The first threshold of the kind `kind` by rodsweep, from the list of all thresholds of the rod.
+    certify: whether rodsweep proves this list complete."""
     rod = case.rod(0.0)
     F_max = F_MAX if rod.standard else ARM_F_MAX
     result = solve_thresholds(rod, ThresholdsRequest(F_max, 1e-10, certify, 64))
@@ -219,8 +219,8 @@ def introduction(rounds: int) -> str:
     """Description of the tables of uniform rods for the report. rounds: number of timed rounds."""
     return (
         f"Relative error of the first onset and of the first Hopf point; medians over the rods and "
-        f"{count_text(rounds, 'round')}. rodsweep finds all changes in 0 < F < {F_MAX:g} (or below k1) in "
+        f"{count_text(rounds, 'round')}. rodsweep finds all thresholds in 0 < F < {F_MAX:g} (or below k1) in "
         "one search. "
-        "In addition to eigenproblems it evaluates D, and it locates each change to rounding error at any "
-        "requested accuracy. Digits = -log10(error), 0 where the threshold was missed."
+        "In addition to eigenproblems it evaluates the determinant D; each change is located to rounding "
+        "error, whatever accuracy is requested. Digits = -log10(error), 0 where the threshold was missed."
     )

@@ -21,7 +21,9 @@ from .axes import ALL_BUT_LOAD, AXIS_OF, LOAD_AXES, STATUS_OF_ERROR, UncoveredAr
 from .quantities import Drags, Quantities, drags_written, with_relative_load
 from .shape import OF_MATERIAL, SEGMENTS_ALLOWED, Segments, build_of, builds_of, tapers_of, with_length
 
-Allowed = Field(description="a quantity with its unit, a list or a range of quantities; SI without unit")
+Allowed = Field(
+    description="a quantity with its unit (SI if the unit is omitted), or a list or a range of quantities"
+)
 ShareAllowed = Field(description="a number from 0 on, a list or a range")
 DragAllowed = Field(description="range, the name of a drag, or a list of names")
 RatioAllowed = Field(description="a number above -1 and up to 0.5, a list or a range")
@@ -62,7 +64,7 @@ class ArmSection(StrictSection):
     """Density of the fluid, by default the density of water; used only to test whether the model applies."""
     density_difference: Annotated[Quantities | None, Allowed] = None
     """Density of the arm minus density of the fluid; used only to test whether the neglected weight is small.
-    If it is not given, the weight is not tested."""
+    If this key is missing, the weight is not tested."""
     drag: Annotated[Drags | None, DragAllowed] = None
     """Drag estimates from the range in the literature, by name; by default the likeliest estimate."""
     pressure: Annotated[Quantities | None, Allowed] = None
@@ -226,7 +228,7 @@ class ArmSection(StrictSection):
         return {name: float(axis.array()[0]) for name, axis in self.quantity_axes.items()}
 
     def sections(self) -> Iterator[dict[str, float]]:
-        """Yields length, material and cross-section of every arm, in SI units by name, in row-major order."""
+        """Yields all quantities of every arm except the load, in SI units by name, in row-major order."""
         names = [name for name in ALL_BUT_LOAD if name in self.quantity_axes]
         for values in product(*(self.quantity_axes[name].array() for name in names)):
             yield dict(zip(names, map(float, values), strict=True))

@@ -56,5 +56,6 @@ def require_matching_arguments(
 
 
 def unknown(name: str, known: list[str]) -> InputError:
-    """InputError for an unknown argument `name`, which suggests the most similar of the names `known`."""
+    """InputError for an unknown argument `name`, which suggests the most similar of the names `known`, or
+    lists all of these names."""
     return InputError(f"unknown key {name}; {hint_of(name, known)}")

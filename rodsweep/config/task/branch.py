@@ -19,7 +19,7 @@ from ..values import Number, StrictSection
 
 CONTINUATION_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 """Names of the parameters along which branches of cycles can be followed. gamma1 is not included, because
-Hopf points do not depend on it."""
+Hopf points do not depend on gamma1."""
 
 
 class BranchOptions(StrictSection):
@@ -30,8 +30,8 @@ class BranchOptions(StrictSection):
     start: Annotated[Number, Field(gt=-inf, lt=inf)] = 0.0
     """Smallest value of the parameter `along`; a branch that reaches this value ends."""
     stop: Annotated[Number, Field(gt=-inf, lt=inf)] = 200.0
-    """Largest value of the parameter `along`. Branches along F end just below a smaller force that crushes
-    the rod."""
+    """Largest value of the parameter `along`. If a smaller force crushes the rod, branches along F end just
+    below that force."""
     cycles: Annotated[int, Field(ge=1, le=100_000)] = 500
     """Maximum number of stored cycles per rod, over all branches."""
     special: Annotated[int, Field(ge=1, le=10_000)] = 64

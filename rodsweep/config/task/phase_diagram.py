@@ -29,9 +29,9 @@ class PhaseDiagramOptions(StrictSection):
     crossings: Crossings = 16
     """Maximum number of stored crossings per row."""
     certify: bool = True
-    """Confirm by winding numbers that no change of stability is missing, and certify every spectrum."""
+    """Confirm by winding numbers that no threshold is missing, and certify every spectrum."""
     curves: bool = True
-    """Follow the boundaries between the rows as curves."""
+    """Follow the boundaries between the states from row to row, as curves."""
     criticality: bool = False
     """Compute the criticality along Hopf curves, and the points where the criticality changes; needs
     `curves`."""
@@ -40,7 +40,8 @@ class PhaseDiagramOptions(StrictSection):
     cycles."""
     cycle_accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-6
     """Relative error of the period and of the largest y of each cycle; needs `cycles`. Special points are
-    located to the smaller of `cycle_accuracy` and 1e-9. A smaller value leaves fewer states undetermined."""
+    located to the smaller of `cycle_accuracy` and 1e-9. The smaller this number, the fewer states stay
+    undecided."""
     bautin_along: Annotated[BautinAlong | None, Field(description="a mapping of one parameter to values")] = (
         None
     )

@@ -1,4 +1,4 @@
-"""Config of the task thresholds: forces at which the stability of the straight rod changes."""
+"""Config of the task thresholds: thresholds of the straight rod along F."""
 
 from collections.abc import Mapping
 from math import inf
@@ -20,12 +20,12 @@ class ThresholdsOptions(StrictSection):
     crossings: Crossings = 16
     """Maximum number of stored crossings."""
     certify: bool = True
-    """Confirm by winding numbers that no change of stability is missing, and certify every spectrum."""
+    """Confirm by winding numbers that no threshold is missing, and certify every spectrum."""
 
 
 class ThresholdsConfig(LinearConfig):
-    """The task thresholds finds the forces at which the number or the kind of a rod's unstable eigenvalues
-    changes.
+    """The task thresholds finds the forces at which the number of unstable eigenvalues of a rod, or the kind
+    of its leading eigenvalue, changes.
     """
 
     task: Literal["thresholds"]

@@ -26,8 +26,8 @@ thresholds on this row."""
 ARM_ROW_COUNT = 12
 """Number of values of the second quantity of the diagram, for arms."""
 ARM_SPAN_RATIO = 2.0
-"""Ratio of the largest to the present value of an arm's second quantity, and of the present to the smallest
-value. The ratio is small, so that all arms are slender."""
+"""The values of an arm's second quantity extend from 1/ARM_SPAN_RATIO to ARM_SPAN_RATIO times the present
+value, few enough that all arms are slender."""
 CYCLE_ACCURACY = 1e-4
 """Relative error of the cycles between special points; the diagram does not show these cycles. For the first
 rod of the page and F up to 200, the default error of 1e-6 takes three times as long, and changes the curves
@@ -37,8 +37,7 @@ NOT_KNOWN = -1
 CRUSHED = -2
 """Value of `unstable_count` at a point whose load crushes the rod."""
 SPAN_RATIO = 10.0
-"""Ratio of the largest to the present value of a rod's second parameter, and of the present to the smallest
-value."""
+"""The values of a rod's second parameter extend from 1/SPAN_RATIO to SPAN_RATIO times the present value."""
 TAPER_RANGE = (0.4, 1.6)
 """(smallest, largest) taper of the diagram. Cones with a smaller taper take minutes."""
 

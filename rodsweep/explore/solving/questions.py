@@ -81,13 +81,14 @@ def spectrum(state: PageState) -> AnswerVariables:
 
 
 def thresholds(state: PageState) -> AnswerVariables:
-    """Forces at which the stability of the straight rod changes. kinds: kind of each change, in words."""
+    """Thresholds of the straight rod along F, as variables by name. kinds: kind of each threshold, in
+    words."""
     answer = state.subject().thresholds(F_max=state.largest_force(), progress=False)
     return variables(answer) | {"kinds": words_of(answer.data["crossing_kind"]).tolist()}
 
 
 def growth(state: PageState) -> AnswerVariables:
-    """Growth rates of the leading modes over F, as variables by name. unit: "1/tau2" for a rod, "1/s" for an
+    """Growth rates of the leading modes along F, as variables by name. unit: "1/tau2" for a rod, "1/s" for an
     arm.
     """
     subject = state.subject()
@@ -128,7 +129,7 @@ def film_of(cycle: Answer | Dataset) -> AnswerVariables:
 
 
 def branch(state: PageState) -> AnswerVariables:
-    """Branches of cycles over F.
+    """Branches of cycles along F.
 
     pieces: (F, y, stability) of each part of a branch or of the straight rod; stability is 1, 0, or -1 if
     unknown. special: (F, y, kind, period) of each special point.

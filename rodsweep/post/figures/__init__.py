@@ -72,8 +72,8 @@ class FigureChoices(TypedDict, total=False):
 
 
 def _drawn(request: FigureRequest) -> str:
-    """Writes the figure and returns a description of the figure. If quantities of an arm vary, the figure
-    shows results over these quantities.
+    """Writes the figure and returns a description of the figure. If quantities of an arm vary and no other
+    kind of figure is requested, the figure shows results over these quantities.
     """
     if can_draw(request):
         return draw_arm_map(request)

@@ -1,4 +1,4 @@
-"""Bifurcation diagram of a rod: stable and unstable cycles over the followed parameter.
+"""Bifurcation diagram of a rod: stable and unstable cycles against the followed parameter.
 
 A third panel compares the amplitudes near Hopf points with the prediction of the normal form.
 """
@@ -52,8 +52,8 @@ BRANCH_COLOURS = (
 
 
 def draw_branch(request: FigureRequest) -> str:
-    """Draws the largest y of the tip and the period of cycles over the followed parameter, for one or several
-    rods; returns a sentence.
+    """Draws the largest y of the tip and the period of cycles against the followed parameter, for one or
+    several rods; returns a sentence.
     """
     view = request.only_view()
     rods = [RodBranches(view, number) for number in range(view.variables["status"].size)]

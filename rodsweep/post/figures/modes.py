@@ -53,8 +53,8 @@ def draw_modes(request: FigureRequest) -> str:
 
 
 def _parts(view: View, points: np.ndarray) -> list[Line2D]:
-    """Legend entries for real part (solid) and imaginary part (dotted). points: indices of the drawn points,
-    (n,).
+    """Legend entries for the real part (solid) and, if a drawn mode oscillates, for the imaginary part
+    (dotted). points: indices of the drawn points, (n,).
     """
     oscillates = view.by_point("frequency")[points, 0].any()
     looks = (("real part", "-"), ("imaginary part", ":"))[: 1 + bool(oscillates)]
@@ -62,7 +62,7 @@ def _parts(view: View, points: np.ndarray) -> list[Line2D]:
 
 
 def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], ...]) -> None:
-    """Draws two fields of the leading mode over u, with separate vertical axes that have 0 at the same
+    """Draws two fields of the leading mode against u, with separate vertical axes that have 0 at the same
     height. point: index of the point. fields: (field, label) of the two fields.
     """
     u = view.variables["u"]

@@ -80,15 +80,15 @@ class Palette:
 CLASS_PALETTE = Palette("class", CLASSES, CLASS_COLOURS)
 """Palette for the stability class of the straight rod."""
 STATE_PALETTE = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
-"""Palette for the stable states: straight rod, cycle, or both."""
+"""Palette for the stable states listed in STABLE_STATES."""
 BARRIER_RATIOS = 1 - np.linspace(0, 3e-3, 7)
 """Values of F/k1 of lines that separate regions of different colours. Curves of cycles end at 1 - F/k1 =
 1e-3; these lines close the gaps between the curves and the line F = k1."""
 
 
 def draw_phase_diagram(request: FigureRequest) -> str:
-    """Draws the class of the rod over a plane, with boundary curves and folds of curves; returns a
-    sentence.
+    """Draws the class or the stable states of the rod over two parameters, with boundary curves, or along
+    single rows if fewer than two rows are at finite values; returns a sentence.
     """
     view = request.only_view()
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)

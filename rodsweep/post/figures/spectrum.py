@@ -81,7 +81,8 @@ def draw_spectrum(request: FigureRequest) -> str:
 
 
 def _lines(view: View, few: str, request: FigureRequest) -> str:
-    """Draws a panel of spectra for each value of the parameter `few`, which has too few values for a map."""
+    """Draws a panel of spectra for each value of the parameter `few`, which has too few values for a map;
+    returns a sentence."""
     lines = [without_infinite(section(view, {few: float(value)})) for value in view.axes[few]]
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
     return _in_panels(views, request, few)

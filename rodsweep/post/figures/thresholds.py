@@ -31,8 +31,8 @@ SEARCH_DIGITS = 4
 
 
 def draw_thresholds(request: FigureRequest) -> str:
-    """Draws the first thresholds over one or two parameters, or a bar of classes for each rod; returns a
-    sentence.
+    """Draws the first thresholds against one parameter or over two parameters, or a bar of classes for each
+    rod; returns a sentence.
     """
     if request.views[1:]:
         return _of_files(request)

@@ -49,8 +49,8 @@ class PortraitUnits:
         return f"${axis}$ ({self.length.name})" if self.load else f"${axis}/L$"
 
     def at(self, text: str) -> str:
-        """Phrase with the name and the unit of the load, such as "F = 50". text: one or more loads, as
-        numbers in the unit of the portrait.
+        """Phrase for the load: "F = 50" for a rod, "a pressure of 400 Pa" for an arm. text: one or more
+        loads, as numbers in the unit of the portrait.
         """
         return f"a {self.load} of {text} {self.force.name}" if self.load else f"F = {text}"
 
@@ -117,8 +117,9 @@ def units_of(view: View, load: str, largest: float) -> PortraitUnits:
 
 
 def rescale_panel(axes: Axes, x: float, y: float) -> None:
-    """Multiplies the coordinates of all curves, marks and vertical areas in a panel by factors. x, y: factor
-    of each coordinate.
+    """Multiplies the coordinates of all curves and marks in a panel by the factors x and y, and the
+    horizontal coordinates of all bars and spans by x. Resets the tick labels of a logarithmic y axis if y is
+    not 1.
     """
     for line in axes.lines:
         line.set_data(x * np.asarray(line.get_xdata()), y * np.asarray(line.get_ydata()))

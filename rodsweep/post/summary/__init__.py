@@ -136,8 +136,8 @@ def _answer(view: View, done: np.ndarray, summary: SummaryLines) -> list[str]:
 
 
 def _unfinished(view: View, missing: int, noun: str) -> list[str]:
-    """Lines about points and curves that are not computed yet. missing: number of missing points. noun: noun
-    for a point.
+    """Lines about points and curves that are not computed yet, and about points that only the journal holds.
+    missing: number of missing points. noun: noun for a point.
     """
     lines = []
     if missing and (shard := view.attributes.get("shard")):

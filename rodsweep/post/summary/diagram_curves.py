@@ -168,9 +168,8 @@ def bautin_lines(view: View, line: str, row: str) -> list[str]:
 
 
 def bautin_curve_lines(view: View) -> list[str]:
-    """Lines about curves of generalised Hopf points over a third parameter, with the reasons for their
-    ends.
-    """
+    """Lines about curves of generalised Hopf points along a third parameter, with the reasons for their
+    ends."""
     v = view.variables
     lines = []
     names = [name for name in LINEAR_PARAMETERS if f"bautin_along_{name}" in v]

@@ -150,8 +150,8 @@ def _at(some: np.ndarray, done: np.ndarray) -> str:
 
 
 def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
-    """Lines on frequency, period in tau1, extrema of the tip, power, multiplier, least stretch of the cycles.
-    v: variables of the file. beats: mask of the points with a cycle.
+    """Lines on frequency, period in tau1, extrema of the tip, power, multiplier, integrated periods and least
+    h1 of the cycles. v: variables of the file. beats: mask of the points with a cycle.
     """
     ratio = v["frequency"][beats] / v["linear_frequency"][beats]
     times = span(ratio, ratio * v["period_error"][beats])

@@ -159,8 +159,8 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
 
 
 def crossings_of_arms(view: View, done: np.ndarray) -> list[str]:
-    """Lines about the changes of the straight arm along F, in the arm's units; an empty list for a rod. done:
-    mask of the computed rows, of the shape of the rows.
+    """Lines about the thresholds of the straight arms along F, by kind, in the arms' units; an empty list for
+    a rod. done: mask of the computed rows, of the shape of the rows.
     """
     if not view.quantities or "F" in view.parameters:
         return []

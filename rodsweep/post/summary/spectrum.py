@@ -35,8 +35,8 @@ def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def stable_line(view: View, done: np.ndarray) -> str:
-    """Line on the number of stable straight rods. done: mask of the computed points, of the shape of the
-    points.
+    """Line on the numbers of points at which the straight rod is stable, unstable, or of unknown stability.
+    done: mask of the computed points, of the shape of the points.
     """
     unstable = view.variables["unstable_count"]
     masks = {"stable": unstable == 0, "unstable": unstable > 0, "not known": unstable < 0}
@@ -58,8 +58,8 @@ def leading_line(view: View, done: np.ndarray) -> str:
 
 
 def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
-    """Returns (lines about changes of stability along F, line on the method of location, lines in an arm's
-    units); empty lists if F does not vary.
+    """Returns (lines about thresholds along F, line on the method of location, lines in an arm's units);
+    empty lists if F does not vary.
     """
     lines, of_arm = stability_lines(view, "F", StoredChanges(view, "F").on)
     how = LOCATION_EXPLANATION if has_covering(view.config) else NOT_LOCATED
@@ -101,8 +101,8 @@ def error_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
-    """Line on the number of unknowns per point, and of points without a mesh. done: mask of the computed
-    points, of the shape of the points.
+    """List with a line on the number of unknowns per point, and on the number of points without a mesh. done:
+    mask of the computed points, of the shape of the points.
     """
     v = view.variables
     unknowns = 3 * v["elements"][done].astype(int) * v["order"][done]
@@ -113,8 +113,8 @@ def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def stability_line(view: View, done: np.ndarray) -> str:
-    """Line on the largest number of unstable modes, and on how many points it is proved or unknown. done:
-    mask of the computed points, of the shape of the points.
+    """Line on the largest number of unstable modes, and on the numbers of points at which the number is
+    proved or unknown. done: mask of the computed points, of the shape of the points.
     """
     unstable = view.variables["unstable_count"][done]
     points = int(done.sum())

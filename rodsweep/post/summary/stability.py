@@ -26,7 +26,7 @@ OTHER_THRESHOLD_WORDS = {
 }
 """Phrase for a threshold along any parameter other than F, by kind."""
 Threshold = LocatedChange | BracketedChange
-"""Change of stability of the straight rod: located, or bracketed by two points of the file."""
+"""Threshold of the straight rod: located, or bracketed by two points of the file."""
 
 
 def stability_lines(

@@ -45,8 +45,9 @@ def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def event_line(view: View, done: np.ndarray, event: str) -> str:
-    """Line on the forces and rates at the first threshold of the kind `event`, and on the number of rods that
-    have it or are unknown. done: mask of the computed points, of the shape of the points.
+    """Line on the forces and rates at the first threshold of the kind `event`, and on the numbers of rods
+    with this threshold and with an unknown result. done: mask of the computed points, of the shape of the
+    points.
     """
     words, rate, noun, unit = FIRST_THRESHOLD_WORDS[event]
     v = view.variables
@@ -85,7 +86,7 @@ def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
 
 def crossing_lines(view: View) -> list[str]:
     """Lines about the first thresholds and the number of crossings of the only rod in a file, and the meaning
-    of their kinds."""
+    of the kinds of crossings."""
     v = view.of_point(0)
     end = f"F = {v['F_end']:.15g}{unknown_beyond_clause(view, float(v['F_end']))}"
     if kinds := [CROSSING_KINDS[int(kind)] for kind in v["crossing_kind"][v["crossing_kind"] > 0]]:
@@ -152,7 +153,8 @@ def unstored_clause(hidden: int) -> str:
 
 
 def monotony_lines(view: View) -> list[str]:
-    """Lines on whether the first thresholds increase with k2 and with 1/gamma3, as in the paper."""
+    """Lines on whether the first thresholds rise or fall with each parameter that has more than two values
+    (for gamma3: with 1/gamma3); empty for a list of points."""
     lines = []
     long = [name for name, values in view.axes.items() if len(values) > 2] if view.is_grid else []
     for name, force in product(long, ("F_onset", "F_hopf")):

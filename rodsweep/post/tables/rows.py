@@ -77,11 +77,11 @@ def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: b
 def si_columns(
     view: View, variables: Sequence[Variable], columns: Sequence[Column], points: NDArray[np.int64] | None
 ) -> Iterator[Column]:
-    """Yields columns in SI units for those variables of a list that the file stores only in dimensionless
-    form.
+    """Yields columns in SI units for the `variables` of a list (such as the crossings) that the file stores
+    only in dimensionless form; nothing for a rod.
 
-    columns: columns of `variables`. points: index of the point of each row, (rows,); None if the list
-    belongs to the whole file; columns in SI units are then possible only if all points have the same arm.
+    columns: columns of `variables`. points: index of the point of each row, (rows,); None if the list belongs
+    to the whole file: then only quantities that are equal at all points are used.
     """
     if not view.quantities:
         return

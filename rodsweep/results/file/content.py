@@ -37,8 +37,7 @@ BYTES_A_READ = 1 << 18
 XARRAY_FILL_ATTRIBUTE = ("_FillValue", "[nan]")
 """(name, value as text) of an attribute that xarray adds when it writes a file, and that has no effect."""
 Digests = dict[str, dict[str, str]]
-"""Digest of every attribute and variable by name, in one dict with the key `attributes` and one dict with the
-key `variables`."""
+"""Digests by name, in two dicts under the keys `attributes` and `variables`."""
 
 
 def is_user_added(name: str) -> bool:

@@ -45,7 +45,7 @@ class Plan:
     chains: Chains | None = None
     """Chains of points; None if no point starts from the state of another point."""
     stretches: Stretches | None = None
-    """Stretches of points that are solved together; None if every point is solved alone."""
+    """Stretches of points that are solved together; None if no points are solved together."""
     afterwards: Callable[[Mapping[str, Any]], tuple[Filled, ...]] = lambda values: ()
     """Returns variables computed from the variables of all points; called when no point is missing."""
 

@@ -86,7 +86,7 @@ def write_snapshot(path: Path, output: Path) -> tuple[int, int]:
     read_header(path)
     if output.exists():
         if os.path.samefile(path, output):
-            raise InputError(f"{output} is the file itself; name another with -o")
+            raise InputError(f"{output} is the file itself; name another file with -o")
         if not _is_snapshot(output):
             raise InputError(f"{output} exists and is not a snapshot; name another file with -o")
     with disk_refusals(output):

@@ -34,7 +34,7 @@ def header_of_existing_file(path: Path, plan: Plan, journals: Path) -> ResultHea
     Raises InputError unless the existing file is a complete result. journals: journal directory of the file.
     """
     if not path.is_file():
-        raise InputError(f"{path} is not a file; choose another with -o")
+        raise InputError(f"{path} is not a file; choose another file with -o")
     try:
         return read_header(path)
     except IncompleteFile as error:

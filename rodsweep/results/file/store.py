@@ -122,7 +122,8 @@ class Store:
         self.add_journals({})
 
     def _backup_path(self) -> Path:
-        """Path of a copy of the file in the journal directory, kept until the extension is complete."""
+        """Copies the file into the journal directory; returns the path of the copy, which is kept until the
+        extension is complete."""
         number = 1 + sum(1 for _ in self.journals.glob(BACKUPS))
         copy = self.journals / BACKUPS.replace("*", str(number))
         shutil.copyfile(self.path, copy)
@@ -172,7 +173,7 @@ class Store:
                 drop_files(self.journals, pattern)
 
     def restore(self) -> None:
-        """Creates a moved or deleted file again; EnvironmentIncomplete if another file replaced it."""
+        """Creates a moved or deleted file again; EnvironmentIncomplete if another file is in its place."""
         with disk_refusals(self.path, self._kept):
             self._restore_missing_file()
 

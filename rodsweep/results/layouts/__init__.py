@@ -55,7 +55,8 @@ def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]
 
 
 def lacks_joint_variables_in(attributes: Mapping[str, Any]) -> bool:
-    """Whether a file with these attributes still lacks the curves of a phase diagram between its rows."""
+    """Whether a file with these attributes still lacks the variables that depend on all points, such as the
+    curves of a phase diagram."""
     if "finished" in attributes or "config_resolved" not in attributes:
         return False
     return layout_of(json.loads(attributes["config_resolved"])).needs_all_points

@@ -105,7 +105,7 @@ PAIR_CROSSINGS = ("none", "hopf", "hopf_reverse", "restabilization")
 
 
 def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
-    """Variables of the Hopf points of the straight rod on lines of points. names: parameters."""
+    """Variables of the Hopf points of the straight rod on lines of points. names: parameters of the file."""
     at = "at the Hopf point"
     kinds = ((CROSSING_KINDS.index(kind), kind) for kind in PAIR_CROSSINGS)
     return (
@@ -144,7 +144,8 @@ INCREASES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), NO_CYCLE)
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables of the Hopf points on the lines of points of a resolved config."""
+    """Variables of the Hopf points on the lines of points in the file of a resolved config. is_grid: not
+    used."""
     found = hopf_points_of((*LINEAR_PARAMETERS, *optional_in(config)))
     if has_covering(config):
         return found

@@ -44,7 +44,8 @@ STABLE_STATES = ((-1, "missing"), *enumerate(STATES))
 CYCLE_SPECIAL = "cycle_special"
 """Name of the dimension of the special points on the branches of cycles of a row."""
 MAX_CYCLE_SPECIAL = 64
-"""Maximum number of special points stored for a row; the variable cycle_special_count counts all."""
+"""Maximum number of special points stored for a row; the variable cycle_special_count counts all special
+points."""
 CYCLE_CURVE_ENDS = {
     "none": "the curve goes on",
     "edge": "the curve leaves the diagram",

@@ -42,8 +42,8 @@ def is_linear(config: Mapping[str, Any]) -> bool:
 def with_certified_meaning(
     variables: tuple[Variable, ...], config: Mapping[str, Any], noun: str
 ) -> tuple[Variable, ...]:
-    """The variables. If the config has no covering, `certified` has a long name that describes confirmation
-    by counts only.
+    """The variables; if a covering cannot be used for the rods, with a long name of `certified` that
+    describes confirmation by counts only.
 
     noun: name of the listed items, such as "Hopf points".
     """

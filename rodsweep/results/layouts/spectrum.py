@@ -92,7 +92,7 @@ def longitudinal_parameters(in_closed_form: bool, linear: bool) -> tuple[str, ..
 
 
 CHANGE = "change"
-"""Name of the dimension of the stability changes of the straight rod on lines of points along F."""
+"""Name of the dimension of the thresholds of the straight rod on lines of points along F."""
 FORCE_CHANGES = (
     word(
         "change_kind",

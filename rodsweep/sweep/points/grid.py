@@ -35,7 +35,7 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
     """Points of the sweep that a config describes; raises InputError for a parameter value outside the model.
 
     directory: folder of relative file names. flutter: flutter forces of all rods of `flutter_rods`; if None,
-    they are computed here.
+    the forces are computed here.
     """
     parameters = config.parameters
     for name, value in parameters.constant_parameters.items():

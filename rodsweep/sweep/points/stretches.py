@@ -1,7 +1,7 @@
 """Stretches: neighbouring points on a grid line of a sweep that are solved together.
 
-The division of grid lines into segments depends only on the grid. Results therefore depend neither on the
-number of ranks nor on points of an earlier run: a segment with any missing point is solved again completely.
+The division of grid lines into stretches depends only on the grid. Results therefore depend neither on the
+number of ranks nor on points of an earlier run: a stretch with any missing point is solved again completely.
 """
 
 import math

@@ -75,7 +75,7 @@ def criticality_record(
 
 
 def bautin_curve_record(curves: Sequence["BautinCurve"], plane: tuple[str, str], third: str) -> list[Filled]:
-    """Variables of the curves of generalised Hopf points over the third parameter `third`."""
+    """Variables of the curves of generalised Hopf points along the third parameter `third`."""
     rows = [
         _located(point, (*plane, third), curve=number, **reasons)
         for number, curve in enumerate(curves, 1)

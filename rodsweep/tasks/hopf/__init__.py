@@ -1,1 +1,1 @@
-"""Hopf points, onsets and changes of stability at parameter values between the points of a file."""
+"""Hopf points and other thresholds of the straight rod at parameter values between the points of a file."""

@@ -26,7 +26,7 @@ MAX_POINTS_IN_MEMORY = 1 << 13
 
 @dataclass(frozen=True, slots=True)
 class ForceLines:
-    """Lines over F through the points of a file; all lines have the same forces.
+    """Lines of points along F in a file; all lines have the same forces.
 
     names: parameters other than F, among them `taper` where a config says `taper: 1`. fixed: values of these
     parameters on each line, (lines, names). F: forces, increasing, (n,). eigenvalues: in 1/tau2, leading
@@ -41,8 +41,7 @@ class ForceLines:
 
 
 def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-    """Changes of stability on all lines of points along F, as variables of the file; empty if F does not
-    vary.
+    """Thresholds on all lines of points along F, as variables of the file; empty if F does not vary.
 
     values: variables of the points by name, shape (points, own dimensions), arrays or HDF5 datasets.
     """
@@ -57,7 +56,7 @@ def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[Filled, ..
 
 
 def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
-    """Yields the lines over F of a grid, in groups of about MAX_POINTS_IN_MEMORY points."""
+    """Yields the lines of points along F in a grid, in groups of about MAX_POINTS_IN_MEMORY points."""
     along = points.names.index("F")
     others = [axis for axis in range(len(points.names)) if axis != along]
     widest = max(others, key=lambda axis: points.shape[axis])
@@ -91,8 +90,8 @@ def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
 
 
 def _changes_on(lines: ForceLines) -> Iterator[dict[str, float]]:
-    """Yields the changes of stability on some lines of points, one line after another, as values of variables
-    by name."""
+    """Yields the thresholds on some lines of points, one line after another, as values of variables by
+    name."""
     from ...determinant.stability_changes import onset_between, stability_change_between
 
     F = lines.F.tolist()

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 class HopfLine:
     """Rods that differ in one parameter, which varies from `start` to `stop`; other parameters are fixed."""
 
+
     name: str
     """The parameter that varies."""
     fixed: dict[str, float]
@@ -63,9 +64,7 @@ class HopfLine:
 
 
 def hopf_lines_of(points: Points) -> list[HopfLine]:
-    """Lines through the points of a file, without repetition. Rods that differ only in gamma1 share a
-    line.
-    """
+    """Lines of points of a file, without repetition. Rods that differ only in gamma1 share a line."""
     names = [name for name in HOPF_ALONG if name in points.of_rods]
     return [line for name in names for line in _lines_over(points, name, names)]
 
@@ -73,7 +72,7 @@ def hopf_lines_of(points: Points) -> list[HopfLine]:
 def _lines_over(points: Points, name: str, names: Sequence[str]) -> Iterator[HopfLine]:
     """Yields the lines along the parameter `name`, if at least two of its values are finite.
 
-    names: all parameters of the lines. Lines over F begin at 0, because the Hopf point may lie below the
+    names: all parameters of the lines. Lines along F begin at 0, because the Hopf point may lie below the
     smallest force of the points. Arms with equal parameters and different profiles have no line, because a
     file cannot distinguish such arms.
     """
@@ -108,7 +107,7 @@ def _ends(values: np.ndarray) -> tuple[float, float]:
 def hopf_variables(
     names: Collection[str], lines: Sequence[HopfLine], found: "Sequence[Transitions | None]"
 ) -> tuple[Filled, ...]:
-    """Hopf points of all lines, line after line, as variables of a file.
+    """Hopf points of all lines, one line after another, as variables of a file.
 
     names: parameters of the file. found: result of the search on each line.
     """

@@ -34,7 +34,7 @@ BYTES_PER_VALUE = 40
 """Memory per value of an axis while a run is set up, in bytes, for four arrays and overhead; 33 to 36 bytes
 were measured."""
 MAX_RECORD_BYTES = 100_000_000
-"""Maximum size of the results of one point in bytes: they are held in memory and written at once."""
+"""Maximum size of the results of one point in bytes: these results are held in memory and written at once."""
 
 
 @dataclass(frozen=True)

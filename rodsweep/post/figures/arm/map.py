@@ -1,5 +1,5 @@
-"""Figures over the quantities of an arm, in the units typed by the user: lines over one quantity, maps over
-two quantities.
+"""Figures over the quantities of an arm, in the units typed by the user: curves against one quantity, maps
+over two quantities.
 
 Each point of the file is the centre of a cell of a map. Cells are hatched where the model does not apply, and
 grey where no rod corresponds to the arm.
@@ -43,7 +43,8 @@ COVERED_CELL_LOOKS: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
 """(variable, value, legend entry, look) of covered cells of a map. Later entries are drawn over earlier
 entries."""
 DRAG = "drag"
-"""Name of the axis of drags. In a figure over another quantity, the range over drags is drawn as a band."""
+"""Name of the axis of drags. In a figure against another quantity, the range of a result over all drags is
+drawn as a band."""
 BAND_OPACITY = 0.25
 """Opacity of the band between the smallest and the largest value over all drags."""
 EMPTY_CELL_LOOK: dict[str, Any] = {"fc": "#E8EDF2"}
@@ -132,7 +133,7 @@ def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], place: An
 
 
 def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[Artist]:
-    """Draws a panel as lines over the quantity `name`; returns legend entries. place: index of the drawn
+    """Draws a panel as curves against the quantity `name`; returns legend entries. place: index of the drawn
     points in the grid.
     """
     x, label = _axis(view, name)

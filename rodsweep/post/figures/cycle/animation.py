@@ -26,7 +26,8 @@ MIN_SHAPES = 8
 GHOST_COUNT = 6
 """Number of earlier shapes drawn in fading colours behind the arm."""
 TIME_DIGITS = 3
-"""Number of significant digits of the period. The running time has the number of decimals of the period."""
+"""Number of significant digits of the period. The running time is printed with as many decimals as the
+period."""
 TIME_HEIGHT = 0.08
 """Height of the line with the running time, as a fraction of the panel's height."""
 MAX_GHOST_AGE = 0.2

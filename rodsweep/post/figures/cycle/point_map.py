@@ -73,7 +73,8 @@ def is_map(view: View) -> bool:
 
 
 def _varying(names: list[str]) -> str:
-    """Clause on the varied parameters `names`, with a remedy, for a file in which other than two vary."""
+    """Clause on the varied parameters `names`, with a remedy, for a file in which not exactly two parameters
+    vary."""
     if not names:
         return "no parameter varies"
     if names[1:]:

@@ -1,4 +1,4 @@
-"""Portrait of the beating arm, as in the paper's Fig. 5: shapes over a period, and motion of the tip over
+"""Portrait of the beating arm, as in the paper's Fig. 5: shapes over a period, and motion of the tip against
 time.
 
 The motion of the tip is drawn from the initial state if the file contains this motion, and otherwise over two
@@ -56,7 +56,7 @@ UNUSED_COLOUR_FRACTION = 0.14
 
 def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows, for each cycle, the shapes over a period, later shapes
-    darker, and x and y of the tip over time.
+    darker, and x and y of the tip against time.
 
     points: numbers of the chosen points. narrow: whether the page is too narrow for panels side by side.
     """

@@ -18,7 +18,7 @@ EXTREMUM_LINE_LOOK: dict[str, Any] = {"color": "0.55", "lw": 0.8, "ls": (0, (4, 
 
 
 def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
-    """Returns (figure, description). The figure has a column for each point: x and y of the tip over time,
+    """Returns (figure, description). The figure has a column for each point: x and y of the tip against time,
     with horizontal lines at the extrema of the cycle, if any.
 
     points: numbers of the chosen points. narrow: whether the titles leave out the explanation of these lines.

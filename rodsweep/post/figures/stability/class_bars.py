@@ -1,6 +1,5 @@
-"""Stability class of single rods over F: one bar for each rod, with a colour for each class, and
-thresholds.
-"""
+"""Stability class of single rods along F: one bar for each rod, with a colour for each class, and
+thresholds."""
 
 from collections.abc import Iterator
 from itertools import pairwise

@@ -32,7 +32,8 @@ CYCLE_MARKS = {
 }
 """(legend entry, marker) of special points of cycles on rows that lie on no curve, by kind."""
 CURVE_TOLERANCE = 1e-3
-"""A point lies on a curve if its distance from the chords, divided by the axis length, is at most this."""
+"""A point lies on a curve if its distance from the chords, divided by the axis length, is at most this
+number."""
 CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", GREEN)}
 """(legend entry, colour) of curves of special points of cycles, by kind."""
 CHORD_ROUNDING = 1e-6
@@ -182,7 +183,7 @@ def _sides(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
 
 
 def _bautin_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Draws the curves of generalised Hopf points over a third parameter; returns legend entries."""
+    """Draws the curves of generalised Hopf points along a third parameter; returns legend entries."""
     v = view.variables
     drawn = []
     third = next(n for n in LINEAR_PARAMETERS if f"bautin_along_{n}" in v and n not in (line, row))

@@ -65,7 +65,7 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
 
 
 def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tuple[Figure, str]:
-    """Returns (figure, description). The figure shows thresholds over the parameter `along`, with a colour
+    """Returns (figure, description). The figure shows thresholds against the parameter `along`, with a colour
     for each file. searched: clause on the searched range.
     """
     figure = Figure(figsize=(5.6, 4.6), layout="constrained")
@@ -88,9 +88,9 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
 
 
 def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str) -> tuple[Figure, str]:
-    """Returns (figure, description). As in the paper's Fig. 3, the figure has a panel over each of the two
-    parameters `long`, with lines for some values of the other parameter. narrow: whether the panels are
-    stacked.
+    """Returns (figure, description). As in the paper's Fig. 3, the figure has a panel for each of the two
+    parameters `long` as abscissa, with curves for some values of the other parameter. narrow: whether the
+    panels are stacked.
     """
     rows, columns = (2, 1) if narrow else (1, 2)
     figure = Figure(figsize=(4.6 * columns + 0.4, 4.0 * rows), layout="constrained")

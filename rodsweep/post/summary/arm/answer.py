@@ -217,7 +217,7 @@ def _of_branches(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 
 
 def _of_diagram(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """Returns (lines about loads and frequencies at the first Hopf points on rows over F, empty list)."""
+    """Returns (lines about loads and frequencies at the first Hopf points on rows along F, empty list)."""
     v = view.variables
     scale = np.broadcast_to(v[SCALE_OF[load_of(view)]], rods.shape)[rods]
     forces, frequency = _at_first_hopf(view, rods, "crossing_at")

@@ -42,7 +42,7 @@ THRESHOLD_SENTENCES = {
     "restabilization": "is straight again from {load} on",
     "onset": "a disturbance swings as it dies away from {load} on",
 }
-"""Sentence on the load at which the straight arm changes, by kind of change."""
+"""Sentence on the load at a threshold of the straight arm, by kind of threshold."""
 
 
 def quantity_words(name: str) -> str:
@@ -198,8 +198,8 @@ def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:
 
 
 def crossings_of_arm(view: View) -> list[str]:
-    """One line for each change of stability of the only arm in a file, with load and frequency; an empty list
-    for a rod.
+    """One line for each threshold of the only arm in a file, with kind, load, meaning and frequency; an empty
+    list for a rod.
     """
     if not view.quantities:
         return []

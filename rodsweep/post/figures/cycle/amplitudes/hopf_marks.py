@@ -1,4 +1,5 @@
-"""Hopf points in a figure over F: vertical lines, and square-root laws of the amplitudes near Hopf points."""
+"""Hopf points in a figure against F: vertical lines, and square-root laws of the amplitudes near Hopf
+points."""
 
 from collections.abc import Sequence
 from typing import Any
