@@ -172,9 +172,8 @@ class SpecialCurveProblem:
         place = float(np.dot(weights, [point.row_coordinate for point in points]))
         at = float(np.dot(weights, [point.parameter for point in points]))
         orbit = replace(mesh.interpolate(points[-1].orbit), values=values)
-        return orbit_with_parameters(
-            orbit, {self.line.name: at, self.rows.name: self.rows.value(place)}
-        ), place
+        changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
+        return orbit_with_parameters(orbit, changed), place
 
     def margins(self, point: SolvedPoint) -> Array:
         """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges and from
@@ -220,10 +219,9 @@ class SpecialCurveProblem:
 
     def is_closed_by(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
         """Whether the step from `behind[-1]` to `point` passes the first point of the curve."""
-        first = behind[0]
         last = behind[-1]
         step = point.step_from(last)
-        back = point.step_from(first)
+        back = point.step_from(behind[0])
         # The first point lies within this step, measured along the step and by distance.
         passed = float(back @ step) / float(step @ step)
         near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
