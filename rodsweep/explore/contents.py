@@ -150,4 +150,4 @@ class PageContents:
             "growth": (self.growth,), "branch": (self.branches,), "diagram": (self.diagram,),
         }  # fmt: skip
         for picture in by_kind[kind]:
-            picture.card.show_text_only(sentence)
+            picture.card.say(sentence)
