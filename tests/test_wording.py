@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from rodsweep.post.summary.ranges import error_text, listed, rounded, span, stated_error, to_error
+from rodsweep.post.summary.ranges import (
+    error_text,
+    ranges_text,
+    rounded,
+    span_text,
+    stated_error,
+    to_error,
+)
 from rodsweep.wording import counted, duration, is_or_are, some_of
 
 
@@ -53,7 +60,7 @@ def test_a_part_is_named_by_its_whole():
     ],
 )
 def test_a_range_has_no_digit_that_its_errors_do_not_leave(values, errors, text):
-    assert span(np.array(values), None if errors is None else np.array(errors)) == text
+    assert span_text(np.array(values), None if errors is None else np.array(errors)) == text
 
 
 def test_a_number_and_its_error_contain_the_true_number():
@@ -83,7 +90,7 @@ def test_an_error_is_rounded_up():
 
 
 def test_ends_of_ranges_have_the_digits_of_their_own_errors():
-    assert listed([(1.23456789123, 2.3456789), (5.0, 7.125)], {2.3456789: 1e-3}) == (
+    assert ranges_text([(1.23456789123, 2.3456789), (5.0, 7.125)], {2.3456789: 1e-3}) == (
         "1.23456789 to 2.35, 5 to 7.125"
     )
-    assert listed([], {}) == "none"
+    assert ranges_text([], {}) == "none"

@@ -135,8 +135,8 @@ def _solve_joint_variables(together: JointVariables, view: View, shown: Display)
     """
     units = together.units(view)
     results = dict[int, NamedArrays]()
-    while units is not None and (wanted := units.wanted(results)):
-        name = units.where(wanted[0])
+    while units is not None and (wanted := units.units_to_solve(results)):
+        name = units.unit_label(wanted[0])
         with solve_part(name), reporting_to(progress_listener(shown, name)):
             results[wanted[0]] = together.solve(units, wanted[0])
     return together.variables(view, units, results)

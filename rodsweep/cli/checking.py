@@ -13,7 +13,7 @@ from ..discretization.elements.resolution import RESOLUTION
 from ..model.arm.neglected import wall_effect
 from ..post.summary import print_lines
 from ..post.summary.arm.validity import plane_lines, validity_sentence
-from ..post.summary.ranges import span
+from ..post.summary.ranges import span_text
 from ..sweep.cost_estimate import MAX_SAMPLE
 from ..sweep.points.points import Points
 from ..tasks.arm.points import NoRodStatus, rod_numbers
@@ -59,7 +59,7 @@ def _arm_lines(job: Job) -> list[str]:
     arm = job.config.parameters.arm
     assert arm is not None
     columns = job.points.by_name | {v.name: values for v, values in job.quantities if v.name == "tau2"}
-    made = (f"{name} = {span(np.asarray(values))}" for name, values in columns.items())
+    made = (f"{name} = {span_text(np.asarray(values))}" for name, values in columns.items())
     validity = validity_sentence(ArmValidity(job.config, job.points).at_rest(), when=" before anything moves")
     return [
         f"the arm: {given_text(arm.quantity_axes)}{_material_text(arm)}",

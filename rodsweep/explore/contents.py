@@ -131,7 +131,7 @@ class PageContents:
             self.diagram.show(found, scales[state.load], scales[state.second])
         self.numbers.show(kind, found)
 
-    def say(self, kind: str, sentence: str) -> None:
+    def show_message(self, kind: str, sentence: str) -> None:
         """Shows a sentence in place of the pictures for questions of the kind `kind`; for questions on cycle
         curves, drags and films, above the picture.
         """
@@ -142,7 +142,7 @@ class PageContents:
             self.diagram.card.tell(sentence)
             return
         if kind in ("bent", "motion", "film"):
-            self.beating.let_go()
+            self.beating.remove_dragged_shape()
             self.beating.card.tell(sentence)
             return
         by_kind = {

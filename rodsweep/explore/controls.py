@@ -35,8 +35,8 @@ class SliderField:
             start=start, end=end, value=start, step=(end - start) / SLIDER_STEP_COUNT, show_value=False,
             name=f"{scale.name}_slider", sizing_mode="stretch_width", stylesheets=sheets,
         )  # fmt: skip
-        self.text.on_change("value", self._typed)
-        self.slider.on_change("value", self._slid)
+        self.text.on_change("value", self._on_text_change)
+        self.slider.on_change("value", self._on_slider_change)
         self.root = Column(self.text, self.slider, sizing_mode="stretch_width", spacing=0)
         self._is_shown = False
         """True while the page itself changes widgets; callbacks of the widgets then return at once."""
@@ -55,16 +55,16 @@ class SliderField:
         finally:
             self._is_shown = False
 
-    def _typed(self, attribute: str, old: str, new: str) -> None:
+    def _on_text_change(self, attribute: str, old: str, new: str) -> None:
         if not self._is_shown:
             self.changed(self.scale.name, new)
 
-    def _slid(self, attribute: str, old: float, new: float) -> None:
+    def _on_slider_change(self, attribute: str, old: float, new: float) -> None:
         if self._is_shown:
             return
         self._sliding = True
         try:
-            self.changed(self.scale.name, self.scale.at(new))
+            self.changed(self.scale.name, self.scale.text_at(new))
         finally:
             self._sliding = False
 

@@ -60,19 +60,19 @@ class Page:
             self._change_to(from_address(query, self.state))
         except InputError as error:
             self._change_to(self.state)
-            self._refuse(str(error))
+            self._show_error(str(error))
 
     def load(self, text: str) -> None:
         """Shows the rod or the arm of a config; text: the config in YAML."""
         try:
             self._change_to(state_of_text(text))
         except InputError as error:
-            self._refuse(str(error))
+            self._show_error(str(error))
 
     def close(self) -> None:
         """Cancels all unanswered questions of this page."""
         self.is_open = False
-        self.solvers.forget(self.session)
+        self.solvers.cancel_session(self.session)
 
     def change(self, values: dict[str, str] | None = None, **changed: Any) -> None:
         """Changes the state. values: changed texts of the visible tab. changed: other changed fields."""
@@ -93,9 +93,9 @@ class Page:
             if kind in self.solving:
                 self._drop(kind)
                 if kind in TIP_KINDS:
-                    self.contents.beating.let_go()
+                    self.contents.beating.remove_dragged_shape()
                 elif kind not in MANUAL_KINDS:
-                    self.contents.say(kind, STOPPED_SENTENCE)
+                    self.contents.show_message(kind, STOPPED_SENTENCE)
         self._show_solving()
 
     def drag(self, kind: str, tip: Tip) -> None:
@@ -134,7 +134,7 @@ class Page:
             if F is None:
                 raise InputError(f"parameters.{state.load} is missing; give the load")
         except InputError as error:
-            self._refuse(str(error))
+            self._show_error(str(error))
             return
         for kind in (*TIP_KINDS, *MANUAL_KINDS):
             self._drop(kind)
@@ -142,9 +142,9 @@ class Page:
             self._ask(kind)
         self.contents.show_point(state, F)
         self._show_solving()
-        self._rest()
+        self._schedule_slow_questions()
 
-    def _refuse(self, sentence: str) -> None:
+    def _show_error(self, sentence: str) -> None:
         """Cancels all solves and shows an error message in place of all pictures except a drawn diagram."""
         for kind in (*TIP_KINDS, *MANUAL_KINDS):
             self._drop(kind)
@@ -152,16 +152,16 @@ class Page:
             if kind != "diagram" or kind in self.solving:
                 self._drop(kind)
             if kind != "diagram" or not self.contents.diagram.is_drawn:
-                self.contents.say(kind, sentence)
+                self.contents.show_message(kind, sentence)
         self._show_solving()
 
-    def _rest(self) -> None:
+    def _schedule_slow_questions(self) -> None:
         """Schedules the slow questions; each call restarts the waiting time `IDLE_MILLISECONDS`."""
         if self._idle is not None:
             self.document.remove_timeout_callback(self._idle)
-        self._idle = self.document.add_timeout_callback(self._rested, IDLE_MILLISECONDS)
+        self._idle = self.document.add_timeout_callback(self._ask_slow_questions, IDLE_MILLISECONDS)
 
-    def _rested(self) -> None:
+    def _ask_slow_questions(self) -> None:
         self._idle = None
         self.contents.sharing.write()
         for kind in IDLE_KINDS:
@@ -169,7 +169,7 @@ class Page:
                 continue
             if self.state.tab == "rod" and not has_uniform_rods(self.state):
                 self.asked.pop(kind, None)
-                self.contents.say(
+                self.contents.show_message(
                     kind, "The solve takes a minute for such a rod; press the button below to start."
                 )
                 continue
@@ -206,9 +206,9 @@ class Page:
     def _receive(self, question: Question, reply: Reply) -> None:
         """Passes a reply to the event loop of the document; only this loop may change the document."""
         if self.is_open:
-            self.document.add_next_tick_callback(lambda: self._answered(question, reply))
+            self.document.add_next_tick_callback(lambda: self._on_answer(question, reply))
 
-    def _answered(self, question: Question, reply: Reply) -> None:
+    def _on_answer(self, question: Question, reply: Reply) -> None:
         kind = question.kind
         newest = self.asked.get(kind)
         if newest is None:  # the user has entered invalid values meanwhile
@@ -228,7 +228,7 @@ class Page:
                 self.asked["diagram"] = needs(replace(question, kind="diagram"))
             self.contents.show(kind, reply.content, question.state)
         else:
-            self.contents.say(kind, reply.content["sentence"])
+            self.contents.show_message(kind, reply.content["sentence"])
         self._show_solving()
 
     def _show_solving(self) -> None:

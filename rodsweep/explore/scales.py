@@ -70,7 +70,7 @@ class ControlScale:
             value = log10(value) if value > 0 else start
         return min(max(value, start), end)
 
-    def at(self, position: float) -> str:
+    def text_at(self, position: float) -> str:
         """Value at a slider position, as text."""
         if self.has_inf and position >= self.ends[1]:
             return "inf"

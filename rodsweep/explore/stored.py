@@ -12,7 +12,12 @@ from ..config.document.reading import config_of, load_config
 from ..config.schema import Config
 from ..errors import InputError
 from .scales import SCALES
-from .solving.diagrams import Dataset, of_arms, of_phases, of_rows
+from .solving.diagrams import (
+    Dataset,
+    diagram_from_arm_result,
+    diagram_from_phase_result,
+    diagram_from_row_result,
+)
 from .state import DEFAULT_ARM, DEFAULT_F_MAX, DEFAULT_ROD, LAWS, SECOND_PARAMETERS, PageState
 from .stored_results import StoredResults
 
@@ -109,10 +114,14 @@ def stored_diagram(data: Dataset, state: PageState) -> dict[str, Any] | None:
     if state.tab == "arm":
         scale = SCALES["arm"]["pressure"]
         pressure = (scale.value(state.arm["pressure"]) or 0.0) / scale.factor
-        return of_arms(data, data[second].values, pressure) if "crossing_pressure" in data else None
+        return (
+            diagram_from_arm_result(data, data[second].values, pressure)
+            if "crossing_pressure" in data
+            else None
+        )
     over_F = data.sizes.get("F", 1) > 1
     if "crossing_F" in data:
-        return of_rows(data, data[second].values, "crossing_F", float(data["F_end"].max()))
+        return diagram_from_row_result(data, data[second].values, "crossing_F", float(data["F_end"].max()))
     if "unstable_count" in data and over_F:
-        return of_phases(data, second)
+        return diagram_from_phase_result(data, second)
     return None

@@ -158,7 +158,7 @@ class StoredResults:
         known = np.isfinite(y)
         stable = np.where(words[known] == "unstable", 0, 1)
         cycles = {"F": line["F"].values[known], "y": y[known], "stable": stable}
-        return {"pieces": [], "special": [], "cycles": cycles, **self._found()}
+        return {"pieces": [], "special": [], "cycles": cycles, **self._answer_variables_at()}
 
     def _branch(self, state: PageState) -> AnswerVariables | None:
         """Stored branches of the rod of `state` along the force; None if the file has no branches of this
@@ -172,9 +172,12 @@ class StoredResults:
         if words_of(point["status"]) == "missing":
             return None
         stop = float(json.loads(self.data.attrs["config_resolved"])["branch"]["stop"])
-        return drawn_branches(RodBranches(view_of_dataset(self.data, self.path), rod), stop) | self._found()
+        return (
+            drawn_branches(RodBranches(view_of_dataset(self.data, self.path), rod), stop)
+            | self._answer_variables_at()
+        )
 
-    def _found(self) -> AnswerVariables:
+    def _answer_variables_at(self) -> AnswerVariables:
         return {"status": "ok", "sentence": "", "source": f"stored in {self.path.name}"}
 
 

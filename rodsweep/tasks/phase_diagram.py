@@ -70,7 +70,7 @@ class PhaseDiagramTask(CertifiedTask):
             ("stable states, with cycles", options.cycles, cycles),
         ]
 
-    def searched(self) -> dict[str, np.ndarray]:
+    def searched_limits(self) -> dict[str, np.ndarray]:
         """First and last value of the parameter that varies along the rows, (2,), by its name."""
         return {self.config.plane[0]: self.line[[0, -1]]}
 

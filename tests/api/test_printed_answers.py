@@ -18,7 +18,7 @@ from rodsweep.cli.checking import describe_job
 from rodsweep.post.headline.one_rod import ColumnTexts
 from rodsweep.post.headline.sentences import HEADLINES
 from rodsweep.post.summary import show_summary
-from rodsweep.post.tables.alignment import blocks, column_cells, point_aligned, refolded, rows_with_prose
+from rodsweep.post.tables.alignment import blocks, column_cells, point_aligned, rewrap_line, rows_with_prose
 from rodsweep.post.tables.columns import Column
 from rodsweep.results.file.view import read_view
 from rodsweep.tasks import TASKS
@@ -103,7 +103,7 @@ def test_prose_and_sentences_are_folded_within_the_window_and_whole(seed):
     assert max(map(len, lines)) <= WINDOW
     assert all(word in " ".join(lines) for row in table for word in " ".join(row).split())
     text = "  " * rng.randint(0, 1) + f"{sentence(rng)} k1 = 147.9215 (+- 9e-13), {sentence(rng)}"
-    folded = refolded(text)
+    folded = rewrap_line(text)
     assert max(map(len, folded.splitlines())) <= WINDOW
     assert folded.split() == text.split()
     assert "k1 = 147.9215 (+- 9e-13)" in folded

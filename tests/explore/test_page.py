@@ -238,7 +238,7 @@ def test_stopping_the_folds_leaves_the_diagram_and_stopping_a_motion_the_arm():
     page = page_with(solvers)
     run_callbacks(page.document, seconds=True)
     diagram, *_ = [question for question in solvers.questions if question.kind == "diagram"]
-    page._answered(diagram, Reply("refused", {"sentence": ""}, 0.0))
+    page._on_answer(diagram, Reply("refused", {"sentence": ""}, 0.0))
     page.solve("cycles")
     page.stop()
     page.drag("bent", (0.6, 0.5))

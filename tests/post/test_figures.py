@@ -24,7 +24,7 @@ from rodsweep.post.figures.spectra.line import mark_thresholds, select_roots, wi
 from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS, class_along_row
 from rodsweep.post.figures.stability.diagram_curves import mark_cycles_on_rows
 from rodsweep.post.figures.stability.regions import PIXEL_COUNT, ClassifiedPoints, pixel_classes
-from rodsweep.post.figures.stability.threshold_lines import _alike
+from rodsweep.post.figures.stability.threshold_lines import _groups_of_equal_lines
 from rodsweep.post.figures.style import INVERSE_DRAG_LABEL, LABELS, number, scale
 from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.file.view import View, read_view
@@ -507,10 +507,10 @@ def test_ticks_of_an_axis_are_all_written_the_same_way(low, high, written):
 def test_lines_that_cannot_be_told_apart_are_one():
     rise = np.linspace(1, 2, 5)
     lines = {0: np.tile(rise, (3, 1)), 4: np.tile(1.001 * rise, (3, 1)), 9: np.tile(0.5 * rise, (3, 1))}
-    assert _alike(lines) == [[0, 4], [9]]
+    assert _groups_of_equal_lines(lines) == [[0, 4], [9]]
     lines[4] = lines[4].copy()
     lines[4][2] = np.nan
-    assert _alike(lines) == [[0], [4], [9]]
+    assert _groups_of_equal_lines(lines) == [[0], [4], [9]]
 
 
 def test_several_lines_of_spectra_are_panels_of_one_figure(command, drawn):

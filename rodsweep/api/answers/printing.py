@@ -10,7 +10,15 @@ from html import escape
 
 from ...post.headline.one_rod import OneRod
 from ...post.headline.sentences import HEADLINES, Headline
-from ...post.tables.alignment import COLUMN_GAP, WIDTH, Line, blocks, column_cells, folded, rows_with_prose
+from ...post.tables.alignment import (
+    COLUMN_GAP,
+    WIDTH,
+    Line,
+    blocks,
+    column_cells,
+    rows_with_prose,
+    wrap_cell_text,
+)
 from ...post.tables.columns import Column
 from ...wording import counted
 
@@ -97,7 +105,7 @@ def whole_text(printed: PrintedAnswer) -> str:
     rows = [(c.name, printed.rod.points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
     parts = ["\n".join(_heads(printed)), "\n".join(["numbers", *rows_with_prose(rows)]) if rows else ""]
     for name, columns in printed.lists.items():
-        lines = [folded(_title(name, columns, printed.totals.get(name, 0)))]
+        lines = [wrap_cell_text(_title(name, columns, printed.totals.get(name, 0)))]
         if len(columns[0].values):
             digits = printed.rod.lists[name]
             kept = [column for column in columns if not column.absent.all()]
@@ -105,7 +113,7 @@ def whole_text(printed: PrintedAnswer) -> str:
             for number, block in enumerate(blocks(cells)):
                 lines += ["", *block] if number else block
         parts.append("\n".join(lines))
-    return "\n\n".join(filter(None, [*parts, "\n".join(map(folded, printed.closing_lines))]))
+    return "\n\n".join(filter(None, [*parts, "\n".join(map(wrap_cell_text, printed.closing_lines))]))
 
 
 def whole_html(printed: PrintedAnswer) -> str:
@@ -123,7 +131,7 @@ def whole_html(printed: PrintedAnswer) -> str:
 
 def _heads(printed: PrintedAnswer) -> list[str]:
     """Lines of the heading, folded at the maximum width of a line."""
-    return [line for text in printed.heading if text for line in folded(text).splitlines()]
+    return [line for text in printed.heading if text for line in wrap_cell_text(text).splitlines()]
 
 
 def _title(name: str, columns: Sequence[Column], total: int) -> str:
@@ -203,7 +211,7 @@ def _more(printed: PrintedAnswer) -> str:
     rows = {name: len(columns[0].values) for name, columns in printed.lists.items()}
     rows.update(printed.row_counts)
     lists = [f".{name} ({counted(number, 'row')})" for name, number in rows.items() if number]
-    return folded(f"everything: .table(){'; lists: ' if lists else ''}{', '.join(lists)}")
+    return wrap_cell_text(f"everything: .table(){'; lists: ' if lists else ''}{', '.join(lists)}")
 
 
 def _unit(column: Column) -> str:

@@ -13,7 +13,7 @@ from ...post.rod_portrait.paragraph import paragraph
 from ...post.rod_portrait.picture import portrait_figure
 from ...post.rod_portrait.results import RodResults
 from ...post.rod_portrait.writing import require_portrait, write_portrait
-from ...post.tables.alignment import folded
+from ...post.tables.alignment import wrap_cell_text
 from ...results.file.view import View
 from ...solve.exclusive import one_at_a_time
 from ...tasks.rod_portrait import PortraitRequest, rod_results
@@ -101,7 +101,9 @@ class RodPortrait:
         return write_portrait(self.results, output)
 
     def __repr__(self) -> str:
-        return "\n".join(folded(text, indent="") for text in (self.paragraph, f"{self.rod}, portrait"))
+        return "\n".join(
+            wrap_cell_text(text, indent="") for text in (self.paragraph, f"{self.rod}, portrait")
+        )
 
     def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
         image = BytesIO()

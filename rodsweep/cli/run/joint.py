@@ -90,7 +90,7 @@ class JointWork:
             store=keep,
             prepare=prepare,
             new_results=take_results,
-            unit_label=units.where,
+            unit_label=units.unit_label,
         )
         try:
             return sweep(self.team, todo, loop, shown, self.stop)
@@ -101,7 +101,7 @@ class JointWork:
         """Sends the special points at which missing half curves start to all ranks, so that no rank solves
         these points again.
         """
-        wanted = self.team.on_first(lambda: units.wanted(self.results))
+        wanted = self.team.on_first(lambda: units.units_to_solve(self.results))
         for starts in self.team.exchange(self.together.initial_data(units, wanted)):
             self.together.add_initial_data(starts)
 
@@ -112,14 +112,14 @@ class JointWork:
             raise
         except Exception as error:
             destroy_pooled_solvers()
-            self.note(units.where(unit), error)
+            self.note(units.unit_label(unit), error)
             yield unit, self.together.empty_result()
 
     def variables(self, units: Any) -> Sequence[Filled] | None:
         """The variables that depend on all points; called on the first rank. None if the run was stopped
         before all half curves were followed.
         """
-        if units is not None and units.wanted(self.results):
+        if units is not None and units.units_to_solve(self.results):
             return None
         with suppress(SolveStopped), reporting_to(RankListener(SingleRankCommunication(), self.stop)):
             return self.together.variables(read_view(self.output), units, self.results)

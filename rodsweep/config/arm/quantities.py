@@ -103,9 +103,7 @@ def as_drags(value: Any) -> Axis:
     if not names or not all(isinstance(name, str) and name in DRAGS for name in names):
         raise ValueError(
             f"{short_repr(value)} is not a drag; write one of {', '.join(DRAGS)}, a list of these names, or "
-
             f"{RANGE_OF_DRAG}"
-
         )
     return Axis(values=tuple(float(place) for place in sorted({DRAGS.index(name) for name in names})))
 

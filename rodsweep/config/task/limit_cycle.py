@@ -74,7 +74,7 @@ class LimitCycleConfig(Config):
         return AXIS_OF.get(given, given)
 
     @property
-    def unused(self) -> dict[str, str]:
+    def options_without_effect(self) -> dict[str, str]:
         options = self.limit_cycle
         found: dict[str, str] = {}
         if options.start != "neighbour":
@@ -88,7 +88,7 @@ class LimitCycleConfig(Config):
         return found
 
     @property
-    def meaning(self) -> dict[str, Any]:
+    def settings_of_results(self) -> dict[str, Any]:
         meant = super().settings_of_results
         options = meant[self.task]
         return meant | {self.task: options | ({"along": self.along} if "along" in options else {})}

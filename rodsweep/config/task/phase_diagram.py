@@ -113,11 +113,11 @@ class PhaseDiagramConfig(LinearConfig):
         return DEFAULTS["gamma1"]
 
     @property
-    def unused(self) -> dict[str, str]:
+    def options_without_effect(self) -> dict[str, str]:
         return {} if self.phase_diagram.cycles else {"cycle_accuracy": "cycles: true"}
 
     @property
-    def meaning(self) -> dict[str, Any]:
+    def settings_of_results(self) -> dict[str, Any]:
         """`Config.settings_of_results`, with the parameter values along a row and, for boundary curves, the
         names of the logarithmic axes.
         """

@@ -43,7 +43,7 @@ class SpectrumConfig(LinearConfig):
         return (*LINEAR_PARAMETERS, *cls.beyond) if options.get("longitudinal") else LINEAR_PARAMETERS
 
     @property
-    def unused(self) -> dict[str, str]:
+    def options_without_effect(self) -> dict[str, str]:
         found = {} if self.spectrum.vectors else {"nodes": "vectors: true"}
         if self.spectrum.method == "krylov_schur":
             found |= dict.fromkeys(("certify", "follow"), "method: determinant")
@@ -66,7 +66,7 @@ class SpectrumConfig(LinearConfig):
         return self.certifies and not (self.spectrum.vectors or self.parameters.is_list)
 
     @property
-    def meaning(self) -> dict[str, Any]:
+    def settings_of_results(self) -> dict[str, Any]:
         meant = super().settings_of_results
         if "follow" in meant["spectrum"] and not self._could_follow:  # `follow` then has no effect
             meant["spectrum"]["follow"] = True

@@ -212,12 +212,12 @@ def cover_with_boxes(
             continue
         if kind == REGULAR:
             zero = crossing_newton(eta, p, origin, direction, half)
-            away = _distance_in_half_widths(zero, eta, p, half)
+            away = _box_distance(zero, eta, p, half)
             if away <= 2:  # false if Newton's method failed, which returns nan
                 # A zero outside the box is found from a neighbouring box too.
                 known = away > 1 + BOX_PROOF.outside_distance
                 for other in zeros:  # the doubled box contains at most one zero
-                    apart = _distance_in_half_widths(other, eta, p, half)
+                    apart = _box_distance(other, eta, p, half)
                     known = known or apart <= BOX_PROOF.same_zero_distance
                 if not known:
                     zeros.append(zero)
@@ -235,6 +235,6 @@ def cover_with_boxes(
 
 
 @compiled
-def _distance_in_half_widths(zero: LocatedZero, eta: float, p: float, half: tuple[float, float]) -> float:
+def _box_distance(zero: LocatedZero, eta: float, p: float, half: tuple[float, float]) -> float:
     """Distance of a zero from the centre (eta, p) of a box, in units of the half-widths `half`."""
     return max(abs(zero.eta_or_x - eta) / half[0], abs(zero.p - p) / half[1])

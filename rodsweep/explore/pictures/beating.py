@@ -89,7 +89,7 @@ class BeatingPicture:
         arm and a sentence.
         """
         self.length = length
-        self.let_go()
+        self.remove_dragged_shape()
         x, y = (found[name] * length.factor for name in ("shape_x", "shape_y"))
         has_cycle = bool(np.isfinite(x).all())
         if not has_cycle:
@@ -135,7 +135,7 @@ class BeatingPicture:
         part = "" if found["is_whole"] else "; this is the beginning"
         self.card.entitle(f"Let go at ({place}) {self.length.label}: {end}{part}")
 
-    def let_go(self) -> None:
+    def remove_dragged_shape(self) -> None:
         """Removes the shape of a dragged arm and its motion after the release from the picture."""
         for source in (self.motion, self.reached, self.bent):
             if len(source.data["x"]):
@@ -143,7 +143,7 @@ class BeatingPicture:
 
     def stop(self) -> None:
         """Removes all shapes from the picture, so that the animation stops."""
-        self.let_go()
+        self.remove_dragged_shape()
         self.shapes.data = {name: [] for name in SHAPE_COLUMNS}
 
     def _fit(self, x: Array, y: Array) -> None:

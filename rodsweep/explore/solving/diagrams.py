@@ -104,10 +104,12 @@ def _of_phases(state: PageState, with_cycles: bool = False) -> dict[str, Any]:
             "cycles": True, "cycle_accuracy": CYCLE_ACCURACY, "gamma1": state.parameters()["gamma1"],
         }  # fmt: skip
     data = sweep("phase_diagram", progress=False, **keywords)
-    return of_phases(data.squeeze([n for n in ("k1", "k2", "gamma3") if n != state.second]), state.second)
+    return diagram_from_phase_result(
+        data.squeeze([n for n in ("k1", "k2", "gamma3") if n != state.second]), state.second
+    )
 
 
-def of_phases(data: Dataset, second: str) -> dict[str, Any]:
+def diagram_from_phase_result(data: Dataset, second: str) -> dict[str, Any]:
     """Diagram, with the variables of `diagram`, from a result of the task `phase_diagram` or `spectrum` over
     F and the parameter `second`.
     """
@@ -129,7 +131,9 @@ def _of_thresholds(state: PageState) -> dict[str, Any]:
     keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
     data = sweep("thresholds", **keywords, F_max=state.largest_force(), progress=False)
     data = data.squeeze([n for n in ("k1", "k2", "gamma3", "taper") if n in data.dims and n != state.second])
-    return of_rows(data, second_parameter_values(state, SLOW_ROW_COUNT), "crossing_F", state.largest_force())
+    return diagram_from_row_result(
+        data, second_parameter_values(state, SLOW_ROW_COUNT), "crossing_F", state.largest_force()
+    )
 
 
 def _of_arm(state: PageState) -> dict[str, Any]:
@@ -142,10 +146,10 @@ def _of_arm(state: PageState) -> dict[str, Any]:
     arms = given | {state.second: list(map(float, values))}
     data = sweep("thresholds", arm=arms, F_max=state.largest_force(), progress=False)
     data = data.squeeze([n for n in data.dims if data.sizes[n] == 1])
-    return of_arms(data, values, subject.si.pressure)
+    return diagram_from_arm_result(data, values, subject.si.pressure)
 
 
-def of_arms(data: Dataset, values: np.ndarray, pressure: float) -> dict[str, Any]:
+def diagram_from_arm_result(data: Dataset, values: np.ndarray, pressure: float) -> dict[str, Any]:
     """Diagram, with the variables of `diagram`, from a result of the task `thresholds` for arms. values:
     values of the second quantity, (rows,).
 
@@ -154,10 +158,12 @@ def of_arms(data: Dataset, values: np.ndarray, pressure: float) -> dict[str, Any
     flutter = data["pressure_hopf"].values
     known = flutter[np.isfinite(flutter)]
     largest = 2 * max(pressure or 0.0, known.min() if len(known) else 0.0)
-    return of_rows(data, values, "crossing_pressure", largest or float(data["pressure_end"].max()))
+    return diagram_from_row_result(
+        data, values, "crossing_pressure", largest or float(data["pressure_end"].max())
+    )
 
 
-def of_rows(data: Dataset, values: np.ndarray, name: str, largest: float) -> dict[str, Any]:
+def diagram_from_row_result(data: Dataset, values: np.ndarray, name: str, largest: float) -> dict[str, Any]:
     """Diagram, with the variables of `diagram`, from a result of the task `thresholds` over a second
     parameter.
 

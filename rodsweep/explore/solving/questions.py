@@ -120,10 +120,10 @@ def film(state: PageState) -> AnswerVariables:
     answer = state.subject().cycle(shapes=SHAPE_COUNT, progress=False)
     if not np.isfinite(answer.data["shape_x"].values).all():
         raise InputError(f"there is no cycle to film: {answer.sentence}")
-    return film_of(answer)
+    return film_of_cycle(answer)
 
 
-def film_of(cycle: Answer | Dataset) -> AnswerVariables:
+def film_of_cycle(cycle: Answer | Dataset) -> AnswerVariables:
     """Film of a limit cycle: the content of a GIF file, under the name `gif`. cycle: result with shapes."""
     return {"gif": plot(cycle, what="animation").image}
 
@@ -171,7 +171,7 @@ def answer_to(question: Question) -> AnswerVariables:
     page.
     """
     if question.stored is not None:
-        return film_of(question.stored)
+        return film_of_cycle(question.stored)
     if question.tip is not None:
         return ANSWERS_TO_TIP[question.kind](question.state, question.tip)
     return ANSWERS[question.kind](question.state)

@@ -101,7 +101,7 @@ class SolverProcess:
                 max(0.0, self.patience.interrupt - age), lambda: self._cancel(number, key)
             )
 
-    def forget(self, session: str) -> None:
+    def cancel_session(self, session: str) -> None:
         """Removes all questions of a session from the queue, and cancels the session's question that is being
         solved.
         """
@@ -136,7 +136,7 @@ class SolverProcess:
         self.is_ready = False
         theirs.close()
         watched.close()
-        IOLoop.current().add_handler(self._connection.fileno(), self._hear, IOLoop.READ)
+        IOLoop.current().add_handler(self._connection.fileno(), self._receive_replies, IOLoop.READ)
 
     def _send_next(self) -> None:
         if not self.waiting:
@@ -150,7 +150,7 @@ class SolverProcess:
         self.number += 1
         self._connection.send(question)
 
-    def _hear(self, descriptor: int, events: int) -> None:
+    def _receive_replies(self, descriptor: int, events: int) -> None:
         assert self._connection is not None
         try:
             reply: Reply = self._connection.recv()
@@ -233,10 +233,10 @@ class Solvers:
         """Cancels the question of the given kind in a session."""
         self.groups[PROCESS_GROUPS[kind]].drop((session, kind))
 
-    def forget(self, session: str) -> None:
+    def cancel_session(self, session: str) -> None:
         """Cancels all questions of a session."""
         for solver in self.groups.values():
-            solver.forget(session)
+            solver.cancel_session(session)
 
     def close(self) -> None:
         """Ends all solver processes."""

@@ -58,7 +58,7 @@ def draw_branch(request: FigureRequest) -> str:
     view = request.only_view()
     rods = [RodBranches(view, number) for number in range(view.variables["status"].size)]
     beating = [rod for rod in rods if any(curve.cycles.any() for curve in rod.curves)]
-    style.require(view, beating, "branch with cycles")
+    style.require_content(view, beating, "branch with cycles")
     drawn = beating[: len(BRANCH_COLOURS)]
     curves = [curve for rod in drawn for curve in rod.curves]
     alone = len(rods) == 1
@@ -108,7 +108,7 @@ def draw_curves(
 
 def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
     """Draws the straight rod as the line y = 0; the line style shows the stability."""
-    for stable, ranges in zip((1, 0), rod.straight_ranges(_shown(rod)), strict=True):
+    for stable, ranges in zip((1, 0), rod.straight_ranges(_drawn_parameter_range(rod)), strict=True):
         for low, high in ranges:
             axes.plot([low, high], [0, 0], STABILITY_LINES[stable][0], color="k", lw=1.4)
 
@@ -137,7 +137,7 @@ def _left_out(rods: Sequence[RodBranches], beating: int, drawn: int) -> str:
     )
 
 
-def _shown(rod: RodBranches) -> Range:
+def _drawn_parameter_range(rod: RodBranches) -> Range:
     """Range of the parameter in which the straight rod is drawn: the followed range, without crushed rods,
     and up to 1.1 times the largest parameter of the branches.
     """

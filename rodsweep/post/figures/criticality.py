@@ -56,7 +56,9 @@ def draw_criticality(request: FigureRequest) -> str:
     parameter, or else predicted amplitudes against F; returns a sentence.
     """
     view = request.only_view()
-    style.require(view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form")
+    style.require_content(
+        view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form"
+    )
     varied = varied_parameters(view)
     if len(varied) == 1 and np.isfinite(np.unique(view.point_columns[varied[0]])).sum() > 1:
         return request.write(_along(view, varied[0]), f"the normal forms of Hopf points along {varied[0]}")
@@ -76,7 +78,7 @@ def _along(view: View, name: str) -> Figure:
     figure = Figure(figsize=(5.6, 5.4), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True)
     side, a, c = (view.by_point(key)[keep] for key in ("criticality", "amplitude_coefficient", "landau_real"))
-    style.require(view, np.isfinite(c).any(), f"Hopf point with a finite {name}")
+    style.require_content(view, np.isfinite(c).any(), f"Hopf point with a finite {name}")
     small = float(np.nanquantile(np.abs(c), LINEAR_FRACTION))
     lower.set_yscale("symlog", linthresh=10.0 ** floor(log10(small)))
     for axes, values in ((upper, a), (lower, c)):
@@ -110,7 +112,7 @@ def _map(view: View, points: PointMap, narrow: bool) -> Figure:
     """
     side = view.by_point("criticality")[points.at]
     a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.at])
-    style.require(view, np.isfinite(a).any(), "first Hopf point with a normal form")
+    style.require_content(view, np.isfinite(a).any(), "first Hopf point with a normal form")
     figure, panels = map_panels(2, narrow)
     edges = cell_edges(points.x), cell_edges(points.y)
     classes = _classes(side)
@@ -148,7 +150,7 @@ def draw_predictions(view: View) -> tuple[Figure, str]:
     """
     kinds, F, a = map(view.by_point, ("criticality", "crossing_F", "amplitude_coefficient"))
     having = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))
-    style.require(view, having.size, "Hopf point with a normal form")
+    style.require_content(view, having.size, "Hopf point with a normal form")
     drawn = having[: len(ROD_COLOURS)]
     figure = Figure(figsize=(5.6, 3.8), layout="constrained")
     axes = figure.subplots()

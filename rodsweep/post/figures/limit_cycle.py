@@ -74,7 +74,7 @@ def figure_name(request: FigureRequest) -> str:
     for view in others:
         if view.task != first.task:
             request.refuse_choices(view)
-    name = request.what or _suggested(request)
+    name = request.what or _default_figure_kind(request)
     if name not in KINDS_OF_TASK["limit_cycle"]:
         request.refuse_points(first)
     if others and name != "amplitude":
@@ -84,7 +84,7 @@ def figure_name(request: FigureRequest) -> str:
     return name
 
 
-def _suggested(request: FigureRequest) -> str:
+def _default_figure_kind(request: FigureRequest) -> str:
     """Default kind of figure.
 
     An animation for an output file with the suffix of an animation; shapes or transients for a few points;

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 
 from ...results.file.view import View
 from .request import FigureRequest
-from .style import BLUE, VERMILION, heading, legend_below, number, parameter_text, require
+from .style import BLUE, VERMILION, heading, legend_below, number, parameter_text, require_content
 
 MAX_RODS = 4
 """Largest number of points in one figure; a narrow figure shows one point."""
@@ -28,7 +28,7 @@ def draw_modes(request: FigureRequest) -> str:
     view = request.only_view()
     growth = view.variables["growth_rate"][..., 0].ravel()
     points = np.flatnonzero(np.isfinite(growth))
-    require(view, points.size, "computed point")
+    require_content(view, points.size, "computed point")
     narrow = request.look.narrow
     drawn = points[: 1 if narrow else MAX_RODS]
     rows, columns = (len(drawn) * len(MODE_PANELS), 1) if narrow else (len(drawn), len(MODE_PANELS))
@@ -40,10 +40,10 @@ def draw_modes(request: FigureRequest) -> str:
             _panel(panel, view, int(point), fields)
             panel.set_title(word)
         if len(drawn) > 1:
-            row[1].set_title(f"{': '.join(_where(view, int(point)))}\n{MODE_PANELS[1][0]}")
+            row[1].set_title(f"{': '.join(_point_texts(view, int(point)))}\n{MODE_PANELS[1][0]}")
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
-    figure.suptitle(heading(view, *(_where(view, int(drawn[0])) if len(drawn) == 1 else ())))
+    figure.suptitle(heading(view, *(_point_texts(view, int(drawn[0])) if len(drawn) == 1 else ())))
     legend_below(figure, _parts(view, drawn), columns=2)
     left = f" of the first of {points.size} points" if len(drawn) == 1 < points.size else ""
     if points.size > len(drawn) > 1:
@@ -86,7 +86,7 @@ def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], .
     panel.set_xlim(0, 1)
 
 
-def _where(view: View, point: int) -> tuple[str, str]:
+def _point_texts(view: View, point: int) -> tuple[str, str]:
     """Returns (parameters, leading eigenvalue), as TeX, of the point with the index `point`."""
     at = {name: values[point] for name, values in view.point_columns.items()}
     w = [float(view.by_point(name)[point, 0]) for name in ("growth_rate", "frequency")]

@@ -25,7 +25,16 @@ from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, class_along_row, classes_between_crossings
 from .stability.diagram_curves import draw_curves, draw_cycle_curves, mark_cycles_on_rows
 from .stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
-from .style import LABELS, SYMBOLS, heading, is_logarithmic, legend_below, parameter_text, require, scale
+from .style import (
+    LABELS,
+    SYMBOLS,
+    heading,
+    is_logarithmic,
+    legend_below,
+    parameter_text,
+    require_content,
+    scale,
+)
 from .style import number as number_text
 
 STATE_COLOURS = {
@@ -95,7 +104,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     row = next((name for name in view.parameters if len(view.axes[name]) > 1), view.parameters[0])
     palette = STATE_PALETTE if STATE_PALETTE.variable in view.variables else CLASS_PALETTE
     values = view.variables[palette.variable]
-    require(view, (values >= 0).any(), "computed row")
+    require_content(view, (values >= 0).any(), "computed row")
     x = view.variables[line]
     y = view.axes[row]
     keep = np.isfinite(y)

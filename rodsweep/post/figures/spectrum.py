@@ -28,7 +28,7 @@ from .spectra.line import (
     roots_to_follow,
     threshold_text,
 )
-from .style import LABELS, fixed_text, heading, legend_below, long_axes, require, scale
+from .style import LABELS, fixed_text, heading, legend_below, long_axes, require_content, scale
 
 MAX_PANELS = 12
 """Largest number of panels in one figure."""
@@ -63,7 +63,7 @@ def draw_spectrum(request: FigureRequest) -> str:
     if len(request.views) > 1:
         return _several(request)
     view = as_grid(request.only_view())
-    require(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
+    require_content(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
     if view.variables["status"].size == 1:
         return request.write(draw_eigenvalues(view), "the stored eigenvalues in the complex plane")
     if not view.is_grid:
@@ -116,7 +116,7 @@ def _line_of(view: View, request: FigureRequest) -> View:
     if view.task != request.views[0].task:
         raise InputError(f"{view.path} is of the task {view.task}; only lines of spectra can share a figure")
     view = as_grid(view)
-    require(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
+    require_content(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
     view = without_infinite(view) if view.is_grid else view
     if not view.is_grid or sum(len(values) > 1 for values in view.axes.values()) != 1:
         raise InputError(

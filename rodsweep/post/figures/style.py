@@ -64,7 +64,7 @@ PRINT_STYLE = FIGURE_STYLE | dict.fromkeys(FONT_SIZES, 8)
 """Settings of matplotlib for a figure with a given width; all text has a size of 8 points."""
 
 
-def plain(text: object) -> str:
+def escape_dollar_signs(text: object) -> str:
     """A text of the user for matplotlib, with escaped dollar signs, which would otherwise start a formula."""
     return str(text).replace("$", r"\$")
 
@@ -73,7 +73,7 @@ def heading(view: View, *lines: str) -> str:
     """Text above a figure: title of the result file (if requested), constitutive law and profile (if not
     standard), and `lines`, one below the other.
     """
-    title = " ".join(plain(view.attributes.get("title", "")).split())
+    title = " ".join(escape_dollar_signs(view.attributes.get("title", "")).split())
     return "\n".join(filter(None, (title, material_text(view), *lines)))
 
 
@@ -87,16 +87,16 @@ def material_text(view: View) -> str:
     return ", ".join([*words, *(["with a profile"] if "profile" in material else [])])
 
 
-def name_in(view: View, views: Sequence[View]) -> str:
+def file_label(view: View, views: Sequence[View]) -> str:
     """Text that identifies a file in a figure of several files: constitutive law if all laws differ, else
     title if all titles differ, else file name.
     """
     laws = [material_text(each) or "linear" for each in views]
     if len(set(laws)) == len(laws):
         return laws[list(views).index(view)]
-    titles = [" ".join(plain(each.attributes.get("title", "")).split()) for each in views]
+    titles = [" ".join(escape_dollar_signs(each.attributes.get("title", "")).split()) for each in views]
     distinct = len(set(titles)) == len(titles) and all(titles)
-    return titles[list(views).index(view)] if distinct else plain(view.path.stem)
+    return titles[list(views).index(view)] if distinct else escape_dollar_signs(view.path.stem)
 
 
 def number(value: float, digits: int = 6) -> str:
@@ -140,7 +140,7 @@ def long_axes(view: View) -> list[str]:
     return long
 
 
-def require(view: View, available: object, what: str) -> None:
+def require_content(view: View, available: object, what: str) -> None:
     """Raises InputError if `available` is false or empty. what: noun for the missing content."""
     if not available:
         raise InputError(f"{view.path} holds no {what} that could be drawn")

@@ -51,7 +51,7 @@ def draw_thresholds(request: FigureRequest) -> str:
         return request.write(draw_class_bars(view), "behaviour of each rod over F", min_aspect)
     long = style.long_axes(view)
     found = [name for name, *_ in CRITICAL_FORCES if np.isfinite(view.variables[name]).any()]
-    style.require(view, found, "threshold")
+    style.require_content(view, found, "threshold")
     few = min(len(view.axes[name]) for name in long) <= MAX_LINES
     if request.what == "map" or (len(long) == 2 and not few and request.what != "lines"):
         figure, left_out = _map(view, found, request.look.narrow)
@@ -100,7 +100,7 @@ def _map(view: View, names: list[str], narrow: bool) -> tuple[Figure, str]:
         panels, [force for force in CRITICAL_FORCES if force[0] in names], strict=True
     ):
         values = view.variables[name].ravel()[points.at]
-        style.require(view, np.isfinite(values).any(), f"{name} of rods with finite parameters")
+        style.require_content(view, np.isfinite(values).any(), f"{name} of rods with finite parameters")
         style.colour_cells(axes, (cell_edges(points.x), cell_edges(points.y)), values, f"{word} in $k_3/L^2$")
         axes.set_facecolor(NO_THRESHOLD)
         lacking |= bool(np.isnan(values).any())

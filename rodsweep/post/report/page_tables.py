@@ -52,10 +52,10 @@ def page_tables(view: View) -> Iterator[PageTable]:
         if name in tables.contents.tables:
             table = tables.table(name)
             if table.rows:
-                yield _shown(table)
+                yield _table_for_page(table)
 
 
-def _shown(table: Table) -> PageTable:
+def _table_for_page(table: Table) -> PageTable:
     """The table in a form for the page: without empty columns; columns with equal values in all rows are
     listed separately.
     """

@@ -69,7 +69,7 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
         style.legend_below(figure, handles, columns=4)
         if with_words:
             text = textwrap.fill(paragraph(results), PARAGRAPH_WIDTH)
-            figure.suptitle(style.plain(text), x=0.01, ha="left", fontsize=8)
+            figure.suptitle(style.escape_dollar_signs(text), x=0.01, ha="left", fontsize=8)
         return figure
 
 
@@ -93,7 +93,7 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
     axes.spines["left"].set_visible(False)
     axes.tick_params(labelbottom=False)
     if not np.isfinite(v["F_end"]):
-        _say(axes, f"thresholds: {_outcome(view)}", PARAGRAPH_WIDTH)
+        _write_sentence(axes, f"thresholds: {_outcome(view)}", PARAGRAPH_WIDTH)
         return []
     axes.set_xlim(0, float(v["F_end"]))
     seen = draw_class_bar(axes, view, 0, upright=False)
@@ -109,7 +109,7 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
     rod = results.branches
     if rod is None or not rod.curves:
         lower.set_axis_off()
-        _say(
+        _write_sentence(
             upper, results.missing.get("branch", "no branch of cycles begins in this range"), PARAGRAPH_WIDTH
         )
         return []
@@ -151,13 +151,13 @@ def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
 def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
     """Draws the deflection of the leading mode at the first threshold of the given kind."""
     if kind not in results.modes:
-        _say(axes, f"no mode: {results.missing['modes']}", PANEL_TEXT_WIDTH)
+        _write_sentence(axes, f"no mode: {results.missing['modes']}", PANEL_TEXT_WIDTH)
         return
     F, view = results.modes[kind]
     v = view.of_point(0)
     axes.set_title(results.units.mode_title(kind, F))
     if not np.isfinite(v["Y_real"][0]).all():
-        _say(axes, f"no mode: {_outcome(view)}", PANEL_TEXT_WIDTH)
+        _write_sentence(axes, f"no mode: {_outcome(view)}", PANEL_TEXT_WIDTH)
         return
     parts = {part: v[f"Y_{part}"][0] for part in ("real", "imag")}
     for part, line, label in (("real", "-", "Re"), ("imag", ":", "Im")):
@@ -173,7 +173,7 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
     if not results.cycles:
         for axes in panels[1:]:
             axes.set_axis_off()
-        _say(panels[0], f"no cycle: {results.missing['limit_cycle']}", PANEL_TEXT_WIDTH)
+        _write_sentence(panels[0], f"no cycle: {results.missing['limit_cycle']}", PANEL_TEXT_WIDTH)
         return
     drawn = [view.of_point(0) for _, view in results.cycles if view.with_status(*CYCLE_WORDS).all()]
     units = results.units
@@ -184,7 +184,7 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
         force = units.force_title(F)
         if not view.with_status(*CYCLE_WORDS).all():
             axes.set_title(force)
-            _say(axes, f"no cycle: {_outcome(view)}", PANEL_TEXT_WIDTH)
+            _write_sentence(axes, f"no cycle: {_outcome(view)}", PANEL_TEXT_WIDTH)
             continue
         shades = matplotlib.colormaps["viridis_r"](np.linspace(UNUSED_COLOUR_FRACTION, 1, len(v["shape_x"])))
         draw_clamp(axes, length)
@@ -205,8 +205,8 @@ def _outcome(view: View) -> str:
     return view.sentences.get(word, word)
 
 
-def _say(axes: Axes, sentence: str, width: int) -> None:
+def _write_sentence(axes: Axes, sentence: str, width: int) -> None:
     """Writes a sentence into an empty panel, in lines of `width` characters."""
     axes.set_axis_off()
-    text = style.plain(textwrap.fill(f"{sentence[:1].upper()}{sentence[1:]}.", width))
+    text = style.escape_dollar_signs(textwrap.fill(f"{sentence[:1].upper()}{sentence[1:]}.", width))
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=8)

@@ -14,7 +14,7 @@ from ...results.file.view import View
 from ..branch_curves import Range
 from ..figures import style
 from ..summary.arm.arm import own_unit
-from ..summary.ranges import listed, rounded
+from ..summary.ranges import ranges_text, rounded
 
 THRESHOLD_MARKS = {"onset": ("*", "onset"), "hopf": ("**", "flutter")}
 """(superscript of the symbol, word) of a threshold, by kind."""
@@ -64,7 +64,7 @@ class PortraitUnits:
         """
         factor = self.force.factor
         own = [(factor * low, factor * high) for low, high in ranges]
-        return self.at(listed(own, {factor * end: factor * error for end, error in errors.items()}))
+        return self.at(ranges_text(own, {factor * end: factor * error for end, error in errors.items()}))
 
     def frequency_text(self, omega: float) -> str:
         """Angular frequency `omega`, in 1/tau2, as text; for an arm, as a frequency in Hz."""

@@ -20,7 +20,7 @@ from ...results.layouts import lacks_joint_variables_in
 from ...results.layouts.variables import DIMENSIONS, MISSING
 from ...wording import counted, is_or_are, plural
 from ..cost_and_provenance import origin_lines, rank_lines, time_lines
-from ..tables.alignment import blocks, column_cells, point_aligned, refolded
+from ..tables.alignment import blocks, column_cells, point_aligned, rewrap_line
 from .arm.answer import arm_answer
 from .arm.arm import arm_lines
 from .branch import branch_summary
@@ -107,7 +107,7 @@ def print_lines(console: Console, lines: Sequence[str]) -> None:
     wrapped.
     """
     for line in lines:
-        console.print(refolded(line, console.width) if has_window(console) else line, soft_wrap=True)
+        console.print(rewrap_line(line, console.width) if has_window(console) else line, soft_wrap=True)
 
 
 def has_window(console: Console) -> bool:

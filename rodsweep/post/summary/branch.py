@@ -9,7 +9,7 @@ from ...results.file.view import View
 from ...wording import counted, is_or_are, some_of
 from ..branch_curves import Range, RodBranches, StoredBranch, ends_of, followed_parameter
 from .errors import span_of
-from .ranges import listed, rounded, span, to_error
+from .ranges import ranges_text, rounded, span_text, to_error
 from .summary_lines import SummaryLines, at_point, first_lines, proof_clause
 from .thresholds import unknown_clause
 
@@ -69,16 +69,16 @@ def _one_rod(rod: RodBranches) -> Iterator[str]:
         yield f"branch {number}, {_ends(curve, along)}: {_extent(curve, errors, along)}"
         yield from _special_of_branch(curve, along)
         if curve.stable_ranges:
-            yield f"  stable cycles at {along} = {listed(curve.stable_ranges, curve.errors)}"
+            yield f"  stable cycles at {along} = {ranges_text(curve.stable_ranges, curve.errors)}"
         else:
             yield "  no stable cycle" if curve.is_decided else "  no cycle is known to be stable"
     if rod.curves and not rod.hidden:
         nowhere = "nowhere in the range" if rod.coexistence_is_decided else "not known"
         common = rod.coexistence
-        words = f"{along} = {listed(common, rod.errors)}" if common else nowhere
+        words = f"{along} = {ranges_text(common, rod.errors)}" if common else nowhere
         yield f"{COEXISTENCE_WORDS}: {words}"
         if pairs := rod.two_cycles:
-            yield f"{TWO_CYCLES_WORDS}: {along} = {listed(pairs, rod.errors)}"
+            yield f"{TWO_CYCLES_WORDS}: {along} = {ranges_text(pairs, rod.errors)}"
 
 
 def _extent(curve: StoredBranch, errors: Array, along: str) -> str:
@@ -89,7 +89,7 @@ def _extent(curve: StoredBranch, errors: Array, along: str) -> str:
     if not cycles.any():
         return "no cycle is stored"
     sizes = curve.y[cycles]
-    ranges = f"{along} = {span(curve.at[cycles])}, largest tip y {span(sizes, errors * sizes)} L"
+    ranges = f"{along} = {span_text(curve.at[cycles])}, largest tip y {span_text(sizes, errors * sizes)} L"
     return f"{counted(int(cycles.sum()), 'cycle')}, {ranges}"
 
 
@@ -152,7 +152,7 @@ def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
     for kind, located in found.items():
         if not located:
             continue
-        where = f"{along} = {span(*np.array(located).T)}"
+        where = f"{along} = {span_text(*np.array(located).T)}"
         if kind in SPECIAL_WORDS:
             yield f"{counted(len(located), SPECIAL_WORDS[kind])}: {where}"
         else:
@@ -186,7 +186,7 @@ def _rods_with(
     """
     unknown = sum(not (own or rod.coexistence_is_decided) for rod, own in zip(rods, ranges, strict=True))
     having = [
-        ": ".join(filter(None, (at_point(rod.view, rod.rod), f"{along} = {listed(own, rod.errors)}")))
+        ": ".join(filter(None, (at_point(rod.view, rod.rod), f"{along} = {ranges_text(own, rod.errors)}")))
         for rod, own in zip(rods, ranges, strict=True)
         if own
     ]

@@ -10,7 +10,7 @@ from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted, some_of
 from .arm.arm import crossings_of_arm
 from .errors import errors_of
-from .ranges import number_and_error, rounded, span
+from .ranges import number_and_error, rounded, span_text
 from .summary_lines import SummaryLines, TextTable, in_brackets, proof_clause, region
 from .thresholds import ENDED_EARLY, unknown_beyond_clause, unknown_clause, unstored_clause
 
@@ -37,7 +37,7 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
     if done.size == 1:
         none = "the Hopf points of this rod are not known"
         if v["crossing_count"].max() >= 0:
-            none = f"no Hopf point up to F = {span(v['F_end'])}"
+            none = f"no Hopf point up to F = {span_text(v['F_end'])}"
         of_rod = view.of_point(0)
         lines = list(_hopf_lines(of_rod)) or [none]
         lines[0] += unknown_beyond_clause(view, float(of_rod["F_end"]))
@@ -57,9 +57,9 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
     a, b = (
         (v[name][done], errors_of(v, name)[done]) for name in ("amplitude_coefficient", "frequency_slope")
     )
-    F = span(v["crossing_F"][done][:, 0], v["crossing_error"][done][:, 0])
+    F = span_text(v["crossing_F"][done][:, 0], v["crossing_error"][done][:, 0])
     lines += [
-        f"first Hopf point: {_counts(first)}; F = {F}, a = {span(*(table[:, 0] for table in a))} L",
+        f"first Hopf point: {_counts(first)}; F = {F}, a = {span_text(*(table[:, 0] for table in a))} L",
         *_subcritical_lines(view),
     ]
     trust = [
@@ -69,7 +69,7 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
         f"{_worst(v['frequency_slope_error'][done])}",
     ]
     which = "stored" if (v["crossing_count"][done] > known.sum(axis=-1)).any() else "all"
-    every = f"{which} Hopf points: {_counts(side)}; a = {span(*a)} L, b = {span(*b)} L^2/(k3 tau2)"
+    every = f"{which} Hopf points: {_counts(side)}; a = {span_text(*a)} L, b = {span_text(*b)} L^2/(k3 tau2)"
     return SummaryLines(lines, trust, [every])
 
 
@@ -155,7 +155,7 @@ def _searched(view: View, done: np.ndarray) -> str:
     rods = int(done.sum())
     hidden = int(v["crossing_count"][done].clip(min=0).sum() - (v["crossing_kind"][done] > 0).sum())
     return (
-        f"searched up to F = {span(v['F_end'][done])}; the list of Hopf points {proof_clause(view)} at "
+        f"searched up to F = {span_text(v['F_end'][done])}; the list of Hopf points {proof_clause(view)} at "
         f"{some_of(certified, rods, 'rod')}{unstored_clause(hidden)}"
     )
 

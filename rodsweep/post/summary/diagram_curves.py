@@ -7,7 +7,7 @@ from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import BAUTIN_ENDS, CURVE_ENDS, CYCLE_CURVE_ENDS
 from ...wording import counted
-from .ranges import error_text, span, to_error
+from .ranges import error_text, span_text, to_error
 
 CURVE_END_WORDS = {
     "none": "continues",
@@ -175,7 +175,7 @@ def bautin_curve_lines(view: View) -> list[str]:
     names = [name for name in LINEAR_PARAMETERS if f"bautin_along_{name}" in v]
     for number in np.unique(v["bautin_along_curve"]):
         on = v["bautin_along_curve"] == number
-        where = ", ".join(f"{name} = {span(v[f'bautin_along_{name}'][on])}" for name in names)
+        where = ", ".join(f"{name} = {span_text(v[f'bautin_along_{name}'][on])}" for name in names)
         ends = [BAUTIN_ENDS[int(v[f"bautin_along_{side}"][on].max())] for side in END_SUFFIXES]
         lines.append(
             f"curve {int(number)} of generalised Hopf points: {counted(int(on.sum()), 'point')}, {where}; "

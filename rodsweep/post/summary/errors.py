@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from .ranges import span
+from .ranges import span_text
 
 EIGENVALUE_ERROR = 1e-9
 """Relative error of the straight rod's eigenvalue in results of limit cycles, equal to the tolerance of the
@@ -112,4 +112,4 @@ def span_of(v: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -> str:
     according to the errors. v: variables of the file.
     """
     chosen = mask & is_known(v, name) if name == "transient_time" else mask
-    return span(v[name][chosen], errors_of(v, name)[chosen])
+    return span_text(v[name][chosen], errors_of(v, name)[chosen])

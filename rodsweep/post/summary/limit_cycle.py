@@ -12,7 +12,7 @@ from ...wording import counted, some_of
 from ..hopf_points import StoredChanges
 from .arm.arm import region_of_arms
 from .errors import errors_of, span_of
-from .ranges import error_text, number_and_error, span
+from .ranges import error_text, number_and_error, span_text
 from .stability import stability_lines
 from .summary_lines import SummaryLines, TextTable, in_brackets, proof_clause, region, varied
 
@@ -136,8 +136,8 @@ def _second_state_lines(v: Mapping[str, np.ndarray], done: np.ndarray) -> list[s
     if cycle.any():
         lines.append(
             f"a second state is possible{_at(cycle, done)}: the rod is straight, and its Hopf point at "
-            f"F = {span(v['subcritical_F'][cycle])} is subcritical, so a larger initial deflection may lead "
-            "to a cycle; the task branch follows this cycle"
+            f"F = {span_text(v['subcritical_F'][cycle])} is subcritical, so a larger initial deflection may "
+            "lead to a cycle; the task branch follows this cycle"
         )
     return lines
 
@@ -154,7 +154,7 @@ def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
     h1 of the cycles. v: variables of the file. beats: mask of the points with a cycle.
     """
     ratio = v["frequency"][beats] / v["linear_frequency"][beats]
-    times = span(ratio, ratio * v["period_error"][beats])
+    times = span_text(ratio, ratio * v["period_error"][beats])
     tips = (
         f"{what} {span_of(v, f'tip_{name}', beats)} {unit}"
         for what, name, unit in (
@@ -170,7 +170,7 @@ def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
         f"tip: {', '.join(tips)}",
         f"power of the force, mean: {span_of(v, 'injection_mean', beats)} k3/(L tau2)",
         f"multiplier: {span_of(v, 'multiplier', beats)}; periods integrated: "
-        f"{span(v['periods'][beats])}; least stretch: {span_of(v, 'least_stretch', beats)}",
+        f"{span_text(v['periods'][beats])}; least stretch: {span_of(v, 'least_stretch', beats)}",
     ]
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from ...results.file.view import View
 from ...wording import counted, some_of
 from .errors import errors_of, span_of
-from .ranges import NONE, span
+from .ranges import NONE, span_text
 from .spectrum import (
     count_line,
     eigenvalue_table,
@@ -48,7 +48,7 @@ def growth_lines(view: View, done: np.ndarray) -> list[str]:
     v = view.variables
     condition = v["condition"][done][:, 0]
     error = errors_of(v, "condition")[done][:, 0]
-    lines = [f"condition of the leading eigenvalue: {span(condition, error)}"]
+    lines = [f"condition of the leading eigenvalue: {span_text(condition, error)}"]
     if "transient_growth" not in v:
         return lines
     growth = v["transient_growth"][done]

@@ -12,7 +12,7 @@ from ...results.layouts.variables import number_of
 from ...wording import counted, some_of
 from .arm.arm import loads_at
 from .diagram_curves import agreement_lines, criticality_lines, curve_lines, cut_lines
-from .ranges import span
+from .ranges import span_text
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
 
@@ -96,8 +96,8 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     for words, (rows, where) in found_on.items():
         if rows.any():
             lines.append(
-                f"{words}: on {some_of(rows.sum(), done.sum(), 'row')}, {line} = {span(where)}, "
-                f"{row} = {span(of_row[rows])}"
+                f"{words}: on {some_of(rows.sum(), done.sum(), 'row')}, {line} = {span_text(where)}, "
+                f"{row} = {span_text(of_row[rows])}"
             )
     return lines
 
@@ -135,10 +135,10 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
         if number and on_row.any():
             first = of_kind & (of_kind.cumsum(axis=-1) == 1)
             again = of_kind & ~first
-            at, later = (span(v["crossing_at"][one], v["crossing_error"][one]) for one in (first, again))
+            at, later = (span_text(v["crossing_at"][one], v["crossing_error"][one]) for one in (first, again))
             least = "at least " * bool((unknown & ~on_row).any())
             text = f"{word}: on {least}{some_of(on_row.sum(), done.sum(), 'row')}, {line} = {at}"
-            text += f", {row} = {span(of_row[on_row])}"
+            text += f", {row} = {span_text(of_row[on_row])}"
             if again.any():
                 least = "at least " * bool(unknown.any())
                 text += f"; again on {least}{int(again.any(axis=-1).sum())} of these rows, {line} = {later}"
@@ -148,12 +148,12 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     if undecided.any():
         rows = undecided.any(axis=-1)
         places = np.broadcast_to(v[line], undecided.shape)[undecided]
-        on_rows = f"on {some_of(rows.sum(), done.sum(), 'row')}, {line} = {span(places)}"
-        lines.append(f"undecided: {on_rows}, {row} = {span(of_row[rows])}")
+        on_rows = f"on {some_of(rows.sum(), done.sum(), 'row')}, {line} = {span_text(places)}"
+        lines.append(f"undecided: {on_rows}, {row} = {span_text(of_row[rows])}")
     flutters = (v["class"] == flutter).any(axis=-1)
     never = ~flutters & (v["class"] != unknown_class).all(axis=-1)
     if (done & never).any() and (done & flutters).any():
-        with_it, without = (span(of_row[done & mask]) for mask in (flutters, never))
+        with_it, without = (span_text(of_row[done & mask]) for mask in (flutters, never))
         lines.append(f"flutter on the rows {row} = {with_it}; no flutter on the rows {row} = {without}")
     return lines
 

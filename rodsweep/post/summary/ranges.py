@@ -26,7 +26,7 @@ NONE = "none"
 """Text for a missing number or an empty range."""
 
 
-def span(values: np.ndarray, errors: np.ndarray | None = None, most: int = RANGE_DIGITS) -> str:
+def span_text(values: np.ndarray, errors: np.ndarray | None = None, most: int = RANGE_DIGITS) -> str:
     """Range of the finite `values`, of any shape, as text; NONE if no value is finite.
 
     errors: absolute errors, of the shape of the values, which limit the number of digits. most: largest
@@ -44,7 +44,7 @@ def span(values: np.ndarray, errors: np.ndarray | None = None, most: int = RANGE
     return low if low == high else f"{low} to {high}"
 
 
-def listed(ranges: Sequence[tuple[float, float]], errors: Mapping[float, float]) -> str:
+def ranges_text(ranges: Sequence[tuple[float, float]], errors: Mapping[float, float]) -> str:
     """Ranges of a parameter as text; NONE for an empty list. errors: absolute errors of ends of ranges, by
     end; other ends are exact.
     """

@@ -7,7 +7,7 @@ from ...results.layouts.rods import estimates_counts, has_covering
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted, some_of
 from ..hopf_points import StoredChanges
-from .ranges import number_and_error, span
+from .ranges import number_and_error, span_text
 from .stability import stability_lines
 from .summary_lines import SummaryLines, TextTable, in_brackets, region
 
@@ -52,7 +52,8 @@ def leading_line(view: View, done: np.ndarray) -> str:
     """Line on the leading eigenvalues. done: mask of the computed points, of the shape of the points."""
     v = view.variables
     rate, frequency = (
-        span(v[name][done][:, 0], v["error_estimate"][done][:, 0]) for name in ("growth_rate", "frequency")
+        span_text(v[name][done][:, 0], v["error_estimate"][done][:, 0])
+        for name in ("growth_rate", "frequency")
     )
     return f"leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"
 
@@ -109,7 +110,7 @@ def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
         return ["no mesh: the eigenvalues of all points were followed along the sweep, or not found"]
     without = f"; no mesh at {counted(followed, 'point')}, followed or failed" if followed else ""
-    return [f"unknowns per point: {span(unknowns[unknowns > 0])}{without}"]
+    return [f"unknowns per point: {span_text(unknowns[unknowns > 0])}{without}"]
 
 
 def stability_line(view: View, done: np.ndarray) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 from ...results.file.view import View
 from ...results.layouts.rods import has_covering
 from ...wording import counted
-from .ranges import span
+from .ranges import span_text
 
 MAX_LISTED_ITEMS = 8
 """Largest number of rods, branches or points that are listed one by one."""
@@ -71,7 +71,7 @@ def region(view: View, mask: np.ndarray) -> str:
     for name, column in varied(view).items():
         values = column[mask.ravel()]
         is_finite = np.isfinite(values)
-        ends = [span(values)] if is_finite.any() else []
+        ends = [span_text(values)] if is_finite.any() else []
         ranges.append(f"{name} = {' and '.join([*ends, *(['inf'] if not is_finite.all() else [])])}")
     return ", ".join(ranges)
 

@@ -11,7 +11,7 @@ from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted, plural, some_of
 from .arm.arm import crossings_of_arm
-from .ranges import error_text, number_and_error, rounded, span
+from .ranges import error_text, number_and_error, rounded, span_text
 from .summary_lines import SummaryLines, TextTable, at_point, in_brackets, proof_clause
 
 FIRST_THRESHOLD_WORDS = {
@@ -40,7 +40,10 @@ def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
             crossing_lines(view), completeness_lines(view), details, of_arm, crossing_table(view)
         )
     answer = [event_line(view, done, event) for event in FIRST_THRESHOLD_WORDS]
-    trust = [*search_lines(view, done, "rod"), f"searched up to F = {span(view.variables['F_end'][done])}"]
+    trust = [
+        *search_lines(view, done, "rod"),
+        f"searched up to F = {span_text(view.variables['F_end'][done])}",
+    ]
     return SummaryLines(answer, trust, [*monotony_lines(view), *cost_lines(view, done)])
 
 
@@ -65,7 +68,7 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
     places = [f"{rounded(F[i], errors[i])}{in_brackets(at_point(view, i))}" for i in (low, high)]
     forces = " to ".join(places if places[0] != places[1] else places[:1])
     where = f"all {counted(rods, 'rod')}" if found.sum() == rods else some_of(int(found.sum()), rods, "rod")
-    return f"{words}: F = {forces}, at {where}{unknown}; {noun} {span(v[rate][done])} {unit}"
+    return f"{words}: F = {forces}, at {where}{unknown}; {noun} {span_text(v[rate][done])} {unit}"
 
 
 def unknown_beyond_clause(view: View, F: float) -> str:
@@ -227,5 +230,5 @@ def cost_lines(view: View, done: np.ndarray) -> list[str]:
 
 def count_range(values: np.ndarray, noun: str) -> str:
     """Range of the integer counts `values`, (n,), as text. noun: noun for the counted items."""
-    text = span(values)
+    text = span_text(values)
     return f"{text} {noun if text == '1' else plural(noun)}"

@@ -22,14 +22,14 @@ Line = tuple[str, ...]
 """Cells of a row, or of one line of the headings."""
 
 
-def folded(text: str, indent: str = "  ", width: int = WIDTH) -> str:
+def wrap_cell_text(text: str, indent: str = "  ", width: int = WIDTH) -> str:
     """`text` wrapped to lines of at most `width` characters; all lines except the first start with
     `indent`.
     """
     return textwrap.fill(text, width, subsequent_indent=indent, break_on_hyphens=False)
 
 
-def refolded(line: str, width: int = WIDTH) -> str:
+def rewrap_line(line: str, width: int = WIDTH) -> str:
     """`line` wrapped to at most `width` characters; the following lines are indented by two more spaces.
 
     A name and its value stay on one line, as do a number and its error. File names are not broken.

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 class HopfLine:
     """Rods that differ in one parameter, which varies from `start` to `stop`; other parameters are fixed."""
 
-
     name: str
     """The parameter that varies."""
     fixed: dict[str, float]

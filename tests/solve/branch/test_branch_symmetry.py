@@ -151,7 +151,9 @@ def test_a_symmetric_orbit_over_its_whole_period_is_the_same_motion(known):
     whole = extended_to_whole_period(orbit)
     assert not whole.symmetric
     times = np.linspace(0, 1, 21)
-    assert np.abs(whole.states_at(times / 2) - orbit.at(times)).max() < 1e-4 * np.abs(orbit.points).max()
+    assert (
+        np.abs(whole.states_at(times / 2) - orbit.states_at(times)).max() < 1e-4 * np.abs(orbit.points).max()
+    )
     assert np.abs(asymmetry(whole)).max() < 1e-5 * np.abs(orbit.start).max()
 
 

@@ -32,7 +32,7 @@ def traced(build, kind, axes=FORCE_AND_STIFFNESS, **values):
     change = next(c for c in found.crossings if c.kind == kind)
     plane = Plane(Rod(**{"F": 0.0, "k1": 300.0, **ROD, **values}, build=build), axes)
     sign = 0.0 if kind == ChangeKind.hopf else -1.0
-    return trace(sign, plane, (first.scaled(change.at), 0.5), change.frequency or change.growth_rate)
+    return trace(sign, plane, (first.coordinate(change.at), 0.5), change.frequency or change.growth_rate)
 
 
 def test_the_hopf_curve_of_a_uniform_arm_folds_where_the_closed_form_does():

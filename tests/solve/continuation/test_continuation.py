@@ -76,7 +76,7 @@ class Ellipse:
         )
         return self.step(behind, at).solution
 
-    def closes(self, behind, there):
+    def is_closed_by(self, behind, there):
         first, last = behind[0], behind[-1]
         step = np.linalg.norm(there - last)
         near = np.linalg.norm(there - first) < step and np.linalg.norm(last - first) < step

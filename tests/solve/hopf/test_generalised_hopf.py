@@ -79,7 +79,7 @@ def test_the_side_changes_once_and_at_the_point(found):
     assert set(told.criticality) == {-1.0, 1.0}
     (after,) = np.flatnonzero(np.diff(told.criticality))
     assert point.after == after
-    at = np.array([axis.scaled(v) for axis, v in zip(plane.axes, point.values, strict=True)])
+    at = np.array([axis.coordinate(v) for axis, v in zip(plane.axes, point.values, strict=True)])
     a, b = curve.scaled[after : after + 2, :2]
     assert np.linalg.norm(at - a) + np.linalg.norm(b - at) < 1.001 * np.linalg.norm(b - a)
     for i, side in ((after, told.criticality[after]), (after + 1, told.criticality[after + 1])):

@@ -69,7 +69,7 @@ def draw_arm_map(request: FigureRequest) -> str:
         first[DRAG] = int(np.argmin(view.variables[DRAG]))
     place = tuple(first.get(name, slice(None)) for name in view.arm_axes)
     panels = PANELS[view.task](view)
-    style.require(view, any(np.isfinite(panel.values[place]).any() for panel in panels), "number")
+    style.require_content(view, any(np.isfinite(panel.values[place]).any() for panel in panels), "number")
     figure, drawn = _panels(len(panels), request.look.narrow, bool(y))
     handles: list[Artist] = []
     for subplot, panel in zip(drawn, panels, strict=True):

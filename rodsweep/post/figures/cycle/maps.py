@@ -31,7 +31,7 @@ from ..style import (
     label_outer,
     legend_below,
     parameter_text,
-    require,
+    require_content,
     scale,
 )
 from .amplitudes.hopf_marks import HOPF_SYMBOL
@@ -72,7 +72,7 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     points = point_map(view)
     words = view.outcomes[points.at]
     cycles = np.isin(words, CYCLE_WORDS)
-    require(view, cycles.any(), "cycle")
+    require_content(view, cycles.any(), "cycle")
     figure, panels = map_panels(2, narrow)
     lines = hopf_lines(points, view)
     (units,) = units_over([view], [points.at.ravel()])

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 
 from ....results.file.view import View
 from ..lists import number_points, shared_parameters
-from ..style import BLUE, VERMILION, heading, legend_below, parameter_text, require
+from ..style import BLUE, VERMILION, heading, legend_below, parameter_text, require_content
 
 SPREAD_RATIO = 100.0
 """An axis is symmetric logarithmic if the ratio of the largest to the smallest modulus exceeds this
@@ -30,7 +30,7 @@ def draw_eigenvalues(view: View) -> Figure:
     """
     modes = len(view.variables["mode"])
     growth, frequency = (view.variables[name].reshape(modes) for name in ("growth_rate", "frequency"))
-    require(view, np.isfinite(growth).any(), "computed point")
+    require_content(view, np.isfinite(growth).any(), "computed point")
     figure = Figure(figsize=(5.2, 4.0), layout="constrained")
     axes = figure.subplots()
     handles = _mark(axes, growth, frequency, growth > 0)

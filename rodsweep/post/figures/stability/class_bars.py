@@ -20,7 +20,17 @@ from ....results.layouts.thresholds import CROSSING_KINDS
 from ....results.layouts.variables import number_of
 from ....wording import plural
 from ..lists import number_points, shared_parameters
-from ..style import BLUE, GREEN, LABELS, SYMBOLS, VERMILION, heading, legend_below, parameter_text, require
+from ..style import (
+    BLUE,
+    GREEN,
+    LABELS,
+    SYMBOLS,
+    VERMILION,
+    heading,
+    legend_below,
+    parameter_text,
+    require_content,
+)
 
 CLASS_WORDS = {"class": CLASSES, "stable_states": STABLE_STATES}
 """(code, word) of the values of the variables `class` and `stable_states`, by variable."""
@@ -69,7 +79,7 @@ def draw_class_bars(view: View) -> Figure:
     """Figure with a horizontal bar for a single rod, or with vertical bars for a list of rods."""
     count = view.variables["status"].size
     v = {name: view.variables[name] for name in ("F_end", "crossing_kind")}
-    require(view, np.isfinite(v["F_end"]).any(), "computed rod")
+    require_content(view, np.isfinite(v["F_end"]).any(), "computed rod")
     figure = Figure(figsize=(5.8, 2.2 if count == 1 else 4.0), layout="constrained")
     axes = figure.subplots()
     seen = set[str]()

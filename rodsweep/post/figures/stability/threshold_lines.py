@@ -47,7 +47,9 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
     figure = Figure(figsize=(5.6, 4.2), layout="constrained")
     axes = figure.subplots()
     table = _table(view, along, other)
-    style.require(view, np.isfinite(_abscissa(view, along)).sum() > 1, f"two finite values of {along}")
+    style.require_content(
+        view, np.isfinite(_abscissa(view, along)).sum() > 1, f"two finite values of {along}"
+    )
     shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST_SHADE, LIGHTEST_SHADE, len(table)))
     for values, shade in zip(table, shades, strict=True):
         handles = _draw(axes, _abscissa(view, along), values, {"color": shade} if other else {"ls": "-"})
@@ -74,7 +76,7 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
     handles = _kinds(tables)
     for view, values, shade in zip(views, tables, FILE_COLOURS, strict=False):
         _draw(axes, _abscissa(view, along), values, {"color": shade})
-        handles.append(Line2D([], [], color=shade, lw=2, label=style.name_in(view, views)))
+        handles.append(Line2D([], [], color=shade, lw=2, label=style.file_label(view, views)))
     longest = max(views, key=lambda view: len(view.axes[along]))
     _label(axes, longest, along, tables)
     forces = np.sort(tables[np.isfinite(tables)])
@@ -113,11 +115,11 @@ def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str)
 
 def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:
     """Draws thresholds against the parameter `along` for up to three different values of the parameter
-    `other`, see `_far_apart`; returns the number of values.
+    `other`, see `_label_line_indices`; returns the number of values.
     """
     table = _table(view, along, other)
-    some = _far_apart(table)
-    for line, alike in zip(LINE_STYLES, _alike({at: table[at] for at in some}), strict=False):
+    some = _label_line_indices(table)
+    for line, alike in zip(LINE_STYLES, _groups_of_equal_lines({at: table[at] for at in some}), strict=False):
         _draw(panel, _abscissa(view, along), table[alike[0]], {"ls": line, "ms": 2})
         values = ", ".join(style.number(float(view.axes[other][at]), 3) for at in alike)
         text = f"${style.SYMBOLS[other]} = {values}$" + (" (one line)" if len(alike) > 1 else "")
@@ -197,7 +199,7 @@ def _left_out(view: View, names: list[str]) -> str:
     return f"; {' and '.join(left_out)} has no place on an axis and is left out" if left_out else ""
 
 
-def _far_apart(table: Array) -> list[int]:
+def _label_line_indices(table: Array) -> list[int]:
     """Indices of the first line, of a line whose mean height is half-way, and of the last line. table:
     (lines, 3, n).
     """
@@ -210,7 +212,7 @@ def _far_apart(table: Array) -> list[int]:
     return [0, middle, last]
 
 
-def _alike(lines: dict[int, Array]) -> list[list[int]]:
+def _groups_of_equal_lines(lines: dict[int, Array]) -> list[list[int]]:
     """Groups of lines that cannot be distinguished in the figure, as lists of keys. lines: forces, (3,
     points) each, by key.
     """

@@ -37,10 +37,10 @@ NO_CYCLE_WORDS = {
 
 def arm_answer(view: View, done: np.ndarray) -> Lines:
     """Lines with the answer about the arms at the points in the mask `done`, (...,); empty for a rod."""
-    return [*plane_lines(view.quantities), *_applied(view, done)] if view.quantities else []
+    return [*plane_lines(view.quantities), *_validity_lines(view, done)] if view.quantities else []
 
 
-def _applied(view: View, done: np.ndarray) -> Lines:
+def _validity_lines(view: View, done: np.ndarray) -> Lines:
     """Answer about the points in the mask `done`, with a line on the validity of the model."""
     rods = done & (view.variables["status"] < NOT_SLENDER)
     if not rods.any():
@@ -60,7 +60,7 @@ def _applied(view: View, done: np.ndarray) -> Lines:
     return [caveat, *answer] if validity["model_applies"].any() else [*answer[:1], caveat, *answer[1:]]
 
 
-def spanned(view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
+def unit_range(view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
     """Range of `values`, in the SI unit `si`, as text in the unit that the user typed.
     errors: absolute errors, of the shape of `values`, or 0.
     """
@@ -69,7 +69,7 @@ def spanned(view: View, values: np.ndarray, si: str, errors: np.ndarray | float 
 
 def load_spanned(view: View, loads: np.ndarray) -> str:
     """Range of the loads `loads`, (n,) in SI units, as text in the unit that the user typed."""
-    return spanned(view, loads, UNITS[load_of(view)][0])
+    return unit_range(view, loads, UNITS[load_of(view)][0])
 
 
 def _of_search(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
@@ -143,7 +143,7 @@ def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarra
     if not flutters.any():
         return [f"does not flutter {searched}".rstrip()]
     of = f" at {int(flutters.sum())} of {len(hopf)} points" if not flutters.all() else ""
-    lines = [f"flutters{of} from {load_spanned(view, hopf)}; beats at {spanned(view, frequency, 'Hz')}"]
+    lines = [f"flutters{of} from {load_spanned(view, hopf)}; beats at {unit_range(view, frequency, 'Hz')}"]
     if not flutters.all():
         stable = f"does not flutter at {int((~flutters).sum())} of {len(hopf)} points {searched}"
         lines.append(stable.rstrip())
@@ -162,7 +162,7 @@ def _of_cycles(view: View, rods: np.ndarray) -> Lines:
         return [f"{words}{_share(mask, rods)}" for words, mask in masks.items() if mask.any()]
     beats = cycles[rods]
     wide, rate = (
-        spanned(view, v[name][beats], unit, errors[name][beats])
+        unit_range(view, v[name][beats], unit, errors[name][beats])
         for name, unit in (("tip_y_max_si", "m"), ("frequency_hz", "Hz"))
     )
     motion = f"beats{_share(cycles, rods)} at {rate}, its tip by {wide} to either side"
@@ -197,7 +197,7 @@ def _of_modes(view: View, rods: np.ndarray) -> Lines:
     unknown = rods & (count < 0)
     lines = []
     if unstable.any():
-        frequency = spanned(view, np.abs(view.variables["frequency_hz"][unstable][:, 0]), "Hz")
+        frequency = unit_range(view, np.abs(view.variables["frequency_hz"][unstable][:, 0]), "Hz")
         lines = [f"gives way{_share(unstable, rods)}; its leading mode oscillates at {frequency}"]
     elif not unknown.any():
         lines = ["stays straight"]
@@ -212,7 +212,7 @@ def _of_branches(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     if not np.isfinite(loads).any():
         return ["has no branch of cycles from a Hopf point in the range searched"], []
     frequency = 1 / view.variables["period_si"][rods]
-    rate = spanned(view, frequency, "Hz", errors=frequency * view.variables["period_error"][rods])
+    rate = unit_range(view, frequency, "Hz", errors=frequency * view.variables["period_error"][rods])
     return [f"beats at {load_spanned(view, loads)}, at {rate}"], []
 
 

@@ -20,7 +20,7 @@ from ....results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...hopf_points import LocatedChange
 from ...tables.rows import quantities_at_points
 from ..errors import errors_of, is_known
-from ..ranges import RANGE_DIGITS, rounded, span
+from ..ranges import RANGE_DIGITS, rounded, span_text
 
 SI_LINE_WIDTH = 80
 """Largest length of a line with variables in SI units, in characters."""
@@ -76,7 +76,7 @@ def in_own_unit(
     number of digits.
     """
     factor, unit = own_unit(view, si, _largest(values))
-    return f"{span(factor * values, np.broadcast_to(factor * errors, values.shape), most)} {unit}"
+    return f"{span_text(factor * values, np.broadcast_to(factor * errors, values.shape), most)} {unit}"
 
 
 def _largest(values: np.ndarray) -> float:
@@ -166,7 +166,7 @@ def _numbers(values: np.ndarray, errors: np.ndarray) -> str:
     known = errors[is_finite]
     if values.ndim > 1 and 1 < finite.size <= FEW_ITEMS:
         return ", ".join(map(rounded, finite, np.nan_to_num(known)))
-    return span(finite, known)
+    return span_text(finite, known)
 
 
 def wrapped(text: str) -> list[str]:

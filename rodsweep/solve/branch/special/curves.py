@@ -219,10 +219,9 @@ class SpecialCurveProblem:
 
     def is_closed_by(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
         """Whether the step from `behind[-1]` to `point` passes the first point of the curve."""
-        first = behind[0]
         last = behind[-1]
         step = point.step_from(last)
-        back = point.step_from(first)
+        back = point.step_from(behind[0])
         # The first point lies within this step, measured along the step and by distance.
         passed = float(back @ step) / float(step @ step)
         near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))

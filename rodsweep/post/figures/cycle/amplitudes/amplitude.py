@@ -14,7 +14,18 @@ from .....config.task.limit_cycle import LONGEST
 from .....errors import InputError
 from .....results.file.view import View
 from .....results.layouts.limit_cycle import CYCLE_WORDS
-from ...style import BLUE, GREEN, LABELS, SYMBOLS, VERMILION, heading, legend_below, plain, require, scale
+from ...style import (
+    BLUE,
+    GREEN,
+    LABELS,
+    SYMBOLS,
+    VERMILION,
+    escape_dollar_signs,
+    heading,
+    legend_below,
+    require_content,
+    scale,
+)
 from ..selection import shared_and_own_of_arms, shared_and_own_texts
 from ..units import units_over
 from .branches import AmplitudeBranch, abscissa, branches_of
@@ -50,7 +61,7 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
             f"{len(BRANCH_LOOKS)}: choose lines with --at, such as --at k1=150, or draw a full grid over two "
             "parameters as maps (--what maps)"
         )
-    require(first, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude")
+    require_content(first, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude")
     figure = Figure(figsize=(4.4, 8.4) if narrow else (8.6, 5.6), layout="constrained")
     panels = figure.subplots(*((4, 1) if narrow else (2, 2)), sharex=True).T.ravel()
     shared, own = _names(branches, name)
@@ -60,7 +71,9 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     marks = [(point, colour) for branch, colour in coloured for point in branch.hopf]
     handles += mark_hopf_points(panels, marks)
     handles += draw_laws(
-        panels[1], [law for branch in branches for law in branch.laws], units[0].names[0] * units[0].in_si
+        panels[1],
+        [law for branch in branches for law in branch.square_root_fits],
+        units[0].names[0] * units[0].in_si,
     )
     _label(panels, name, units[0].labels_over)
     for panel in panels:
@@ -115,7 +128,7 @@ def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool 
     )
     directions = [chosen.get("direction", "up") for chosen in options]
     if not followed or len(set(directions)) < len(views):
-        return {view.path: (plain(view.path.stem), None) for view in views}
+        return {view.path: (escape_dollar_signs(view.path.stem), None) for view in views}
     words = {"up": f"${SYMBOLS[name]}$ rising", "down": f"${SYMBOLS[name]}$ falling"}
     return {
         view.path: (words[direction], direction == "up")

@@ -47,7 +47,7 @@ class AmplitudeBranch:
         return self.amplitude_x, self.amplitude_y, self.period, self.power
 
     @property
-    def laws(self) -> list[SquareRootLaw]:
+    def square_root_fits(self) -> list[SquareRootLaw]:
         """Square-root laws of the largest y of the tip near the Hopf points."""
         return square_root_laws(self.x, self.amplitude_y, self.hopf)
 
