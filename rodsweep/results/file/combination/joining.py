@@ -52,7 +52,7 @@ class JoinedFile:
         """Writes the points of all sources into the file at `path`; returns the sources from which points
         were written.
 
-        Raises InputError if two sources have different values of a point.
+        Raises InputError if the values of a point in two sources differ by more than rounding errors.
         """
         owner = np.full(self.plan.points.count, -1, np.int32)
         for number, (source, places) in enumerate(zip(self.sources, self.places, strict=True)):

@@ -77,7 +77,8 @@ def _join(exchange: FileReplacement, joint: JoinedFile) -> MergeResult:
 
 
 def _finished(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResult:
-    """Writes the provenance of the points into the merged file, and finishes the file if no point is missing.
+    """Writes the provenance of the points into the merged file, and finishes the file if no point is missing;
+    returns the outcome of the merge.
 
     gave: sources of the stored points.
     """
