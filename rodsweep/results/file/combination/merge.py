@@ -103,7 +103,8 @@ def _opened(paths: Sequence[Path]) -> list[ResultHeader]:
         files.append(read_header(path))
         if any(journal_directory(path).glob(JOURNALS)):
             raise InputError(
-                f"{path} has points in the journal that are not in the file yet: first run its command again"
+                f"{path} has points in the journal that are not in the file yet: first run the command of "
+                "this file again"
             )
     return files
 
