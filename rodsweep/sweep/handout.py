@@ -103,7 +103,7 @@ class ChunkQueue:
             return self._take(rank) if self.todo and self.left >= MIN_UNITS_AHEAD * self.ranks else None
 
     def _take(self, rank: int) -> IndexRange:
-        """Removes the next chunk from the queue, sized by the rank's time per unit; the lock must be held."""
+        """Removes and returns the next chunk, sized by the rank's time per unit; the lock must be held."""
         # At most half of an equal division: chunks shrink toward the end, where waiting costs most.
         share = max(1, self.left // (2 * self.ranks))
         pace = self.pace.get(rank)
