@@ -35,11 +35,13 @@ class MergeResult:
 
 def merge(output: Path, paths: Sequence[Path], planner: Planner) -> MergeResult:
     """Writes `output` with all points of the result files `paths`: shards of one sweep, or several grids or
-    lists; returns the outcome of the merge. An existing `output` is the first source. If several shards have
-    a point, the values in the first shard are written; different grids or lists must have equal values up to
-    rounding errors. planner: function from config and points to the plan of a file. Raises InputError for a
-    file that is not a result, was made for another config, or has points in a journal, and for grids that do
-    not form a larger grid; EnvironmentIncomplete if the disk fails.
+    lists; returns the outcome of the merge.
+
+    An existing `output` is the first source. If several shards have a point, the values in the first shard
+    are written; different grids or lists must have equal values up to rounding errors. planner: function from
+    config and points to the plan of a file. Raises InputError for a file that is not a result, was made for
+    another config, or has points in a journal, and for grids that do not form a larger grid;
+    EnvironmentIncomplete if the disk fails.
     """
     sources = _opened(paths)
     with disk_refusals(output):
