@@ -34,7 +34,7 @@ _warm: set[str] = set()
 
 @exclusive_solve
 def solve_here(job: Job, note: PointNote | None = None, progress: bool | None = None) -> SolvedPoints:
-    """Solves all points of a job in this process.
+    """Solves all points of a job in this process, and returns the results.
 
     note: function called with every unforeseen exception, after which the point has the status `failed`;
     None: the exception is raised. progress: whether to display progress; None: only in a terminal or a

@@ -22,7 +22,7 @@ MATERIAL_OPTIONS: dict[str, dict[str, Any]] = {
     "--segment": {
         "multiple": True,
         "metavar": "SEGMENT",
-        "help": f"A segment, as '{EXAMPLE}', also with inner_radius; repeat it, from base to tip.",
+        "help": f"Segment, such as '{EXAMPLE}', also with inner_radius; repeat the option, from base to tip.",
     },
     "--law": {"metavar": "LAW", "help": "Constitutive law, linear or neo_hookean; by default linear."},
     "--section": {

@@ -51,13 +51,15 @@ FILE_TYPE = click.Path(path_type=Path)
     "at",
     multiple=True,
     metavar="NAME=VALUE",
-    help="Draw only points with this value of a parameter, as k1=150, or of an arm, as 'length=12 cm'.",
+    help="Draw only points at which a parameter has this value, such as k1=150, or a quantity of an arm, "
+    "such as 'length=12 cm'.",
 )
 @click.option("--title", is_flag=True, help="Put the title of the config above the figure.")
 @click.option(
     "--width",
     metavar="WIDTH",
-    help="Width of the figure, with type of 8 pt: single (3.375 in), double (7 in), or as '89 mm'.",
+    help="Width of the figure, with type of 8 pt: single (3.375 in), double (7 in), or a length such as "
+    "'89 mm'.",
 )
 @click.option("--style", metavar="STYLE", help="Name or file of a matplotlib style.")
 def plot(
@@ -69,7 +71,7 @@ def plot(
     at: tuple[str, ...],
     **look: Any,
 ) -> None:
-    """Draw the result FILE; or several: spectra in panels, amplitudes of limit cycles in one figure."""
+    """Draw the result FILE, or several: spectra in panels, thresholds or limit cycles in one figure."""
     from ..post.figures import draw
     from ..post.figures.request import FigureLook
     from ..post.figures.sections import section

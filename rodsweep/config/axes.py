@@ -50,7 +50,8 @@ class Axes(LinearAxes):
     @model_validator(mode="before")
     @classmethod
     def _with_defaults(cls, given: Any) -> Any:
-        """Adds the defaults of missing parameters, unless a file of points or an arm is given."""
+        """Returns the section with the defaults of missing parameters added, unless a file of points or an
+        arm is given."""
         if not isinstance(given, dict) or given.get("points") is not None or given.get("arm") is not None:
             return given
         return {name: DEFAULTS[name] for name in cls.of_arm if name in DEFAULTS} | given

@@ -217,7 +217,9 @@ def _range(value: dict) -> Axis:
     if (num > 1 and not start < stop) or (num == 1 and start != stop):
         raise ValueError(f"start = {start:g} and stop = {stop:g} do not make {num} increasing values")
     if num > 1 and (stop - start) / num <= 4e-16 * max(abs(start), abs(stop)) or stop - start == inf:
-        raise ValueError(f"{num} values from {start!r} to {stop!r} cannot be told apart")
+        raise ValueError(
+            f"{num} values from {start!r} to {stop!r} cannot be distinguished in floating-point numbers"
+        )
     if spacing == "log" and start <= 0:
         raise ValueError(f"log spacing needs start above 0, not {start:g}")
     return Axis(start=start, stop=stop, num=num, spacing=spacing)

@@ -68,7 +68,7 @@ class BatchTornado(BokehTornado):
     """Bokeh's web application, with a `BatchConnection` for each page."""
 
     def new_connection(self, *arguments: Any) -> ServerConnection:
-        """Creates the connection for a page that a browser opens."""
+        """Creates and returns the connection for a page that a browser opens."""
         connection = BatchConnection(*arguments)
         self._clients.add(connection)
         return connection

@@ -31,8 +31,8 @@ errors."""
 POINT_DIMENSION = "number_of_point"
 """Name of the dimension of selected points of the file."""
 CLICK_TOLERANCE = 0.25
-"""A click selects the nearest stored load if its distance from this load, divided by the smallest spacing of
-stored loads, is below this number."""
+"""A click selects the nearest stored load if the distance between click and load, divided by the smallest
+spacing of stored loads, is below this number."""
 
 
 class StoredResults:

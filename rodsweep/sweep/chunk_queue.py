@@ -109,7 +109,7 @@ class ChunkQueue:
             )
 
     def _pop_chunk(self, rank: int) -> IndexRange:
-        """Removes the next chunk from the queue, sized by the rank's time per unit; the lock must be held."""
+        """Removes and returns the next chunk, sized by the rank's time per unit; the lock must be held."""
         # At most half of an equal division: chunks shrink toward the end, where waiting costs most.
         share = max(1, self.units_left // (2 * self.ranks))
         pace = self.seconds_per_unit.get(rank)

@@ -60,7 +60,7 @@ class PortraitRequest:
 
 
 def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResults:
-    """Solves all results of a portrait.
+    """Solves and returns all results of a portrait.
 
     solve: function that solves the only point of a job. If a result cannot be solved, `RodResults.missing`
     has the reason. Raises InputError if the parameters describe no rod.

@@ -78,7 +78,7 @@ class Assessment:
 
     @property
     def of_verdict(self) -> Validity:
-        """Validity of the model at the flutter threshold and under the load: the worse of both."""
+        """Validity of the model at the flutter threshold and under the load: the worse of the two."""
         return Validity(int(worst_validity(self.effects, of_cycles=False)))
 
     def effects_with(self, validity: Validity) -> list[Effect]:

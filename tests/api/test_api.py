@@ -451,7 +451,10 @@ def test_a_branch_and_the_criticality_of_one_rod_are_drawn():
     ("choice", "sentence"),
     [
         ({"what": "heat"}, "what = 'heat' is not allowed; choose cycle, amplitude, maps"),
-        ({"width": "tiny"}, "width = 'tiny' is not allowed; choose single, double, or a length as '89 mm'"),
+        (
+            {"width": "tiny"},
+            "width = 'tiny' is not allowed; choose single, double, or a length such as '89 mm'",
+        ),
         ({"roots": "left"}, "roots = 'left' is not allowed; choose rightmost, smallest, all"),
         ({"at": {"k1": 100}}, "has no point there; it has k1 = 200"),
         ({"at": 3}, "at = 3 is not allowed; give numbers by parameter"),

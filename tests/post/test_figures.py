@@ -454,7 +454,10 @@ def test_a_section_of_a_grid_is_what_a_run_of_its_own_gives(command, monkeypatch
         (("--at", "k2=70"), "no point there; it has k2 = 50, 100"),
         (("--at", "k3=1"), "has no such axis"),
         (("--at", "k2"), "--at k2 must be NAME=VALUE, such as k1=150"),
-        (("--width", "tall"), "width = 'tall' is not allowed; choose single, double, or a length as '89 mm'"),
+        (
+            ("--width", "tall"),
+            "width = 'tall' is not allowed; choose single, double, or a length such as '89 mm'",
+        ),
         (("--width", "1 km"), "from 64 to 508 mm"),
         (("--what", "map"), "is for results of thresholds"),
     ):

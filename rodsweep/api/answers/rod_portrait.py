@@ -112,8 +112,8 @@ class RodPortrait:
 
 
 def portrait_of(rod: str, request: PortraitRequest, progress: bool | None) -> RodPortrait:
-    """Solves all results of a portrait in this process. rod: text of the rod. progress: as in `rod.portrait`.
-    Raises InputError for an invalid request.
+    """Solves all results of a portrait in this process, and returns the portrait. rod: text of the rod.
+    progress: as in `rod.portrait`. Raises InputError for an invalid request.
     """
     answers: dict[str, Answer] = {}
 

@@ -90,8 +90,9 @@ def settling_table(waits: Sequence[SettlingMethod], raced: Sequence[TimedRuns]) 
     """Table of the methods `waits`, with returns, times and errors. raced: times of each method."""
     return (
         f"From a start of {START_DEFLECTION:g} L to the limit cycle. Waiting ends when two successive "
-        f"returns agree to {SETTLED_WITHIN:.0e}. The integrator has the loosest tolerance with which they do "
-        "and the errors of the period and of y are no larger; the user is assumed to know this tolerance. "
+        f"returns agree to {SETTLED_WITHIN:.0e}. The integrator has the loosest tolerance at which the "
+        "returns agree and the errors of the period and of y are no larger than this; the user is assumed to "
+        "know this tolerance. "
         "solve_cycle has the same accuracy; its time includes "
         f"the choice of mesh and the proof of stability. At F = {NEAR_HOPF_F:g} the number of periods is a "
         f"lower bound, ln({SETTLED_WITHIN:.0e})/ln(largest multiplier), and the time follows from the time "

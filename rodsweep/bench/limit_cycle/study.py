@@ -45,8 +45,9 @@ DRAWN_ERRORS = {"error of the period": "period_error", "error of the largest tip
 
 
 def limit_cycle_study(quick: bool, peers: Peers) -> Study:
-    """Runs the benchmark: errors and times of integrators, methods that reach a cycle, cost of a point of a
-    sweep, and sections of the peers. quick: whether to use fewer rounds, tolerances and rods."""
+    """Runs the benchmark and returns the results: errors and times of integrators, methods that reach a
+    cycle, cost of a point of a sweep, and sections of the peers. quick: whether to use fewer rounds,
+    tolerances and rods."""
     warm_up()
     rounds, stride = (QUICK_ROUND_COUNT, 2) if quick else (ROUND_COUNT, 1)
     at = solve_reference()

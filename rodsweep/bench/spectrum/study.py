@@ -75,8 +75,8 @@ QUICK_STRIDE = 3
 
 
 def spectrum_study(quick: bool, peers: Peers) -> Study:
-    """Runs the benchmark: the paper's rods at equal errors, hard rods at all sizes, and arms. quick: whether
-    to use fewer rounds, target errors and sizes."""
+    """Runs the benchmark and returns the results: the paper's rods at equal errors, hard rods at all sizes,
+    and arms. quick: whether to use fewer rounds, target errors and sizes."""
     warm_up()
     rounds, stride = (QUICK_ROUND_COUNT, QUICK_STRIDE) if quick else (ROUND_COUNT, 1)
     rods = [

@@ -65,7 +65,8 @@ RunCase = Callable[..., CommandRun]
 
 
 def sweep_study(quick: bool, command: Sequence[str]) -> Study:
-    """Runs the benchmark: speedup by a second rank, followed eigenvalues, and overhead of a point.
+    """Runs the benchmark and returns the results: speedup by a second rank, followed eigenvalues, and
+    overhead of a point.
 
     quick: whether to use fewer points and rounds. command: first arguments of the measured command, see
     `rodsweep.bench.sweep.launch`.

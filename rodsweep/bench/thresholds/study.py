@@ -132,8 +132,8 @@ RODSWEEP = "rodsweep"
 
 
 def thresholds_study(quick: bool, peers: Peers) -> Study:
-    """Runs the benchmark: tables of the onset and of the Hopf point, for uniform rods and for arms. quick:
-    whether to use fewer rods and rounds."""
+    """Runs the benchmark and returns the results: tables of the onset and of the Hopf point, for uniform rods
+    and for arms. quick: whether to use fewer rods and rounds."""
     warm_up()
     cases, rounds = (QUICK_CASES, QUICK_ROUND_COUNT) if quick else (CASES, ROUND_COUNT)
     blocks = [" ".join([introduction(rounds), *peers.notes])]

@@ -61,8 +61,8 @@ def hint_of(key: str, known: Sequence[str], there_are: str = "known keys are") -
 
 
 def similar_keys(key: str, known: Sequence[str]) -> list[str]:
-    """The known keys that are most similar to an unknown key, in the given order; empty if no key, or more
-    than MAX_SUGGESTIONS keys, are most similar.
+    """The known keys that are most similar to an unknown key, in the given order; empty if no key is similar,
+    or if more than MAX_SUGGESTIONS keys are equally similar.
 
     A known key is similar if the unknown key differs only in capitals and underscores, is the beginning or a
     substring of MIN_SUBSTRING_LENGTH or more letters of the known key, or has at most one typing error in

@@ -77,8 +77,8 @@ class BranchConfig(Config):
     @model_validator(mode="before")
     @classmethod
     def _followed_has_no_default(cls, given: Any) -> Any:
-        """Removes the default of the followed parameter, so that only a value given by the user is
-        refused.
+        """Returns the config without the default of the followed parameter, so that only a value given by the
+        user is refused.
         """
         sections = given if isinstance(given, dict) else {}
         options = sections.get("branch")

@@ -203,8 +203,8 @@ class PhaseDiagramConfig(LinearConfig):
         value = np.array([PARAMETERS[name].default]) if given is None else given.array()
         if name in self.plane or not low <= value[0] <= high:
             raise ValueError(
-                f"phase_diagram.bautin_along.{name} is from {low:g} to {high:g}; it must be a parameter with "
-                f"one value that lies in this range, and parameters.{name} has "
-                f"{len(value)} from {value[0]:g}"
+                f"phase_diagram.bautin_along.{name} is from {low:g} to {high:g}; parameters.{name} must "
+                f"have a single value in this range, but the number of values is {len(value)}, and the "
+                f"first value is {value[0]:g}"
             )
         return self

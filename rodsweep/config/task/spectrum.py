@@ -77,7 +77,7 @@ class SpectrumConfig(LinearConfig):
         self.parameters.require(self.names)
         if "gamma1" in self.parameters.constant_parameters and not self.spectrum.longitudinal:
             raise ValueError(
-                "parameters.gamma1 is given but not used: the transverse spectrum does not depend on it; "
+                "parameters.gamma1 is given but not used: the transverse spectrum does not depend on gamma1; "
                 "remove it or set spectrum.longitudinal: true"
             )
         if self.spectrum.longitudinal and "gamma1" not in self.parameters.constant_parameters:

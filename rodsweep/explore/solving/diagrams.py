@@ -27,7 +27,7 @@ ARM_ROW_COUNT = 12
 """Number of values of the second quantity of the diagram, for arms."""
 ARM_SPAN_RATIO = 2.0
 """The values of an arm's second quantity extend from 1/ARM_SPAN_RATIO to ARM_SPAN_RATIO times the present
-value, few enough that all arms are slender."""
+value; the ratio is small, so that all arms are slender."""
 CYCLE_ACCURACY = 1e-4
 """Relative error of the cycles between special points; the diagram does not show these cycles. For the first
 rod of the page and F up to 200, the default error of 1e-6 takes three times as long, and changes the curves

@@ -78,7 +78,7 @@ def figure_name(request: FigureRequest) -> str:
     if name not in KINDS_OF_TASK["limit_cycle"]:
         request.refuse_points(first)
     if others and name != "amplitude":
-        raise InputError(f"--what {name} draws one file; only amplitudes of several files make one figure")
+        raise InputError(f"--what {name} draws a single file; only amplitudes of several files form a figure")
     if request.points and name in ALL_POINT_FIGURES:
         raise InputError(f"--point is given, but {ALL_POINT_FIGURES[name]} show all points; remove --point")
     return name

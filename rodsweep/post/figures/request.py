@@ -80,7 +80,7 @@ def _inches(width: str) -> float:
     """
     if width in WIDTHS:
         return WIDTHS[width]
-    refusal = f"width = {width!r} is not allowed; choose {', '.join(WIDTHS)}, or a length as '89 mm'"
+    refusal = f"width = {width!r} is not allowed; choose {', '.join(WIDTHS)}, or a length such as '89 mm'"
     try:
         inches = in_si("width", width, "m", "89 mm") / METRES_PER_INCH
     except InputError:

@@ -45,7 +45,7 @@ def draw_thresholds(request: FigureRequest) -> str:
             )
         if request.what:
             raise InputError(
-                f"{view.path}: --what {request.what} needs rods that vary in one or two parameters; remove it"
+                f"{view.path}: --what {request.what} needs one or two varied parameters; remove --what"
             )
         min_aspect = BAR_ASPECT if view.variables["status"].size == 1 else MIN_ASPECT
         return request.write(draw_class_bars(view), "behaviour of each rod over F", min_aspect)

@@ -54,8 +54,8 @@ class ColumnTexts:
         return known if has_error else np.where(known > 0, known, np.nan)
 
     def pairs(self, name: str) -> list[tuple[str, str]]:
-        """Pairs (value, absolute error) of the variable `name` as text, one per row. The error is an empty
-        text if it is unknown.
+        """Pairs (value, absolute error) of the variable `name` as text, one per row. An unknown error is an
+        empty text.
         """
         column = self.columns[name]
         if column.is_boolean:

@@ -76,8 +76,8 @@ def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarra
 
 
 def _stability(view: View) -> tuple[list[str], list[str]]:
-    """Returns (lines, lines in an arm's units) about changes of stability of the straight rod along F, or
-    along all varied parameters if F is not varied.
+    """Returns (lines, lines in an arm's units) about thresholds of the straight rod along F, or along all
+    varied parameters if F is not varied.
     """
     names = [name for name in LINEAR_PARAMETERS if name in varied(view)]
     lines = list[str]()

@@ -48,7 +48,8 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def count_lines(found: np.ndarray) -> list[str]:
-    """Line on the number of grid points in each class. found: class of each point, of any shape."""
+    """List with a line on the number of grid points in each class. found: class of each point, of any
+    shape."""
     counts = [f"{int((found == value).sum())} {word}" for value, word in CLASSES if (found == value).any()]
     return [f"of {counted(found.size, 'grid point')} on the rows: {', '.join(counts)}"]
 
@@ -103,7 +104,8 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
 
 
 def share_lines(found: np.ndarray) -> list[str]:
-    """Line on the fraction of the grid points in each class. found: class of each point, of any shape."""
+    """List with a line on the fraction of the grid points in each class. found: class of each point, of any
+    shape."""
     shares = ((100 * float((found == value).mean()), word) for value, word in CLASSES)
     return [f"of the grid: {', '.join(f'{share:.1f} % {word}' for share, word in shares if share)}"]
 

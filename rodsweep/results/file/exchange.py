@@ -24,7 +24,7 @@ file."""
 
 
 def identity(path: Path) -> Identity:
-    """Reads the identity of the file at `path`."""
+    """Identity of the file at `path`, read from the disk."""
     try:
         status = path.stat()
     except OSError:

@@ -85,7 +85,7 @@ class Store:
     def _create(self, fresh: bool) -> None:
         """Creates the file of the plan, with the points of its journals unless `fresh`."""
         if self.path.exists() and not is_rodsweep_file(self.path):
-            raise InputError(f"{self.path} is not a result file, so --fresh leaves it alone")
+            raise InputError(f"{self.path} is not a result file, so --fresh does not replace it")
         require_room(self.path, self.plan)
         own = journals_of(self.journals, self.plan.fingerprint)
         if fresh:

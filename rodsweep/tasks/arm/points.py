@@ -129,8 +129,8 @@ class _Outcomes:
     kept: OrderedDict[Hashable, Any] = field(default_factory=OrderedDict)
 
     def of(self, key: Hashable, solve: Callable[[], Any]) -> tuple[Any, bool]:
-        """Returns (result, was_cached). result: of the solve with the key `key`, from the cache or else from
-        a call of `solve`.
+        """Returns (result, was_cached). result: outcome with the key `key`, from the cache or else from
+        calling `solve`.
         """
         if key in self.kept:
             self.kept.move_to_end(key)

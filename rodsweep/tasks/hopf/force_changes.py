@@ -1,8 +1,8 @@
 """Forces at which the rods of a file of spectra start to oscillate, become unstable, or become stable again.
 
 The forces are computed from the stored eigenvalues after all points are solved, and stored in the file for
-`show` and figures. A change takes about 30 us: 1 % of the time of spectra followed along lines of 512 forces,
-and 3 to 5 % along lines of 50 forces.
+`show` and figures. The computation of one force takes about 30 us: 1 % of the time of spectra followed along
+lines of 512 forces, and 3 to 5 % along lines of 50 forces.
 """
 
 from collections.abc import Iterator, Mapping

@@ -52,7 +52,7 @@ class JoinedFile:
         """Writes the points of all sources into the file at `path`; returns the sources from which points
         were written.
 
-        Raises InputError if two sources have different values of a point.
+        Raises InputError if the values of a point in two sources differ by more than rounding errors.
         """
         owner = np.full(self.plan.points.count, -1, np.int32)
         for number, (source, places) in enumerate(zip(self.sources, self.places, strict=True)):
@@ -124,7 +124,7 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: Planner) -> JoinedF
         if apart:
             raise InputError(f"{other.path} was made from another config than {first.path} ({apart})")
         if points.is_grid != grids[0].is_grid:
-            raise InputError(f"{first.path} and {other.path} cannot be joined: one is a grid, one a list")
+            raise InputError(f"{first.path} and {other.path} cannot be joined: a grid and a list")
     if "arm" in meant:
         raise InputError(
             f"{first.path} is the file of an arm, and such files are merged only as shards of a single "

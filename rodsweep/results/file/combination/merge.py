@@ -34,13 +34,14 @@ class MergeResult:
 
 
 def merge(output: Path, paths: Sequence[Path], planner: Planner) -> MergeResult:
-    """Writes `output` with all points of the result files `paths`: shards of one sweep, or several grids.
+    """Writes `output` with all points of the result files `paths`: shards of one sweep, or several grids or
+    lists; returns the outcome of the merge.
 
     An existing `output` is the first source. If several shards have a point, the values in the first shard
-    are written; files of different grids must have equal values. planner: function from config and points to
-    the plan of a file. Raises InputError for a file that is not a result, was made for another config, or has
-    points in a journal, and for grids that do not form a larger grid; EnvironmentIncomplete if the disk
-    fails.
+    are written; different grids or lists must have equal values up to rounding errors. planner: function from
+    config and points to the plan of a file. Raises InputError for a file that is not a result, was made for
+    another config, or has points in a journal, and for grids that do not form a larger grid;
+    EnvironmentIncomplete if the disk fails.
     """
     sources = _read_headers(paths)
     with disk_refusals(output):
@@ -79,7 +80,8 @@ def _join(exchange: FileReplacement, joint: JoinedFile) -> MergeResult:
 
 
 def _finished(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResult:
-    """Writes the provenance of the points into the merged file, and finishes the file if no point is missing.
+    """Writes the provenance of the points into the merged file, and finishes the file if no point is missing;
+    returns the outcome of the merge.
 
     gave: sources of the stored points.
     """
@@ -104,7 +106,8 @@ def _read_headers(paths: Sequence[Path]) -> list[ResultHeader]:
         files.append(read_header(path))
         if any(journal_directory(path).glob(JOURNALS)):
             raise InputError(
-                f"{path} has points in the journal that are not in the file yet: first run its command again"
+                f"{path} has points in the journal that are not in the file yet: first run the command of "
+                "this file again"
             )
     return files
 
