@@ -158,7 +158,8 @@ def proves_completeness(found: Remainder) -> bool:
 
 @compiled
 def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
-    """Points x_1 < ... < x_k, (k,), so far right that every term of R has a real part >= 0; may be empty.
+    """Points x_1 < ... < x_k, (k,), so far right that every term of R has a real part >= 0; empty if such
+    points would overflow.
 
     a, c: constants of the hull.
     """
