@@ -177,9 +177,7 @@ def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
 
 @compiled
 def _turn_of_hull(points: Array, a: float, c: float) -> float:
-    """An upper bound of sum_j arg(x_j - v) over all v in the hull with constants a and c; inf if a point x_j
-    may lie in the hull.
-    """
+    """Upper bound of sum_j arg(x_j - v) over v in the hull (a, c); inf if a point x_j may lie in the hull."""
     b = 1 - c
     total = 0.0
     for x in points:
