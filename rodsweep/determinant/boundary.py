@@ -1,8 +1,8 @@
 """Stability boundaries in a plane of rods: curves of Hopf points and of double real eigenvalues.
 
 Hopf points satisfy D(i eta; x, y) = 0, with h = log eta. Double real eigenvalues satisfy D(w; x, y) = 0 and
-D_w = 0, with h = log |w|; the sign of w is constant on a curve because D(0) = 1. Both are two real equations
-for v = (x, y, h). Newton's method solves them together with the equation of a plane.
+D_w = 0, with h = log |w|; the sign of w is constant on a curve because D(0) = 1. In either case there are two
+real equations for v = (x, y, h). Newton's method solves these with a third equation, of a plane in v.
 """
 
 import math

@@ -16,7 +16,7 @@ from .value import ExponentDerivatives, determinant_from_parts
 
 
 class CoefficientDerivatives(NamedTuple):
-    """Derivatives by p of T = c2 + gamma3, N = F g, G = g nu and X = c2 gamma3, on which, with w, D depends.
+    """Derivatives by p of T = c2 + gamma3, N = F g, G = g nu and X = c2 gamma3, the coefficients of D(w).
 
     T1 is the first derivative of T, N1 and N2 are the first and second derivatives of N, and so on.
     """

@@ -158,7 +158,8 @@ def proves_completeness(found: Remainder) -> bool:
 
 @compiled
 def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
-    """Points x_1 < ... < x_k, (k,), so far right that every term of R has a real part >= 0; may be empty.
+    """Points x_1 < ... < x_k, (k,), so far right that every term of R has a real part >= 0; empty if such
+    points would overflow.
 
     a, c: constants of the hull.
     """
@@ -176,9 +177,7 @@ def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
 
 @compiled
 def _turn_of_hull(points: Array, a: float, c: float) -> float:
-    """An upper bound of sum_j arg(x_j - v) over all v in the hull with constants a and c; inf if a point x_j
-    may lie in the hull.
-    """
+    """Upper bound of sum_j arg(x_j - v) over v in the hull (a, c); inf if a point x_j may lie in the hull."""
     b = 1 - c
     total = 0.0
     for x in points:

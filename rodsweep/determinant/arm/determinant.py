@@ -1,6 +1,6 @@
 """D(w) of one arm that varies along its length, from elements whose length depends on |w|.
 
-The propagators of an element are polynomials in w/W that hold for |w| <= W. Every bound W has its own
+The propagators of an element are polynomials in w/W that are valid for |w| <= W. Every bound W has its own
 elements, made at first use. Elements are so short that the fastest local exponential grows at most by
 exp(`ARM_ELEMENTS.longest`) over an element, and that the Gauss points resolve the coefficients. Elements end
 at every break of the profile.
@@ -48,9 +48,9 @@ class ArmDeterminant:
         return determinant_along_chain(complex(w), W, polynomials)
 
     def value_at_level(self, w: complex, factor: float) -> DeterminantValue:
-        """D and D' at w times exp(-S), from elements made for |w| times `factor`, at least 1.
+        """D and D' at w times exp(-S), from elements made for factor * |w|, factor >= 1.
 
-        Comparing values for several factors shows the rounding error of D.
+        The differences between values for several factors show the rounding error of D.
         """
         W, polynomials = self.level(factor * abs(w), ARM_ELEMENTS.highest_compared)
         return determinant_along_chain(complex(w), W, polynomials)
@@ -60,7 +60,7 @@ class ArmDeterminant:
         return len(self.level(size)[1])
 
     def wave_number(self, w: complex) -> float:
-        """|q| of the fastest exponential of D at w, averaged along the arm, in 1/L."""
+        """Bound of |q| of the exponentials exp(+-q u) at w, averaged along the arm, in 1/L."""
         return self.scales(w)[0]
 
     def length(self, w: complex) -> float:
@@ -73,7 +73,7 @@ class ArmDeterminant:
         return scales_at(w, self.samples)
 
     def scales_of_all(self, w: Complex) -> Array:
-        """`wave_number` and `length` at each w, (n,): an array (2, n)."""
+        """Array (2, n) of `wave_number` and `length` at every w, (n,)."""
         return scales_at_all(w, self.samples)
 
     @cached_property

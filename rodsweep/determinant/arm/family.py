@@ -38,9 +38,8 @@ class ArmFamilySettings(CompiledSettings):
     """Number of arms in each trial. The first number suffices on 21 of 24 random paths from 0 to three times
     a load."""
     spacing_scales: tuple[float, ...] = (LINEAR_SCALE, LINEAR_SCALE, LINEAR_SCALE, 0.05, 0.05)
-    """`ArmFamily.scale` divided by the length of the interval of p, for each trial. The stretch of compressed
-    rubber has branch points at complex forces of the size of its stiffness; near these, a logarithmic spacing
-    needs fewer arms."""
+    """`ArmFamily.scale` over the length of the interval, for each trial. Logarithmic spacing needs fewer arms
+    near complex forces of the size of the stiffness, where the stretch of rubber has branch points."""
     max_entries: int = 500_000
     """No family is made if the propagators of one arm have more entries: single arms are then faster."""
     converged_tail: float = 1e-15

@@ -55,8 +55,8 @@ def size_of(real: float, imag: float) -> float:
 
 @compiled_for_vectors
 def scales_at(w: complex, samples: ArmSamples) -> tuple[float, float]:
-    """Returns (wave number, length) at w. wave number: |q| averaged along the arm over both pairs of
-    exponents. length: 1/(mean along the arm of the larger |dq/dw|).
+    """Returns (wave number, length) at w. wave number: (|sqrt z+| + |sqrt z-|)/2, a bound of |q|, averaged
+    along the arm. length: 1/(average along the arm of the larger |d sqrt(z+-)/dw|).
     """
     number = 0.0
     fast = 0.0

@@ -101,7 +101,7 @@ def _two_roots(middle: complex, level: BoundedPropagators) -> tuple[complex, com
 
 
 def _level(w: complex, determinant: ArmDeterminant) -> BoundedPropagators:
-    """(W, propagators) that hold for D and D'' at w."""
+    """(W, propagators) that are valid for D and D'' at w."""
     return determinant.level((1 + DETERMINANT.second_difference_step) * abs(w))
 
 

@@ -1,9 +1,9 @@
 """D(w) of an arm from the propagators of its elements: five minors, multiplied from clamp to tip.
 
-The minors are those of `rodsweep.determinant.arm.elements.collocation`: at the clamp s^m = 1 and the others
-are 0, at the tip D = s^m. D spans hundreds of decades, so the minors are divided by their norm on their way;
-the logarithms of these norms are summed. Derivatives of the minors by w and along a path of arms are computed
-with them. At real w every minor is real.
+The minors are defined in `rodsweep.determinant.arm.elements.collocation`: at the clamp s^m = 1 and all other
+minors are 0; at the tip D = s^m. D spans hundreds of decades, so the minors are divided by their norm between
+elements, and the logarithms of these norms are summed. Derivatives of the minors by w and along a path of
+arms are computed too. At real w every minor is real.
 """
 
 import math
@@ -146,7 +146,7 @@ def _real_swept(
 
 @compiled
 def chain_size(w: complex, W: float, polynomials: Array) -> float:
-    """log |D| at w, from propagators that hold for |w| <= W, (elements, terms, PADDED); -inf where D is 0."""
+    """log |D| at w; -inf if D = 0. polynomials: propagators for |w| <= W, (elements, terms, PADDED)."""
     powers = powers_of(w / W, polynomials.shape[1])
     C = np.empty((2, PADDED))
     here = np.zeros((2, MINORS))
@@ -167,11 +167,10 @@ def chain_size(w: complex, W: float, polynomials: Array) -> float:
 
 @compiled
 def chain_along(w: complex, W: float, polynomials: Array, changes: Array) -> ValueAlong:
-    """D, dD/dw and dD/dp times exp(-S), from propagators, `polynomials`, and their derivatives by p,
-    `changes`.
+    """D, dD/dw and dD/dp at w, times exp(-S). At real w every value is real.
 
-    Both have the shape (elements, terms, PADDED) and hold for |w| <= W. dD/dp is 0 if `changes` is empty. At
-    real w every value is real.
+    polynomials, changes: propagators valid for |w| <= W and their derivatives by p, (elements, terms,
+    PADDED). dD/dp is 0 if `changes` is empty.
     """
     if w.imag == 0:
         D, D_w, D_p, S = _real_swept(w.real / W, W, polynomials, changes)
@@ -182,6 +181,7 @@ def chain_along(w: complex, W: float, polynomials: Array, changes: Array) -> Val
 
 @compiled
 def determinant_along_chain(w: complex, W: float, polynomials: Array) -> DeterminantValue:
-    """D and D' = dD/dw times exp(-S), from propagators that hold for |w| <= W, (elements, terms, PADDED)."""
+    """D and dD/dw at w, times exp(-S). polynomials: propagators valid for |w| <= W, (elements, terms,
+    PADDED)."""
     D, D_w, _, S, noise = chain_along(w, W, polynomials, polynomials[:0])
     return DeterminantValue(D, D_w, S, noise)

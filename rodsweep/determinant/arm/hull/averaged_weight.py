@@ -7,8 +7,8 @@ remaining factor of the term with theta is a sum,
 
     g - alpha nu = (g - t nu) + (t - alpha) nu.
 
-The first term is bounded by the rotational drag. The second differs from 0 only near the jumps and is bounded
-by theta(0) = 0; or the drag bounds both.
+The first term is bounded by the rotational drag. The second term differs from 0 only near the jumps and is
+bounded by theta(0) = 0. A second trial bounds the sum of the two terms by the rotational drag.
 """
 
 import math
@@ -55,7 +55,7 @@ class GridPositions(NamedTuple):
 
 @compiled
 def averaged_regions(u: Array, local: Array, F: float) -> Array:
-    """Constants (a, c) of the region of each trial weight, (trials, 2); inf where a trial gives no bound.
+    """Constants (a, c) of the region of each trial weight, (trials, 2); inf if a trial gives no bound.
 
     u: points of an arm from clamp to tip, (points,), two at a jump. local: `LocalCoefficients` at the points,
     (6, points), with c2 > 0 and g > 0. F: force.

@@ -53,7 +53,7 @@ def constant_weights(local: Array) -> Array:
 @compiled
 def varying_weight_norms(F: Array, lengths: Array, local: Array, derivative: Array) -> Array:
     """a^2 of each weight alpha(u) = g/(nu + f |F| sqrt(c2 c3 gamma3/gamma2)), f from `HULL.weight_factors`:
-    the largest squared norm of the hull's matrix along all arms, (middles,).
+    the largest squared norm of the hull's matrix along all arms, (factors,).
 
     F: (n,). lengths: (pieces,). local: coefficients, (6, n, pieces, points). derivative: (points, points),
     from `ChebyshevMatrices`.
