@@ -127,17 +127,9 @@ class _LocatedRoot(NamedTuple):
 
 
 def _refined_all(guesses: list[tuple[complex, float]], determinant: ArmDeterminant) -> list[_LocatedRoot]:
-    
-<<<<<<< ours
-"""The root near each guess (w, reach of `_separate_close_roots`); the conjugate of a refined root is not
-    refined again.
-    """
-=======
-"""The root of D near each guess (w, reach), a pair of results of `_separated`. For conjugate guesses only
+    """The root of D near each guess (w, reach), a pair of results of `_separate_close_roots`. For conjugate guesses only
     the first is refined.
     """
->>>>>>> theirs
-
     found: list[_LocatedRoot] = []
     for place, (w, reach) in enumerate(guesses):
         if place > 0 and w.imag != 0 and w == guesses[place - 1][0].conjugate():
