@@ -102,8 +102,8 @@ def as_drags(value: Any) -> Axis:
         names = list(DRAGS)
     if not names or not all(isinstance(name, str) and name in DRAGS for name in names):
         raise ValueError(
-            f"{short_repr(value)} is not a drag; write {RANGE_OF_DRAG}, one of the names {', '.join(DRAGS)}, or a "
-            "list of these names"
+            f"{short_repr(value)} is not a drag; write {RANGE_OF_DRAG}, one of the names {', '.join(DRAGS)}, "
+            "or a list of these names"
         )
     return Axis(values=tuple(float(place) for place in sorted({DRAGS.index(name) for name in names})))
 

@@ -127,8 +127,8 @@ class _LocatedRoot(NamedTuple):
 
 
 def _refined_all(guesses: list[tuple[complex, float]], determinant: ArmDeterminant) -> list[_LocatedRoot]:
-    """The root of D near each guess (w, reach), a pair of results of `_separate_close_roots`. For conjugate guesses only
-    the first is refined.
+    """The root of D near each guess (w, reach), a pair of results of `_separate_close_roots`. For conjugate
+    guesses only the first is refined.
     """
     found: list[_LocatedRoot] = []
     for place, (w, reach) in enumerate(guesses):
