@@ -65,7 +65,8 @@ class Page:
     def load(self, text: str) -> None:
         """Shows the rod or the arm of a config; text: the config in YAML."""
         try:
-            self._change_to(state_of_text(text))
+            loaded = state_of_text(text, self.state.F_max)
+            self._change_to(replace(loaded, across=loaded.across or self.state.across))
         except InputError as error:
             self._show_error(str(error))
 

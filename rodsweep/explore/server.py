@@ -30,7 +30,11 @@ ADDRESS = "127.0.0.1"
 HOSTS = (ADDRESS, "localhost")
 """Host names under which a browser on this machine may open the page."""
 UNUSED_SESSION_MILLISECONDS = 5000
-"""A session ends this time after its page was closed, in milliseconds."""
+"""A session ends this time after its page was closed, in milliseconds; until then a page whose connection was
+lost may connect again."""
+CHECK_MILLISECONDS = 1000
+"""Time between two searches for sessions to end, in milliseconds. The next page may have to wait for the
+solves of a closed page until its session ends."""
 
 
 class UndelayedServer(HTTPServer):
@@ -92,7 +96,7 @@ class ExploreServer:
             {"/": application},
             extra_websocket_origins=[f"{host}:{self.port}" for host in HOSTS],
             unused_session_lifetime_milliseconds=UNUSED_SESSION_MILLISECONDS,
-            check_unused_sessions_milliseconds=UNUSED_SESSION_MILLISECONDS,
+            check_unused_sessions_milliseconds=CHECK_MILLISECONDS,
         )
         self.http = UndelayedServer(tornado)
         self.http.add_sockets(sockets)

@@ -14,7 +14,7 @@ from ..config.document.reading import validated
 from ..errors import InputError
 from .page_style import style_sheet, template_text
 from .pictures.card import Card
-from .state import PageState
+from .state import DEFAULT_F_MAX, PageState
 from .stored import state_of
 
 ADDRESS_SCRIPT = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
@@ -127,7 +127,9 @@ class Sharing:
         return text + FILM_COMMANDS if self.task.value == CONFIG_TASKS[0] else text
 
     def _take(self, attribute: str, old: str, new: str) -> None:
-        self._loaded(b64decode(new).decode(errors="replace"))
+        if new:
+            self._loaded(b64decode(new).decode(errors="replace"))
+            self.file.clear()  # otherwise a browser does not report the same file when it is chosen again
 
 
 def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select | Row]:
@@ -148,12 +150,12 @@ def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select |
     return [choice, Row(*buttons)]
 
 
-def state_of_text(text: str) -> PageState:
-    """State of the page for `text`, a config in YAML. For an invalid config, raises the same InputError as
-    the command line.
+def state_of_text(text: str, F_max: str = DEFAULT_F_MAX) -> PageState:
+    """State of the page for `text`, a config in YAML. F_max: largest force if the config has none. For an
+    invalid config, raises the same InputError as the command line.
     """
     where = "the loaded file"
     tree = parse(text, where)
     if not isinstance(tree, dict):
         raise InputError(f"{where} does not consist of keys and values; give task and parameters")
-    return state_of(validated(tree), Path(where))
+    return state_of(validated(tree), Path(where), F_max)

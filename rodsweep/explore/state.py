@@ -48,6 +48,8 @@ SECOND_PARAMETERS = {
 """Choices of the diagram's second parameter on each tab; the first is the default."""
 DEFAULT_F_MAX = "200"
 """Largest force with which the page opens, in k3/L^2."""
+LARGEST_FORCE_KEYS = {"thresholds": "F_max", "branch": "stop"}
+"""Key of the largest force in the section of a task, by task."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,6 +132,8 @@ class PageState:
             values = {n: text for n, text in self.arm.items() if n != "pressure" or "F" in taken}
         tree: dict[str, Any] = {"task": task, "parameters": values if self.tab == "rod" else {"arm": values}}
         tree |= {"material": dict(LAWS[self.law])} if LAWS[self.law] else {}
+        if task in LARGEST_FORCE_KEYS:
+            tree[task] = {LARGEST_FORCE_KEYS[task]: self.largest_force()}
         return yaml_of(tree)
 
     def python(self) -> str:

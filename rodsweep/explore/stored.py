@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,16 @@ from .solving.diagrams import (
     diagram_from_phase_result,
     diagram_from_row_result,
 )
-from .state import DEFAULT_ARM, DEFAULT_F_MAX, DEFAULT_ROD, LAWS, SECOND_PARAMETERS, PageState
+from .solving.questions import crushing_force
+from .state import (
+    DEFAULT_ARM,
+    DEFAULT_F_MAX,
+    DEFAULT_ROD,
+    LARGEST_FORCE_KEYS,
+    LAWS,
+    SECOND_PARAMETERS,
+    PageState,
+)
 from .stored_results import StoredResults
 
 RESULT_SUFFIXES = (".h5", ".hdf5", ".nc")
@@ -43,23 +53,42 @@ def page_state_of_file(path: Path) -> tuple[PageState, StoredResults | None]:
     return state, StoredResults(path, data, state, stored_diagram(data, state))
 
 
-def state_of(config: Config, path: Path) -> PageState:
+def state_of(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) -> PageState:
     """State of the page for a config.
 
-    Each parameter has the middle value of its axis. The parameter with the most values, except the load, is
-    the second parameter of the diagram. path: file of the config, for error messages.
+    Each parameter has the middle value of its axis, and the load the middle of its values that do not crush
+    the rod. The parameter with the most values, except the load, is the second parameter of the diagram.
+    path: file of the config, for error messages. F_max: largest force if the config has none.
     """
+    F_max = _largest_force(config, F_max)
     if config.parameters.arm is not None:
-        return _state_of_arm(config, path)
+        return replace(_state_of_arm(config, path), F_max=F_max)
     material = _law(config, path)
     axes = {name: axis.array() for name, axis in config.parameters.axes.items()}
     if not axes:
         raise InputError(f"{path}: a list of points has no diagram; the page needs axes of parameters")
     rod = {name: _text(axes[name]) if name in axes else text for name, text in DEFAULT_ROD.items()}
     across = _across("rod", axes)
+    state = PageState(rod=rod, law=material, across=across, F_max=F_max)
     F = axes.get("F", np.zeros(1))
-    largest = f"{F.max():g}" if len(F) > 1 and F.max() > 0 else DEFAULT_F_MAX
-    return PageState(rod=rod, law=material, across=across, F_max=largest)
+    if len(F) > 1:
+        if material == "linear":
+            F_possible = F[crushing_force({n: float(rod[n]) for n in ("k1", "taper")}) > F]
+            state = state.with_values(F=_text(F_possible if len(F_possible) else F))
+        if F.max() > 0:
+            state = replace(state, F_max=f"{F.max():g}")
+    return state
+
+
+def _largest_force(config: Config, default: str) -> str:
+    """Largest force of a search for thresholds, or of branches along F, as text; `default` for other
+    tasks.
+    """
+    key = LARGEST_FORCE_KEYS.get(config.task)
+    options: Any = getattr(config, config.task, None)
+    if key is not None and getattr(options, "along", "F") == "F":
+        return _exact(getattr(options, key))
+    return default
 
 
 def _state_of_arm(config: Config, path: Path) -> PageState:
@@ -76,7 +105,8 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
     axes = {name: given[name].array() for name in DEFAULT_ARM if name in given}
     for name, values in axes.items():
         scale = SCALES["arm"][name]
-        texts[name] = scale.text(scale.factor * float(values[len(values) // 2]))
+        value = scale.factor * float(values[len(values) // 2])
+        texts[name] = scale.text(value) if len(values) > 1 else f"{_exact(value)} {scale.unit}"
     return PageState(tab="arm", arm=texts, law=_law(config, path), across=_across("arm", axes))
 
 
@@ -98,7 +128,13 @@ def _law(config: Config, path: Path) -> str:
 
 
 def _text(values: np.ndarray) -> str:
-    return f"{values[len(values) // 2]:.6g}"
+    """Middle of the values, (n,), as text: rounded, or with all digits if there is one value."""
+    return f"{values[len(values) // 2]:.6g}" if len(values) > 1 else _exact(values[0])
+
+
+def _exact(value: float) -> str:
+    """A number with all its digits, except the last, in which the conversion of units makes errors."""
+    return f"{value:.15g}"
 
 
 def stored_diagram(data: Dataset, state: PageState) -> dict[str, Any] | None:

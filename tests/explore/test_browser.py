@@ -221,6 +221,50 @@ def test_nothing_is_on_the_console(browser):
     assert browser.complaints() == []
 
 
+def choose_file(browser: Browser, text: str) -> None:
+    """Chooses a file with a text as the config to load, as a user does."""
+    browser.run("document.querySelector('details').open = true")
+    field = f"{LOAD}?.el.shadowRoot.querySelector('input[type=file]')"
+    browser.wait_for(field)
+    browser.run(
+        "const files = new DataTransfer(); files.items.add(new File([arguments[0]], 'rod.yaml'));"
+        f"const field = {field}; field.files = files.files; field.dispatchEvent(new Event('change'))",
+        text,
+    )
+
+
+LOAD = "Bokeh.index.find_one(Bokeh.documents[0].get_model_by_name('load'))"
+
+
+def test_the_same_file_can_be_loaded_twice(browser):
+    for _ in range(2):
+        choose_file(browser, ROD_43)
+        browser.wait_for("Bokeh.documents[0].get_model_by_name('F_field').value == '43'")
+        assert browser.model("F_max", "value") == "60"
+        change(browser, "F_field", "50")
+        solved(browser)
+    change(browser, "k1_field", "1e4")
+
+
+ROD_43 = "task: limit_cycle\nparameters: {F: 43, k1: 1.0e4, k2: 100, gamma3: 0.01}\n"
+
+
+def test_a_page_that_was_left_ends_its_solves_and_the_way_back_leads_to_a_page_that_solves(url):
+    with Browser() as other:
+        other.open(f"{url}?F_max=1e9&F=47")  # thresholds up to this force take minutes
+        other.wait_for("location.search.includes('F=47')")
+        other.open(f"{url}?F_max=30&F=46")
+        other.wait_for("Bokeh.documents[0].get_model_by_name('numbers').text.includes('F_hopf')")
+        solved(other)
+        other._call("POST", "/back", {})
+        other.wait_for("Bokeh.documents?.[0]?.get_model_by_name('F_field')?.value == '47'")
+        change(other, "F_max", "60")
+        change(other, "F_field", "48")
+        other.wait_for(f"Bokeh.documents[0].is_idle && {SOLVED}")
+        assert numbers(other)["growth_rate"] == number_text(ROD.replace(F=48).spectrum().growth_rate)
+        assert other.complaints() == []
+
+
 def test_an_address_opens_the_same_page_and_an_arm_has_si_units(url, opened):
     opened.open(f"{url}?tab=arm&length=12+cm&pressure=5+kPa&F_max=60")
     opened.wait_for("Bokeh.documents[0].get_model_by_name('numbers').text.match('period_si.*pressure_hopf')")
