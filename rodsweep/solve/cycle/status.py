@@ -17,8 +17,8 @@ class CycleStatus(PointStatus):
     not_settled = (
         2,
         "no stable cycle was found within the allowed periods, or the errors of the cycle exceed the "
-        "requested accuracy; raise the allowed periods, start from a neighbour's cycle, or request a "
-        "lower accuracy",
+        "requested accuracy; raise the allowed periods, start from a neighbour's cycle, or use a "
+        "larger number for the accuracy",
     )
     left_the_model = (
         3,
@@ -54,7 +54,7 @@ class MarchedStatus(PointStatus):
     not_settled = (
         2,
         "the motion does not repeat within the allowed periods, or the errors of the cycle exceed the "
-        "requested accuracy; raise the allowed periods, request a lower accuracy, or use "
+        "requested accuracy; raise the allowed periods, use a larger number for the accuracy, or "
         "`method: collocation`",
     )
     left_the_model = (
