@@ -14,7 +14,7 @@ ENTRY = """
             meaning="factor of rotational drag",
             allowed=Range(lambda value: 0 < value < inf, "a finite number above 0", {"exclusiveMinimum": 0}),
             default=1.0,
-            scales=("gamma3",),
+            scaled_names=("gamma3",),
         ),
 """
 END = '    )\n}\n"""All parameters of the rod by name'

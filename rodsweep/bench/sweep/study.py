@@ -37,8 +37,7 @@ from .launch import (
 SWEEP_SIZES, QUICK_SIZES = (10**3, 10**4, 10**5, 10**6), (10**3, 10**4)
 """Numbers of points of the sweeps with the instant solver, in a complete and in a quick run."""
 SINGLE_RUN_FROM = 10**6
-"""Sweeps with the instant solver are run only once from this number of points; their start takes negligible
-time."""
+"""Sweeps with the instant solver and this number of points or more are run only once."""
 SPECTRUM_COUNT, QUICK_SPECTRUM_COUNT = 200_000, 6_000
 """Number of points of the sweep of spectra, in a complete and in a quick run."""
 CYCLE_COUNT, QUICK_CYCLE_COUNT = 200, 10

@@ -1,5 +1,4 @@
-"""The section `parameters.arm` of a config: an arm in SI units, and the parameter axes computed from the
-arm."""
+"""The section `parameters.arm` of a config: an arm in SI units, and the parameter axes computed from it."""
 
 from collections.abc import Collection, Iterator, Mapping
 from functools import cached_property
