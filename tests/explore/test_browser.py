@@ -217,6 +217,12 @@ def test_a_slider_that_never_rests_ends_at_its_last_value(browser):
     assert numbers(browser)["growth_rate"] == number_text(ROD.replace(F=F).spectrum().growth_rate)
 
 
+def test_the_arrow_of_a_menu_is_seen_on_light_and_on_dark_pages(browser):
+    menu = "Bokeh.index.find_one(Bokeh.documents[0].get_model_by_name('across')).el.shadowRoot"
+    arrow = browser.run(f"return getComputedStyle({menu}.querySelector('select')).backgroundImage")
+    assert re.findall(r'fill=\W*"(\w+)', arrow) == ["gray"]
+
+
 def test_nothing_is_on_the_console(browser):
     assert browser.complaints() == []
 

@@ -43,7 +43,7 @@ class ImmediateSolvers:
     def drop(self, session, kind):
         pass
 
-    def forget(self, session):
+    def cancel_session(self, session):
         pass
 
 
@@ -118,6 +118,20 @@ def test_a_bad_value_asks_nothing_and_has_its_sentence():
     assert solvers.questions == []
     assert "k1" in page.contents.spectrum.card.message.text
     assert "<i>" not in page.contents.spectrum.card.message.text
+
+
+@pytest.mark.parametrize("values", [{"k1": "40"}, {"taper": "-1"}])
+def test_a_bad_value_cancels_the_questions_that_wait_for_a_rest(values):
+    solvers = ImmediateSolvers()
+    page = page_with(solvers)
+    page.change({"F": "51"})
+    run_callbacks(page.document)
+    solvers.questions.clear()
+    page.change(values)
+    sentence = page.contents.branches.card.message.text
+    run_callbacks(page.document, seconds=True)
+    assert solvers.questions == []
+    assert page.contents.branches.card.message.text == sentence
 
 
 def test_the_sign_names_what_is_being_solved_until_it_is_answered():
