@@ -10,6 +10,7 @@ from bokeh.models import HoverTool
 
 import rodsweep as rs
 from rodsweep.errors import Refusal
+from rodsweep.explore.contents import NO_CYCLE_CURVES_SENTENCE
 from rodsweep.explore.page import INSTANT_KINDS, STOPPED_SENTENCE, Page
 from rodsweep.explore.pictures.card import AXIS_ALPHAS
 from rodsweep.explore.pictures.diagram import DiagramCell, cells, unstable_count_words
@@ -266,6 +267,19 @@ def test_stopping_the_folds_leaves_the_diagram_and_stopping_a_motion_the_arm():
     run_callbacks(page.document, seconds=True)
     assert "branch" in {question.kind for question in solvers.questions}
     assert "diagram" not in {question.kind for question in solvers.questions}
+
+
+def test_a_search_that_finds_no_folds_says_so_above_the_diagram_as_fine_as_before():
+    page = page_with(ImmediateSolvers(("diagram", "cycles")), "F_max=30")
+    run_callbacks(page.document, seconds=True)
+    run_callbacks(page.document)
+    card, drawn = page.contents.diagram.card, dict(page.contents.diagram.cells.data)
+    assert not card.message.visible
+    page.solve("cycles")
+    run_callbacks(page.document)
+    assert (card.message.visible, card.message.text) == (True, NO_CYCLE_CURVES_SENTENCE)
+    assert card.figure.visible
+    assert page.contents.diagram.cells.data == drawn
 
 
 def test_a_failure_takes_the_sign_and_the_button_away():
