@@ -228,7 +228,8 @@ class Page:
     def _show_solving(self) -> None:
         kinds = [kind for kind in (*INSTANT_KINDS, *IDLE_KINDS, *MANUAL_KINDS) if kind in self.solving]
         is_stoppable = any(kind in STOPPABLE_KINDS for kind in kinds)
-        self.contents.sign.update(text=solving_text(kinds, self.progress), is_stoppable=is_stoppable)
+        text = solving_text(kinds, self.progress)
+        self.contents.sign.update(text=text, kinds=kinds, is_stoppable=is_stoppable)
 
     def _move_in_diagram(self, event: Tap | Pan) -> None:
         if event.x is None or event.y is None or event.y <= 0:

@@ -140,6 +140,17 @@ def test_the_sign_names_what_is_being_solved_until_it_is_answered():
     assert page.contents.sign.text == "solving cycle, growth rates ..."
 
 
+def test_the_page_knows_which_numbers_belong_to_an_earlier_state():
+    page = page_with(ImmediateSolvers())
+    assert page.contents.sign.kinds == []
+    page.solvers.kinds = ("spectrum",)
+    page.change({"k2": "90"})
+    run_callbacks(page.document)
+    assert page.contents.sign.kinds == ["cycle", "thresholds", "growth"]
+    for kind in ("spectrum", "cycle", "thresholds"):
+        assert f'<tbody class="{kind}">' in page.contents.numbers.root.text
+
+
 def test_an_answer_to_an_old_question_is_shown_but_does_not_end_the_sign():
     kept = []
     solvers = ImmediateSolvers()
