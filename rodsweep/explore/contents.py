@@ -24,6 +24,9 @@ from .solving.diagrams import can_follow_cycle_curves
 from .state import PageState
 from .texts import SolvingSign, show_texts
 
+NO_CYCLE_CURVES_SENTENCE = "No folds and no torus points of cycles were found in this diagram."
+"""Sentence above the diagram after a search that found no curves of cycles."""
+
 
 class PageContents:
     """All Bokeh models of a page: controls, pictures, table, texts and buttons.
@@ -129,6 +132,8 @@ class PageContents:
         else:
             scales = SCALES[state.tab]
             self.diagram.show(found, scales[state.load], scales[state.second])
+            if kind == "cycles" and len(found["cycle_curve_x"]) == 0:
+                self.diagram.card.tell(NO_CYCLE_CURVES_SENTENCE)
         self.numbers.show(kind, found)
 
     def show_message(self, kind: str, sentence: str) -> None:

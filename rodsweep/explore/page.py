@@ -9,6 +9,7 @@ from bokeh.events import Pan, Tap
 
 from ..errors import InputError
 from .contents import PageContents
+from .idle_timer import IdleTimer
 from .scales import SCALES
 from .sharing import state_of_text
 from .solving.diagrams import Dataset, has_uniform_rods
@@ -22,8 +23,6 @@ from .stored_results import StoredResults
 
 STOPPED_SENTENCE = "Stopped. A change of the rod starts the solve again."
 """Sentence shown in place of a picture after the user has stopped its solve."""
-IDLE_MILLISECONDS = 900
-"""Questions that take seconds are sent when the controls have not changed for this time, in milliseconds."""
 
 
 class Page:
@@ -47,7 +46,7 @@ class Page:
         """Part of the state, and dragged tip, on which the latest question of each kind depends, see
         `needs`."""
         self.contents = PageContents(self.change, self.load)
-        self._idle: Callable[[], None] | None = None
+        self.idle = IdleTimer(document, self._ask_slow_questions)
         self.contents.connect(document, self._connections())
         self.contents.beating.on_drag(self.drag)
         if stored is not None and stored.diagram is not None:
@@ -143,10 +142,11 @@ class Page:
             self._ask(kind)
         self.contents.show_point(state, F)
         self._show_solving()
-        self._schedule_slow_questions()
+        self.idle.restart()
 
     def _show_error(self, sentence: str) -> None:
         """Cancels all solves and shows an error message in place of all pictures except a drawn diagram."""
+        self.idle.cancel()
         for kind in (*TIP_KINDS, *MANUAL_KINDS):
             self._drop(kind)
         for kind in (*INSTANT_KINDS, *IDLE_KINDS):
@@ -156,14 +156,7 @@ class Page:
                 self.contents.show_message(kind, sentence)
         self._show_solving()
 
-    def _schedule_slow_questions(self) -> None:
-        """Schedules the slow questions; each call restarts the waiting time `IDLE_MILLISECONDS`."""
-        if self._idle is not None:
-            self.document.remove_timeout_callback(self._idle)
-        self._idle = self.document.add_timeout_callback(self._ask_slow_questions, IDLE_MILLISECONDS)
-
     def _ask_slow_questions(self) -> None:
-        self._idle = None
         self.contents.sharing.write()
         for kind in IDLE_KINDS:
             if needs(Question(kind, self.state)) == self.asked.get(kind):
@@ -235,7 +228,8 @@ class Page:
     def _show_solving(self) -> None:
         kinds = [kind for kind in (*INSTANT_KINDS, *IDLE_KINDS, *MANUAL_KINDS) if kind in self.solving]
         is_stoppable = any(kind in STOPPABLE_KINDS for kind in kinds)
-        self.contents.sign.update(text=solving_text(kinds, self.progress), is_stoppable=is_stoppable)
+        text = solving_text(kinds, self.progress)
+        self.contents.sign.update(text=text, kinds=kinds, is_stoppable=is_stoppable)
 
     def _move_in_diagram(self, event: Tap | Pan) -> None:
         if event.x is None or event.y is None or event.y <= 0:

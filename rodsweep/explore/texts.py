@@ -4,7 +4,7 @@ change of a Bokeh `Div` causes a new layout of the whole page.
 
 from collections.abc import Sequence
 
-from bokeh.core.properties import Bool, String
+from bokeh.core.properties import Bool, List, String
 from bokeh.document import Document
 from bokeh.events import DocumentReady
 from bokeh.model import DataModel
@@ -20,8 +20,12 @@ class PageText(DataModel):
 
 
 class SolvingSign(PageText):
-    """The text "solving ..."; is_stoppable: whether the button "Stop" is visible next to it."""
+    """The text "solving ...". kinds: kinds of questions being solved; the numbers and pictures of these kinds
+    fade, because they belong to an earlier state. is_stoppable: whether the button "Stop" is visible next to
+    the text.
+    """
 
+    kinds = List(String)
     is_stoppable = Bool(default=False)
 
 
@@ -30,6 +34,6 @@ def show_texts(document: Document, texts: Sequence[PageText]) -> None:
     for text in texts:
         document.add_root(text)
         shown = CustomJS(args={"text": text}, code=template_text("text.js"))
-        for name in text.properties() & {"text", "is_stoppable"}:
+        for name in text.properties() & {"text", "kinds", "is_stoppable"}:
             text.js_on_change(name, shown)
         document.js_on_event(DocumentReady, shown)

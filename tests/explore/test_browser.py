@@ -217,6 +217,25 @@ def test_a_slider_that_never_rests_ends_at_its_last_value(browser):
     assert numbers(browser)["growth_rate"] == number_text(ROD.replace(F=F).spectrum().growth_rate)
 
 
+def test_numbers_and_pictures_of_an_earlier_state_fade_until_they_are_solved(browser):
+    opacity = "getComputedStyle(document.querySelector('{}')).opacity"
+    slow = [opacity.format(each) for each in ("tbody.thresholds", "div.thresholds")]
+    quick = [opacity.format(each) for each in ("tbody.spectrum", "div.spectrum")]
+    change(browser, "F_max", "1e9")  # thresholds up to this force take minutes
+    for each in slow:
+        browser.wait_for(f"{each} < 1")
+    assert [browser.run(f"return {each}") for each in quick] == ["1", "1"]
+    change(browser, "F_max", "60")
+    solved(browser)
+    assert [browser.run(f"return {each}") for each in slow] == ["1", "1"]
+
+
+def test_the_arrow_of_a_menu_is_seen_on_light_and_on_dark_pages(browser):
+    menu = "Bokeh.index.find_one(Bokeh.documents[0].get_model_by_name('across')).el.shadowRoot"
+    arrow = browser.run(f"return getComputedStyle({menu}.querySelector('select')).backgroundImage")
+    assert re.findall(r'fill=\W*"(\w+)', arrow) == ["gray"]
+
+
 def test_nothing_is_on_the_console(browser):
     assert browser.complaints() == []
 

@@ -10,6 +10,7 @@ from bokeh.models import HoverTool
 
 import rodsweep as rs
 from rodsweep.errors import Refusal
+from rodsweep.explore.contents import NO_CYCLE_CURVES_SENTENCE
 from rodsweep.explore.page import INSTANT_KINDS, STOPPED_SENTENCE, Page
 from rodsweep.explore.pictures.card import AXIS_ALPHAS
 from rodsweep.explore.pictures.diagram import DiagramCell, cells, unstable_count_words
@@ -43,7 +44,7 @@ class ImmediateSolvers:
     def drop(self, session, kind):
         pass
 
-    def forget(self, session):
+    def cancel_session(self, session):
         pass
 
 
@@ -120,9 +121,34 @@ def test_a_bad_value_asks_nothing_and_has_its_sentence():
     assert "<i>" not in page.contents.spectrum.card.message.text
 
 
+@pytest.mark.parametrize("values", [{"k1": "40"}, {"taper": "-1"}])
+def test_a_bad_value_cancels_the_questions_that_wait_for_a_rest(values):
+    solvers = ImmediateSolvers()
+    page = page_with(solvers)
+    page.change({"F": "51"})
+    run_callbacks(page.document)
+    solvers.questions.clear()
+    page.change(values)
+    sentence = page.contents.branches.card.message.text
+    run_callbacks(page.document, seconds=True)
+    assert solvers.questions == []
+    assert page.contents.branches.card.message.text == sentence
+
+
 def test_the_sign_names_what_is_being_solved_until_it_is_answered():
     page = page_with(ImmediateSolvers(("spectrum", "thresholds")))
     assert page.contents.sign.text == "solving cycle, growth rates ..."
+
+
+def test_the_page_knows_which_numbers_belong_to_an_earlier_state():
+    page = page_with(ImmediateSolvers())
+    assert page.contents.sign.kinds == []
+    page.solvers.kinds = ("spectrum",)
+    page.change({"k2": "90"})
+    run_callbacks(page.document)
+    assert page.contents.sign.kinds == ["cycle", "thresholds", "growth"]
+    for kind in ("spectrum", "cycle", "thresholds"):
+        assert f'<tbody class="{kind}">' in page.contents.numbers.root.text
 
 
 def test_an_answer_to_an_old_question_is_shown_but_does_not_end_the_sign():
@@ -252,6 +278,19 @@ def test_stopping_the_folds_leaves_the_diagram_and_stopping_a_motion_the_arm():
     run_callbacks(page.document, seconds=True)
     assert "branch" in {question.kind for question in solvers.questions}
     assert "diagram" not in {question.kind for question in solvers.questions}
+
+
+def test_a_search_that_finds_no_folds_says_so_above_the_diagram_as_fine_as_before():
+    page = page_with(ImmediateSolvers(("diagram", "cycles")), "F_max=30")
+    run_callbacks(page.document, seconds=True)
+    run_callbacks(page.document)
+    card, drawn = page.contents.diagram.card, dict(page.contents.diagram.cells.data)
+    assert not card.message.visible
+    page.solve("cycles")
+    run_callbacks(page.document)
+    assert (card.message.visible, card.message.text) == (True, NO_CYCLE_CURVES_SENTENCE)
+    assert card.figure.visible
+    assert page.contents.diagram.cells.data == drawn
 
 
 def test_a_failure_takes_the_sign_and_the_button_away():

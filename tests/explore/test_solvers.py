@@ -114,7 +114,7 @@ def test_a_page_that_ends_takes_its_questions_along(solver):
     replies: list[Reply] = []
     solver.ask(("one", "branch"), SLOW, replies.append)
     wait_until_it_solves(solver)
-    solver.forget("one")
+    solver.cancel_session("one")
     solver.ask(("two", "thresholds"), QUICK, replies.append)
     wait_until(lambda: replies)
     assert [reply.content["status"] for reply in replies] == ["ok"]

@@ -85,4 +85,6 @@ def _rows(kind: str, found: dict[str, Any]) -> str:
             rows.append(
                 f'<tr data-name="{name}"><td>{escape(meaning)}</td><td>{text}</td><td>{shown}</td></tr>'
             )
-    return f'<tr><th colspan="3">{HEADINGS[kind]}</th></tr>{"".join(rows)}' if rows else ""
+    if not rows:
+        return ""
+    return f'<tbody class="{kind}"><tr><th colspan="3">{HEADINGS[kind]}</th></tr>{"".join(rows)}</tbody>'

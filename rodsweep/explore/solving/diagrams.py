@@ -19,7 +19,7 @@ ROW_COUNT = 20
 """Number of values of the second parameter, for uniform rods of linear material."""
 SLOW_ROW_COUNT = 8
 """Number of values of the second parameter for rods that are not uniform or not of linear material, for which
-each value takes seconds, and for diagrams with curves of cycles."""
+each value takes seconds, and for the search of folds and torus points of cycles."""
 LOAD_COUNT = 121
 """Number of load values. Additional values are cheap: the stability at all loads of a row follows from the
 thresholds on this row."""
@@ -57,8 +57,8 @@ def diagram(state: PageState) -> dict[str, Any]:
 
 
 def cycle_diagram(state: PageState) -> dict[str, Any]:
-    """The result of `diagram` with curves of folds and torus points of cycles, and with SLOW_ROW_COUNT rows.
-    Raises InputError for rods that are not uniform or not of linear material.
+    """The result of `diagram` with curves of folds and torus points of cycles, which are searched on
+    SLOW_ROW_COUNT rows. Raises InputError for rods that are not uniform or not of linear material.
     """
     state.subject()
     if not can_follow_cycle_curves(state):
@@ -66,7 +66,9 @@ def cycle_diagram(state: PageState) -> dict[str, Any]:
             "folds and torus points of cycles are followed for uniform rods of linear material only, "
             "on the tab Rod"
         )
-    return _of_phases(state, with_cycles=True)
+    found = _of_phases(state, with_cycles=True)
+    curves = {name: values for name, values in found.items() if name.startswith("cycle_")}
+    return _of_phases(state) | curves
 
 
 def can_follow_cycle_curves(state: PageState) -> bool:

@@ -3,4 +3,5 @@ element.innerHTML = text.text
 if ("is_stoppable" in text) {
   element.parentElement.classList.toggle("solving", text.text !== "")
   element.parentElement.classList.toggle("stoppable", text.is_stoppable)
+  document.body.dataset.solving = text.kinds.join(" ")
 }

@@ -1,0 +1,32 @@
+"""Timer that runs a callback when the user has not changed the controls for some time."""
+
+from collections.abc import Callable
+
+from bokeh.document import Document
+
+IDLE_MILLISECONDS = 900
+"""Questions that take seconds are sent when the controls have not changed for this time, in milliseconds."""
+
+
+class IdleTimer:
+    """Runs `callback` on the event loop of a document, IDLE_MILLISECONDS after the last `restart`."""
+
+    def __init__(self, document: Document, callback: Callable[[], None]):
+        self.document = document
+        self.callback = callback
+        self._scheduled: Callable[[], None] | None = None
+
+    def restart(self) -> None:
+        """Starts the waiting time, again if it has not ended."""
+        self.cancel()
+        self._scheduled = self.document.add_timeout_callback(self._run, IDLE_MILLISECONDS)
+
+    def cancel(self) -> None:
+        """Ends the waiting time without the callback."""
+        if self._scheduled is not None:
+            self.document.remove_timeout_callback(self._scheduled)
+            self._scheduled = None
+
+    def _run(self) -> None:
+        self._scheduled = None
+        self.callback()
