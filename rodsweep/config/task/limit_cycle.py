@@ -101,8 +101,8 @@ class LimitCycleConfig(Config):
         along = self.limit_cycle.along
         if along in AXIS_OF and (arm is None or along not in {arm.load, *arm.quantity_axes}):
             raise ValueError(
-                f"limit_cycle.along is {along} but parameters.arm.{along} is not given; give it, or set along to "
-                f"{words(NONLINEAR_PARAMETERS, 'or')}"
+                f"limit_cycle.along is {along} but parameters.arm.{along} is not given; give it, or set "
+                f"along to {words(NONLINEAR_PARAMETERS, 'or')}"
             )
         if self.limit_cycle.start == "neighbour" and self.parameters.is_list:
             raise ValueError(
