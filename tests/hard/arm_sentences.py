@@ -466,7 +466,8 @@ def _validity_line(view, page, fine):
     for line, match in read(
         page,
         r"^the model (does not apply|is doubtful)(?: at (?:all )?NUMBER (?:of NUMBER )?points?)?"
-        r": .* is (?:up to )?NUMBER times its limit(?:; not known at NUMBER of NUMBER points)?$",
+        r": .* is (?:up to )?NUMBER times its limit(?:, more than a tenth)?"
+        r"(?:; not known at NUMBER of NUMBER points)?$",
     ):
         known = np.ravel(view.variables["model_applies"]) >= 0
         worst = max(np.array(applies)[known])

@@ -47,4 +47,5 @@ def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str
     place = int(np.flatnonzero(affected)[np.argmax(excess[affected])])
     name = EFFECTS[int(effect[place])].replace("_", " ")
     size = f"{'up to ' * int(affected.sum() > 1)}{excess[place]:.2g}"
-    return f"the model {verb}{at}{when}: {name} is {size} times its limit{rest}"
+    doubt = ", more than a tenth" if worst == Validity.doubtful else ""  # `DOUBTFUL_FROM` in words
+    return f"the model {verb}{at}{when}: {name} is {size} times its limit{doubt}{rest}"
