@@ -100,7 +100,10 @@ def test_journals_of_another_config_are_set_aside(command):
     (command.directory / "a.h5").unlink()
     command.write("other.yaml", CONFIG.replace("modes: 2", "modes: 3"))
     done = command("run", "other.yaml", "-o", "a.h5", "-q")
-    assert done.stdout == "a.h5: journals of other points are kept in a.h5.journal-1\n"
+    assert (
+        done.stdout
+        == "a.h5: journals that do not match the config and its points are kept in a.h5.journal-1\n"
+    )
     (command.directory / "a.h5").unlink()
     (command.directory / "a.h5.journal-1").rename(command.directory / "a.h5.journal")
     goes_on(command)

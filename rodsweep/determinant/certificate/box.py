@@ -12,7 +12,8 @@ max(F^2/rho, (rho g - nu)^2/(c2 rho gamma3)), so that
 
 The weight rho is free; the best rho makes both entries of the maximum equal.
 
-No eigenvalue lies on the imaginary axis close to w = 0: |E(z)| <= exp(Re sqrt z)/2 bounds D - 1 there.
+No eigenvalue lies on the imaginary axis close to w = 0: |E(z)| <= exp(Re sqrt z)/2 bounds D - 1 there, with E
+of `rodsweep.determinant.value`.
 """
 
 from dataclasses import dataclass

@@ -43,8 +43,8 @@ from ..state_layout import stress_index, velocity_index
 
 @UnrolledOverAlgebra
 def write_fields(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
-    """Writes the strains E and the stresses s(S) of a state x, (unknowns,), at all nodes into E and S,
-    (d, nodes + 1) each.
+    """Writes the strains and the stresses of a state x, (unknowns,), at all nodes into E and S, each
+    (d, nodes + 1).
     """
     size = E.shape[1]
     for i in range(size):

@@ -1,4 +1,4 @@
-"""Digests of the variables and attributes of a result file, and refusal of content written by other programs.
+"""Digests of the variables and attributes of a result file, and refusal of changed or added content.
 
 A digest covers the content, not its storage: type, shape, dimensions, numbers and attributes of a variable. A
 file rewritten by another program, such as xarray, keeps the digests. Names that begin with `user_` belong to

@@ -3,7 +3,7 @@
 The file is netCDF-4-compatible HDF5, is only ever replaced by a rename, and can be opened at any time. Ranks
 write finished points to journals beside the file (`rodsweep.results.run.journal`). The points of journals are
 folded into (added to) the file at the end of a run, or at the start of the next run after a kill. A journal
-is recognised by its fingerprint, even without a file; journals of other points are moved away, never deleted.
+is recognised by its fingerprint, even without a file; other journals are moved away, never deleted.
 """
 
 import json
@@ -41,7 +41,7 @@ from .refusals import header_of_existing_file, require_room, require_same_config
 from .validation import ResultHeader, damage_refusals, is_rodsweep_file
 
 BACKUPS = "before-*.h5"
-"""Pattern of the names of copies of the file before an unfinished extension, in the journal directory."""
+"""Pattern of the names of backups of the file, kept with the journals until an extension is complete."""
 
 
 class Store:
@@ -79,7 +79,10 @@ class Store:
                 self._extend(header)
             else:
                 require_same_config(header, self.plan, self.journals)
-        self._set_aside(other_journals(self.journals, self.plan.fingerprint), "journals of other points")
+        self._set_aside(
+            other_journals(self.journals, self.plan.fingerprint),
+            "journals that do not match the config and its points",
+        )
         drop_files(self.journals, JOURNALS)  # the remaining journals have no points
 
     def _create(self, fresh: bool) -> None:

@@ -118,8 +118,8 @@ class BranchCalibration:
         )
 
     def largest(self, accuracy: float) -> float:
-        """The error that must not exceed the relative accuracy: the largest error at equal parameter, divided
-        by sensitivity/`max_sensitivity` if this ratio exceeds 1, or the parameter error if larger."""
+        """The error that must not exceed the relative accuracy: the larger of the parameter error and the
+        largest error at equal parameter, divided by max(1, sensitivity/`BRANCH_ERRORS.max_sensitivity`)."""
         return self._limiting.errors(accuracy).largest
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
@@ -207,9 +207,9 @@ def measured_errors(
 def _difference(
     rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, derivatives: BranchDerivatives
 ) -> Array:
-    """Differences, (6,), between a cycle on a rough mesh and the same cycle on a fine mesh. The first five
-    differences are at the parameter value of the rough cycle, in the order of `Calibration.space`. The last
-    difference is the parameter difference at equal deflection. rough, multipliers: path and nontrivial
+    """Differences, (6,), between a cycle on a rough mesh and the same cycle on a fine mesh. The first five,
+    at the parameter value of the rough cycle, are `path_differences` and the difference of the multipliers.
+    The last is the parameter difference at equal deflection. rough, multipliers: path and nontrivial
     multipliers, (rank - 1,), of the rough cycle. derivatives: derivatives of the branch at this cycle."""
     orbit = rough.orbit
     scale = derivatives.scale

@@ -24,7 +24,8 @@ class ThresholdStatus(PointStatus):
     not_certified = (
         1,
         "the thresholds are accurate, but a count of the unstable modes between them is undecided or "
-        "disagrees, or it is not proved which eigenvalue leads; `certify: false` accepts such a list",
+        "contradicts the list, or it is not proved which eigenvalue leads; `certify: false` accepts such a "
+        "list",
     )
     window_open = (
         2,

@@ -86,7 +86,7 @@ class CyclePredictor:
 
     @cached_property
     def values(self) -> Array:
-        """Normalised values of the solved orbit, (N + 1,)."""
+        """Values of the solved orbit as in `normalised`, (N + 1,)."""
         return normalised(self.orbit)
 
     def weights(self, step: float) -> Array:

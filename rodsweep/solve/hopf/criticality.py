@@ -24,7 +24,7 @@ class CriticalityStatus(PointStatus):
     not_certified = (
         1,
         "the coefficients are accurate, but a count of the unstable modes between the Hopf points is "
-        "undecided or disagrees; `certify: false` accepts such a count",
+        "undecided or contradicts the list; `certify: false` accepts such a count",
     )
     window_open = (
         2,

@@ -128,7 +128,7 @@ def job_of(
     values = sum(axis.size for axis in config.parameters.axes.values())  # checked before arrays are made
     if values * BYTES_PER_VALUE > machine_memory():
         raise InputError(
-            f"{path}: parameters make {grid_size(config):.6g} points, whose axes of {values:.6g} values take "
+            f"{path}: the grid has {grid_size(config):.6g} points; the {values:.6g} values on its axes take "
             f"{values * BYTES_PER_VALUE / 1e9:.3g} GB, more than the {machine_memory() / 1e9:.3g} GB of "
             "memory of this "
             "machine; use fewer values"

@@ -55,8 +55,8 @@ class ArmCountSettings(CompiledSettings):
     largest_radius: float = 48.0
     """Radius of the largest circle at any node, in units of the length over which D changes."""
     max_wave_radius: float = 0.8
-    """Largest radius of a circle with the dominant wave, in units of Im w: the wave may have branch points on
-    the real axis."""
+    """Circles up to this radius, in units of Im w, use `dominant_wave`, which may have branch points on the
+    real axis."""
     max_step_ratio: float = 0.9
     """If the reaches of two nodes do not overlap, the step is shortened at least by this factor."""
     safe_step: float = 0.99

@@ -94,8 +94,8 @@ def _points_of(build: Build) -> tuple[Array, Array]:
 
 
 def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:
-    """`averaged_regions` of each arm with jumps, (n, trials, 2); inf for an arm without c2 > 0 and g > 0
-    everywhere.
+    """Constants (a, c) by `averaged_regions` for each arm, (n, trials, 2); inf for an arm without c2 > 0 and
+    g > 0 everywhere. F, lengths, local: as in `SampledArms`.
     """
     starts = np.cumsum(lengths) - lengths
     x = (1 - 2 * HULL.end_distance) * _chebyshev().points

@@ -201,7 +201,7 @@ def _traced(
     special: Sequence[RowSpecialPoint],
 ) -> TracedHalfCurve:
     """One half of a curve, from the special point `one` of a row; `half` is None after a failure. located:
-    special points of this row, with cycles. special: all special points, whose distances are computed."""
+    special points of this row, with cycles. special: special points whose distances from it are computed."""
     width = abs(limits.line.parameter_slope(one.at))
     same = [
         point

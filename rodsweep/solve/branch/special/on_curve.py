@@ -69,7 +69,7 @@ class NormalDerivatives:
     """Derivatives of cycles near a curve of special points with respect to the distance from the curve."""
 
     direction: Array
-    """Unit direction across the curve, (2,): components along the branch and along the rows' axis."""
+    """Unit direction across the curve, (2,): components along the branch and along the axis of the rows."""
     test: float
     """Derivative of the test function, which is 0 on the curve."""
     orbit: Array

@@ -124,7 +124,7 @@ def follow_with(
     path: Path, p: Array, request: SpectrumRequest, further: int, before: ArmInterval | None
 ) -> ArmInterval | None:
     """The first points of p, (n,), that are reached as in `follow_interval`, with exactly `further` modes
-    followed in addition to the wanted modes; None if the first point fails."""
+    followed in addition to the wanted modes; None if the first point fails or no family is found."""
     first = _eigenvalues_of_previous_interval(before, float(p[0]), request, further)
     if first is None:
         first = first_eigenvalues(path, float(p[0]), request, further)

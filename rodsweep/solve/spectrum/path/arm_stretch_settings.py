@@ -23,8 +23,8 @@ class ArmStretchSettings:
     """Minimum number of points without a proof for which more modes are followed; fewer points are counted
     one by one, which costs less than a new family."""
     unproved_parts: int = 16
-    """The range of points that more modes prove is located by bisection until its end is known to within
-    1/`unproved_parts` of the number of points without a proof."""
+    """Bisection for the points that more modes prove ends at an interval of 1/`unproved_parts` of the points
+    without a proof."""
     hull_arms_for_unproved: int = 49
     """Number of arms at which hulls are computed again, if at least `min_unproved_points` points have no
     proof."""
