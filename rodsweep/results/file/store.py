@@ -79,10 +79,8 @@ class Store:
                 self._extend(header)
             else:
                 require_same_config(header, self.plan, self.journals)
-        self._set_aside(
-            other_journals(self.journals, self.plan.fingerprint),
-            "journals that do not match the config and its points",
-        )
+        other = other_journals(self.journals, self.plan.fingerprint)
+        self._set_aside(other, "journals that do not match the config and its points")
         drop_files(self.journals, JOURNALS)  # the remaining journals have no points
 
     def _create(self, fresh: bool) -> None:
