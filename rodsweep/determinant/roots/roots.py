@@ -60,7 +60,7 @@ def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, fl
     error, length, wave = newton_correction(w, coefficients)
     if error > ROOTS.double_root_correction * abs(w):
         D, D1, S, noise = scaled_determinant(w, coefficients)
-        e = max(abs(D), DETERMINANT.noise_fraction * noise)
+        e = max(abs(D), DETERMINANT.typical_noise * noise)
         second = abs(second_derivative(w, S, coefficients))
         # Close to a double root Newton's correction is useless: the roots of the parabola bound the distance.
         if abs(D1) ** 2 < ROOTS.min_squared_slope * e * second:

@@ -60,7 +60,7 @@ def correct_eigenvalue(
     gamma3)/dp.
     """
     D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
-    return newton_step(w, D, D_w, D_p, DETERMINANT.noise_fraction * noise)
+    return newton_step(w, D, D_w, D_p, DETERMINANT.typical_noise * noise)
 
 
 @compiled
