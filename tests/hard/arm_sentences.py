@@ -14,6 +14,7 @@ import rodsweep as rs
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.drag import DRAGS
 from rodsweep.model.arm.neglected import (
+    DOUBTFUL_FROM,
     HALF_LENGTH,
     WIDE_CURVATURE,
     Validity,
@@ -466,7 +467,7 @@ def _validity_line(view, page, fine):
     for line, match in read(
         page,
         r"^the model (does not apply|is doubtful)(?: at (?:all )?NUMBER (?:of NUMBER )?points?)?"
-        r": .* is (?:up to )?NUMBER times its limit(?:, more than a tenth)?"
+        r": .* is (?:up to )?NUMBER times its limit(?:, more than NUMBER)?"
         r"(?:; not known at NUMBER of NUMBER points)?$",
     ):
         known = np.ravel(view.variables["model_applies"]) >= 0
@@ -476,6 +477,8 @@ def _validity_line(view, page, fine):
         largest = np.max(np.array(excess)[there])
         if abs(float(match[4]) - largest) > TWO_DIGITS * largest:
             why.append(f"it is {largest}")
+        if (worst == 1) != (match[5] is not None and float(match[5]) == DOUBTFUL_FROM):
+            why.append(f"a model is doubtful above {DOUBTFUL_FROM}")
         if match[2] and int(match[2]) != there.sum():
             why.append(f"at {there.sum()} points")
         if match[3] and int(match[3]) != count:

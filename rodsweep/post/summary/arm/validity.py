@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ....model.arm.neglected import Validity
+from ....model.arm.neglected import DOUBTFUL_FROM, Validity
 from ....results.layouts.arm import EFFECTS, NOT_KNOWN, VALIDITY
 from ....wording import some_of
 
@@ -47,5 +47,5 @@ def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str
     place = int(np.flatnonzero(affected)[np.argmax(excess[affected])])
     name = EFFECTS[int(effect[place])].replace("_", " ")
     size = f"{'up to ' * int(affected.sum() > 1)}{excess[place]:.2g}"
-    doubt = ", more than a tenth" if worst == Validity.doubtful else ""  # `DOUBTFUL_FROM` in words
+    doubt = f", more than {DOUBTFUL_FROM:g}" if worst == Validity.doubtful else ""
     return f"the model {verb}{at}{when}: {name} is {size} times its limit{doubt}{rest}"
