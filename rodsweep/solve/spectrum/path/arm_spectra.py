@@ -1,6 +1,7 @@
 """Spectra of arms at the points of a stretch.
 
-Followed eigenvalues are proved complete by D'/D, by a count carried along the arms, or by a count at each arm.
+Followed eigenvalues are proved complete by D'/D, by a count carried along the arms, or by a count at each
+arm.
 """
 
 import numpy as np
@@ -20,7 +21,7 @@ from .prediction import slice_track
 def follow_stretch_of_arms(path: Path, p: Array, request: SpectrumRequest) -> FollowedPoints | None:
     """Spectra of the arms at the path variables p, (n,), from the first point to the last point reached; None
     if no point is reached."""
-    found = follow_interval(path, p, request)
+    found = follow_interval(path, p, request, counts_follow=True)
     if found is None:
         return None
     if (found.proved_modes < request.modes).sum() >= ARM_STRETCH.min_unproved_points:

@@ -58,18 +58,25 @@ class ArmInterval(NamedTuple):
 
 
 def follow_interval(
-    path: Path, p: Array, request: SpectrumRequest, before: ArmInterval | None = None
+    path: Path,
+    p: Array,
+    request: SpectrumRequest,
+    before: ArmInterval | None = None,
+    counts_follow: bool = False,
 ) -> ArmInterval | None:
     """The first points of p, (n,), that are reached with one family of arms; None if the first point fails.
 
-    If too few points are proved complete, more eigenvalues are followed. before: the previous interval of the
-    path, whose family is used again if it contains enough of the points p.
+    If not all growing modes can be proved complete, more eigenvalues are followed; also if too few points are
+    proved complete, unless counts follow at these points. before: the previous interval of the path, whose
+    family is used again if it contains enough of the points p.
     """
     best: ArmInterval | None = None
     for further in (
         number for number in ARM_STRETCH.further_modes if before is None or number >= before.further_modes
     ):
-        if best is not None and not (_too_few(best) or _proves_more(path, best, request, further)):
+        if best is not None and not (
+            _too_few(best) or (not counts_follow and _proves_more(path, best, request, further))
+        ):
             break
         found = _follow_with(path, p, request, further, before) if len(p) >= ARM_STRETCH.min_points else None
         if found is not None and (best is None or _is_better(found, best, request.modes)):
