@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from followed_lines import solve_stretch
 from numba.core.bytecode import FunctionIdentity
 from numba.core.caching import NullCache
 from numba.core.ccallback import CFunc
@@ -62,7 +63,7 @@ from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import FAILURES
 from rodsweep.solve.spectrum.path.followed_leader import follow_leading_eigenvalue
-from rodsweep.solve.spectrum.path.stretch import Stretch, solve_stretch
+from rodsweep.solve.spectrum.path.stretch import Stretch
 from rodsweep.solve.spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from followed_lines import solve_stretch
 from reference.dense_arm import eigenvalues
 from reference.random_arms import random_arm
 from surveyed import RODS
@@ -13,7 +14,7 @@ from rodsweep.solve.spectrum.path import arm_count, arm_spectra, carried_arm_cou
 from rodsweep.solve.spectrum.path.arm_count import count_at
 from rodsweep.solve.spectrum.path.arm_spectra import follow_stretch_of_arms
 from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
-from rodsweep.solve.spectrum.path.stretch import Stretch, solve_stretch
+from rodsweep.solve.spectrum.path.stretch import Stretch
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 REQUEST = SpectrumRequest(4, 1e-10, certify=True)

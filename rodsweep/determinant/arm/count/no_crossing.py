@@ -18,7 +18,7 @@ at a few arms, with one safety factor for values between the points and one for 
 import cmath
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,7 +43,7 @@ class NoCrossingSettings(CompiledSettings):
     """Settings for the discs that cover a line, and for the arms at which D is evaluated."""
 
     arms: int = 5
-    """Number of arms of an interval at which D is evaluated, the ends included; odd, at least 3."""
+    """Number of arms of an interval at which D is evaluated, including the middle arm and both ends."""
     between_arms_factor: float = 1.5
     """Safety factor on the largest change of f at these arms, for arms between them."""
     divided_distance: float = 3.0
@@ -68,6 +68,13 @@ class NoCrossingSettings(CompiledSettings):
     min_radius: float = 0.05
     """Radius below which a disc is not tried, in units of the length over which D changes near the real
     axis."""
+
+    ranges: ClassVar = {
+        "arms": (2, math.inf),
+        "between_arms_factor": (1.0, math.inf),
+        "overlap": (0.0, 1.0),
+        "shrinkage": (1.0, math.inf),
+    }
 
     @property
     def max_change(self) -> float:
