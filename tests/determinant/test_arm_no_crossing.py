@@ -5,7 +5,8 @@ import pytest
 from reference.random_arms import random_arm
 from surveyed import RODS
 
-from rodsweep.determinant.arm.count.no_crossing import NO_CROSSING, proves_no_crossing, sampled_points
+from rodsweep.determinant.arm.count.no_crossing import proves_no_crossing, sampled_points
+from rodsweep.determinant.arm.count.settings import NO_CROSSING
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.solve.spectrum.path.arm_stretch import follow_interval
 from rodsweep.solve.spectrum.search import SpectrumRequest

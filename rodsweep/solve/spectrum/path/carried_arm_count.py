@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array, Complex
-from ....determinant.arm.count.no_crossing import NO_CROSSING, proves_no_crossing, sampled_points
+from ....determinant.arm.count.no_crossing import proves_no_crossing, sampled_points
+from ....determinant.arm.count.settings import NO_CROSSING
 from ....determinant.parameter_path import Path
 from .arm_count import confirmed_line
 from .arm_stretch import ArmInterval
