@@ -9,7 +9,7 @@ import numpy as np
 from ...arrays import Array
 from ...discretization.elements.elements import halve_elements
 from ...discretization.elements.mesh import Mesh, mesh_on
-from ...discretization.elements.resolution import RESOLUTION
+from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...discretization.state_layout import plane_layout
 from .orbit import Orbit
 from .tails import tails_of
@@ -125,7 +125,7 @@ class OrbitMesh:
     def finer_in_space(self) -> "OrbitMesh":
         """This mesh with an order increased by 2, or with twice as many elements of lower order if the order
         would exceed its maximum."""
-        if self.order + 2 <= RESOLUTION.max_order:
+        if self.order + 2 <= RESOLUTION_SETTINGS.max_order:
             return replace(self, order=self.order + 2)
         return replace(
             self, edges=halve_elements(self.edges), order=ceil(ORBIT_MESH.halved_order * self.order)
@@ -171,7 +171,7 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
         log(max(tails.space, ORBIT_MESH.smallest_tail) / aim_space) / tails.decay / present.elements
     )
     edges = present.edges
-    while order > RESOLUTION.max_order:
+    while order > RESOLUTION_SETTINGS.max_order:
         order = ceil(ORBIT_MESH.halved_order * order)
         edges = halve_elements(edges)
     # A tail is proportional to intervals**-stages. For a different number of stages the tail on the present

@@ -35,7 +35,7 @@ from ...model.rod import Rod
 from .arm_solver import ArmSolver, arm_solver
 from .krylov_schur import UniformSolver, uniform_solver
 from .path.prediction import KnownRoots
-from .shift_invert import KRYLOV
+from .shift_invert import KRYLOV_SETTINGS
 
 
 class TransverseProblem(ABC):
@@ -106,7 +106,7 @@ class UniformProblem(TransverseProblem):
     def __init__(self, rod: Rod):
         self.rod = rod
         growth, self._wave = most_amplified_wave(rod)
-        self.shift = KRYLOV.shift_above_growth * growth
+        self.shift = KRYLOV_SETTINGS.shift_above_growth * growth
         self._amplification = sqrt(squared_amplification(rod))
         self.has_bound = isfinite(self._amplification)
 
@@ -142,7 +142,7 @@ class ArmProblem(TransverseProblem):
         self.has_bound = isfinite(self._hull.a)
         self.spare_eigenvalues = COMPLETENESS.spare_eigenvalues if to_prove and self.has_bound else 0
         growth, _ = local_growth(rod)
-        self.shift = KRYLOV.shift_above_growth * float(growth.max())
+        self.shift = KRYLOV_SETTINGS.shift_above_growth * float(growth.max())
 
     def mesh_for(self, modes: int, accuracy: float) -> ArmMesh:
         return arm_mesh(self.rod, modes, accuracy)

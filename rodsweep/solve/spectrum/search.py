@@ -9,7 +9,7 @@ error and count are satisfactory.
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ...discretization.elements.resolution import RESOLUTION, mesh_accuracy
+from ...discretization.elements.resolution import RESOLUTION_SETTINGS, mesh_accuracy
 from ...model.rod import Rod
 from ..backend.solver_pools import destroy_pooled_solvers
 from ..point import outcome_or_failure
@@ -85,12 +85,14 @@ class Search:
         """The comparison of the last count that disagrees with the eigenvalues found."""
         self.unresolved = False
         """Whether on the last mesh neither the eigenvalues nor a count showed which eigenvalue leads."""
-        self.why = f"no mesh of at most {RESOLUTION.max_unknowns} unknowns resolves the requested modes"
+        self.why = (
+            f"no mesh of at most {RESOLUTION_SETTINGS.max_unknowns} unknowns resolves the requested modes"
+        )
 
     def outcome(self) -> Spectrum:
         """The spectrum, from attempts on meshes until the candidates are accepted or no longer improve."""
         for turn in range(SEARCH.max_meshes):
-            if self.mesh.unknowns > RESOLUTION.max_unknowns or self.failures > SEARCH.max_failures:
+            if self.mesh.unknowns > RESOLUTION_SETTINGS.max_unknowns or self.failures > SEARCH.max_failures:
                 break
             tight = self.with_vectors or turn > 0
             found = candidates_on(self.problem, self.mesh, self.wanted, self.with_vectors, tight)
@@ -179,11 +181,10 @@ class Search:
         self.request_more(max(self.wanted, 2 * number + SEARCH.spare_modes))
 
     def request_more(self, wanted: int) -> None:
-        """Requests `wanted` eigenvalues, and refines the mesh until it has enough unknowns for this
-        number."""
+        """Requests `wanted` eigenvalues, and refines the mesh until it has enough unknowns for them."""
         while (
             wanted > self.mesh.unknowns // SEARCH.min_unknowns_per_mode
-            and self.mesh.unknowns <= RESOLUTION.max_unknowns
+            and self.mesh.unknowns <= RESOLUTION_SETTINGS.max_unknowns
         ):
             self.mesh = self.problem.finer_mesh(self.mesh)
         self.wanted = wanted

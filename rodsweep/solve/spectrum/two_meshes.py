@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...discretization.elements.resolution import RESOLUTION, mesh_accuracy
+from ...discretization.elements.resolution import RESOLUTION_SETTINGS, mesh_accuracy
 from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.rod import Rod
 from ..backend.solver_pools import destroy_pooled_solvers
@@ -74,7 +74,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
     best: Spectrum | None = None
     for _ in range(TWO_MESHES.max_finer_meshes):
         mesh = problem.finer_mesh(mesh)
-        if mesh.unknowns > RESOLUTION.max_unknowns:
+        if mesh.unknowns > RESOLUTION_SETTINGS.max_unknowns:
             break
         found = _leading(problem, mesh, modes)
         if len(found.w) >= modes and len(before.w):
@@ -85,7 +85,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
             best = here if best is None else min(best, here, key=_worst)
         before = found
     if best is None:
-        most = RESOLUTION.max_unknowns
+        most = RESOLUTION_SETTINGS.max_unknowns
         raise Unsolvable(f"no mesh of at most {most} unknowns gives the requested number of eigenvalues")
     # If rounding dominates, the error may exceed the difference between the two meshes.
     return replace(best, error_estimate=TWO_MESHES.mesh_error_factor * best.error_estimate)

@@ -14,7 +14,7 @@ from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.spectrum import problem as problem_module
 from rodsweep.solve.spectrum.krylov_schur import uniform_solver
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
-from rodsweep.solve.spectrum.shift_invert import KRYLOV
+from rodsweep.solve.spectrum.shift_invert import KRYLOV_SETTINGS
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
 
@@ -385,7 +385,9 @@ def test_resting_modes_a_hundred_deep_are_those_of_the_cantilever():
 
 def test_a_solver_that_is_no_longer_kept_gives_its_memory_back():
     """petsc4py would set it aside until the end of the process, some megabyte a resolution."""
-    solvers = [uniform_solver(Resolution(1, nodes)) for nodes in range(6, 6 + KRYLOV.max_uniform_solvers)]
+    solvers = [
+        uniform_solver(Resolution(1, nodes)) for nodes in range(6, 6 + KRYLOV_SETTINGS.max_uniform_solvers)
+    ]
     assert uniform_solver(Resolution(1, 6)) is solvers[0]
     uniform_solver(Resolution(2, 6))
     first, longest_unused, *others = solvers
@@ -417,7 +419,7 @@ def test_krylov_schur_on_two_meshes_is_sparse_where_elements_are_many():
     )
     result, reference = solve_on_two_meshes(rod, request), solve_spectrum(rod, TIGHT)
     assert result.status == SpectrumStatus.ok
-    assert 3 * result.elements * result.order > KRYLOV.max_dense_unknowns
+    assert 3 * result.elements * result.order > KRYLOV_SETTINGS.max_dense_unknowns
     assert np.abs(result.eigenvalues[:4] / reference.eigenvalues - 1).max() < 1e-8
 
 

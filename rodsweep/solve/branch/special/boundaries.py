@@ -12,7 +12,7 @@ from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.boundaries import Boundaries, BoundarySearch, trace_boundaries
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import FAILURES, Unsolvable
-from .curves import CYCLE_CURVES, SpecialCurveProblem
+from .curves import END_SETTINGS, SpecialCurveProblem
 from .cycle_curves import CURVE_IDENTITY, Arrays, CurveEnd, CurvePoint, CycleCurve, HalfCurve, TracedHalfCurve
 from .on_curve import SolvedPoint
 from .point import SpecialKind, SpecialPoint
@@ -176,7 +176,7 @@ class _CurvesOfKind:
 
     def _lies_on_extrapolation(self, curve: CycleCurve, one: RowSpecialPoint) -> bool:
         """Whether a special point lies on the extrapolation of a curve to a Hopf point."""
-        if one.tip_y_max >= CYCLE_CURVES.min_amplitude:
+        if one.tip_y_max >= END_SETTINGS.min_amplitude:
             return False
         for end, last in zip(curve.vanishing, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:

@@ -33,7 +33,7 @@ class ShootingIntervalSettings:
     """Multipliers with at most this modulus are treated as 0."""
 
 
-SHOOTING_INTERVALS = ShootingIntervalSettings()
+SHOOTING_INTERVAL_SETTINGS = ShootingIntervalSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,9 +78,11 @@ class ShootingIntervals:
         """
         *others, last = self.maps
         ahead = triangle = np.eye(len(last))
-        for _ in range(SHOOTING_INTERVALS.sweeps):
+        for _ in range(SHOOTING_INTERVAL_SETTINGS.sweeps):
             # Directions that decay to nothing over a period are dropped, to save time.
-            lasting = np.flatnonzero(np.abs(np.diag(triangle)) > SHOOTING_INTERVALS.negligible_multiplier)
+            lasting = np.flatnonzero(
+                np.abs(np.diag(triangle)) > SHOOTING_INTERVAL_SETTINGS.negligible_multiplier
+            )
             start = ahead = ahead[:, : lasting[-1] + 1] if len(lasting) else ahead
             triangle = np.eye(start.shape[1])
             for A in (*others, orbit.symmetry.apply_inverse(last, orbit.form.layout)):
@@ -93,20 +95,20 @@ class ShootingIntervals:
         # `eigvals` balances the matrix, which destroys the grading: multipliers near 1 would lose nine
         # digits.
         values = np.diag(schur(graded, output="complex")[0])
-        return values[np.abs(values) > SHOOTING_INTERVALS.negligible_multiplier]
+        return values[np.abs(values) > SHOOTING_INTERVAL_SETTINGS.negligible_multiplier]
 
 
 def shooting_intervals_of(factors: Factors, mass: Array) -> ShootingIntervals:
     """The legs of an orbit, from its eliminated matrix. Time intervals are joined to a leg as long as the
-    norm of the leg's map is at most `SHOOTING_INTERVALS.max_growth`. mass: diagonal of M, (n,)."""
+    norm of the leg's map is at most `SHOOTING_INTERVAL_SETTINGS.max_growth`. mass: diagonal of M, (n,)."""
     blocks = factors.blocks
-    if not np.linalg.norm(factors.propagator) > SHOOTING_INTERVALS.max_growth:  # also true for nan
+    if not np.linalg.norm(factors.propagator) > SHOOTING_INTERVAL_SETTINGS.max_growth:  # also true for nan
         return ShootingIntervals((0, len(blocks)), factors.propagator[None])
     firsts = [0]
     maps = [blocks[0, 0, 1] * mass]
     for k in range(1, len(blocks)):
         longer = blocks[k, 0, 1] @ (mass[:, None] * maps[-1])
-        if np.linalg.norm(longer) <= SHOOTING_INTERVALS.max_growth:
+        if np.linalg.norm(longer) <= SHOOTING_INTERVAL_SETTINGS.max_growth:
             maps[-1] = longer
         else:
             firsts.append(k)

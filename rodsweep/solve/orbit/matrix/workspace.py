@@ -23,7 +23,7 @@ class WorkspaceSettings:
     most rods."""
 
 
-WORKSPACE = WorkspaceSettings()
+WORKSPACE_SETTINGS = WorkspaceSettings()
 
 
 class Factors(NamedTuple):
@@ -65,9 +65,9 @@ class NewtonWorkspace:
         return self._buffer
 
     def release(self) -> None:
-        """Ends the last claim, and frees the buffer if it is larger than WORKSPACE.kept_numbers."""
+        """Ends the last claim, and frees the buffer if it is larger than WORKSPACE_SETTINGS.kept_numbers."""
         self._claim += 1
-        if len(self._buffer) > WORKSPACE.kept_numbers:
+        if len(self._buffer) > WORKSPACE_SETTINGS.kept_numbers:
             self._buffer = np.empty(0)
 
 

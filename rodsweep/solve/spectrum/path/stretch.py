@@ -29,7 +29,7 @@ from .prediction import Track, slice_track, start_track
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StretchSettings:
+class SweepStretchSettings:
     """Settings for eigenvalues followed along neighbouring rods of a sweep."""
 
     further_modes: int = 2
@@ -37,7 +37,7 @@ class StretchSettings:
     these additional modes."""
 
 
-STRETCH = StretchSettings()
+SWEEP_STRETCH_SETTINGS = SweepStretchSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,7 +173,7 @@ def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | No
     complete); None after a failure.
     """
     try:
-        modes = request.modes + STRETCH.further_modes
+        modes = request.modes + SWEEP_STRETCH_SETTINGS.further_modes
         search = Search(rod, replace(request, modes=modes - 1, certify=True), wanted=modes)
         with np.errstate(all="ignore"):
             outcome = search.outcome()
