@@ -192,7 +192,7 @@ def progress_listener(shown: Display, name: str) -> RankListener:
     KeyboardInterrupt.
     """
     return RankListener(
-        SingleRankCommunication(lambda place: shown.place(place.words, place.share or 0.0)),
+        SingleRankCommunication(lambda position: shown.show_position(position.words, position.share or 0.0)),
         StopRequest(),
         lambda: name,
     )

@@ -116,8 +116,8 @@ def _mean_at_nodes(values: Array, grid: Mesh) -> Array:
     """Means over both sides of each node, (m, nodes + 1). values: m fields at the `points_inside`,
     (m, points).
     """
-    place, weights = _places_of(grid)
-    mean: Array = np.array([np.bincount(place, weights * row) for row in values]) / grid.quadrature
+    element, weights = _places_of(grid)
+    mean: Array = np.array([np.bincount(element, weights * row) for row in values]) / grid.quadrature
     return mean
 
 

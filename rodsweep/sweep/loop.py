@@ -37,7 +37,7 @@ class ProgressSink(Protocol):
     def __call__(self, done: int) -> None:
         """Shows `done`, the number of points that all ranks have finished."""
 
-    def place(self, words: str, begun: float) -> None:
+    def show_position(self, words: str, begun: float) -> None:
         """Shows the text `words` on the progress of a long point.
 
         begun: sum of the fractions done of all unfinished points.
@@ -83,7 +83,9 @@ def sweep(team: Team, queue: ChunkQueue, loop: Loop, progress: ProgressSink, sto
     current point, or abandons the point after GRACE_SECONDS (see `stop`).
     """
     claims = (
-        FirstRankRequests(team, queue, stop, progress.place) if team.first else OtherRankRequests(team, stop)
+        FirstRankRequests(team, queue, stop, progress.show_position)
+        if team.first
+        else OtherRankRequests(team, stop)
     )
     with suppress(SolveStopped), reporting_to(RankListener(claims, stop)):
         loop.prepare()

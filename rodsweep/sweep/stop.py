@@ -83,7 +83,7 @@ class RankCommunication(Protocol):
 
     def between_points(self) -> None: ...
 
-    def report_position(self, place: SolvePosition) -> None: ...
+    def report_position(self, position: SolvePosition) -> None: ...
 
 
 class SingleRankCommunication:
@@ -94,10 +94,10 @@ class SingleRankCommunication:
 
     def between_points(self) -> None: ...
 
-    def report_position(self, place: SolvePosition) -> None:
+    def report_position(self, position: SolvePosition) -> None:
         """Passes the progress within a long point to `shown`, if given."""
         if self.shown:
-            self.shown(place)
+            self.shown(position)
 
 
 class RankListener:
@@ -117,10 +117,10 @@ class RankListener:
         self.next_poll = 0.0
         self.next_report = time.monotonic() + POSITION_SECONDS
 
-    def __call__(self, place: MakePosition) -> None:
-        """Handles a solver's report, at the position `place()`; raises Stopped if the solve must end."""
+    def __call__(self, make_position: MakePosition) -> None:
+        """Handles a solver's report at `make_position()`; raises Stopped if the solve must end."""
         now = time.monotonic()
-        if now >= self.next_report and (here := place()).words:
+        if now >= self.next_report and (here := make_position()).words:
             self.next_report = now + POSITION_SECONDS
             self.communication.report_position(
                 SolvePosition(": ".join(filter(None, (self.unit_label(), here.words))), here.share)

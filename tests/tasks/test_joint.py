@@ -181,7 +181,7 @@ def half(units, unit):
     one = units.special[place]
     last = 1.0 if behind else 5.0
     points = tuple(
-        CurvePoint(at=one.at, row=row, place=(row - 1) / 4, error=0.0, period=1.0, tip_y_max=0.1)
+        CurvePoint(at=one.at, row=row, row_coordinate=(row - 1) / 4, error=0.0, period=1.0, tip_y_max=0.1)
         for row in (one.row, last)
     )
     near = {i: 0.0 for i, other in enumerate(units.special) if other.at == one.at}

@@ -76,9 +76,9 @@ def _inside(mesh: Elements, points: Array) -> Array:
     moved = np.array(points, dtype=float)
     for first, inside, local in mesh.by_element(points):
         e = first // mesh.order
-        place = mesh.edges[e] + mesh.lengths[e] * (local + 1) / 2
+        position = mesh.edges[e] + mesh.lengths[e] * (local + 1) / 2
         moved[inside] = np.clip(
-            place,
+            position,
             mesh.edges[e] + ELEMENT_SETTINGS.end_distance,
             mesh.edges[e + 1] - ELEMENT_SETTINGS.end_distance,
         )

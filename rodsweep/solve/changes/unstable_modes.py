@@ -139,18 +139,18 @@ class ModeCounter:
         """
         self.doubts = []
         out: list[Crossing] = []
-        place = ends[0]
+        start = ends[0]
         for crossing in ordered:
             kind = crossing.kind
             if kind in (ChangeKind.hopf, ChangeKind.hopf_reverse):
-                unstable = self._between(place, crossing.at, unstable)
-                place = crossing.at
+                unstable = self._between(start, crossing.at, unstable)
+                start = crossing.at
                 if unstable >= 0:
                     unstable += 2 if kind == ChangeKind.hopf else -2
                 if kind == ChangeKind.hopf_reverse and unstable == 0:
                     kind = ChangeKind.restabilization
             out.append(replace(crossing, kind=kind, unstable_after=unstable))
-        return tuple(out), self._between(place, ends[1], unstable)
+        return tuple(out), self._between(start, ends[1], unstable)
 
     def _between(self, a: float, b: float, unstable: int) -> int:
         """Number of unstable modes just before b: `unstable`, the number just after a, compared with a count

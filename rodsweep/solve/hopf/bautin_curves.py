@@ -144,9 +144,9 @@ class BautinSpace:
         guess[which] = beyond[which]
         return self.solved(guess, which), True
 
-    def margins(self, place: _CurvePoint) -> Array:
+    def margins(self, point: _CurvePoint) -> Array:
         """Distances of a point from both ends of each of the three ranges, minus a tolerance, (6,)."""
-        return np.ravel([place.v[:3], 1 - place.v[:3]], order="F") - BAUTIN_SETTINGS.on_edge
+        return np.ravel([point.v[:3], 1 - point.v[:3]], order="F") - BAUTIN_SETTINGS.on_edge
 
     def located_zero(
         self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int
@@ -191,10 +191,10 @@ def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
     here = _CurvePoint(space.scaled(start.values, start.frequency), start)
     back, first = _followed(replace(space, side=-1.0), here)
     if first is BautinEnd.closed:
-        return BautinCurve(tuple(place.point for place in back), (first, first))
+        return BautinCurve(tuple(point.point for point in back), (first, first))
     on, last = _followed(space, here)
     # Both lists begin with the start, which is taken once.
-    return BautinCurve(tuple(place.point for place in [*back[:0:-1], *on]), (first, last))
+    return BautinCurve(tuple(point.point for point in [*back[:0:-1], *on]), (first, last))
 
 
 def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:

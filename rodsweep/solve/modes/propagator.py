@@ -123,8 +123,8 @@ def _orthonormal(vectors: NDArray, w: NDArray) -> Array:
     """Real orthonormal basis, (n, k), of the invariant subspace of the eigenvalues w with eigenvectors
     `vectors`; the first columns span the subspaces of the first eigenvalues."""
     columns = np.hstack([vectors.real[:, w.imag >= 0], vectors.imag[:, w.imag > 0]])
-    place = np.concatenate([np.nonzero(w.imag >= 0)[0], np.nonzero(w.imag > 0)[0] + 1])
-    return np.linalg.qr(columns[:, np.argsort(place)])[0]
+    column = np.concatenate([np.nonzero(w.imag >= 0)[0], np.nonzero(w.imag > 0)[0] + 1])
+    return np.linalg.qr(columns[:, np.argsort(column)])[0]
 
 
 def exponential(matrices: Array) -> Array:

@@ -51,8 +51,8 @@ class IndexSet:
 
     def __getitem__(self, indices: Any) -> Any:
         """Whether each of `indices` is in the set: a boolean, or a boolean array of the same shape."""
-        place = np.searchsorted(self.firsts, indices, side="right") - 1
-        return indices < self.ends[place]
+        number = np.searchsorted(self.firsts, indices, side="right") - 1
+        return indices < self.ends[number]
 
 
 @dataclass(frozen=True, slots=True)

@@ -77,8 +77,8 @@ class SpecialBoundaries:
         """The result of half curve number `unit`, as `TracedHalfCurve.arrays`. located: function that returns
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
         # A unit is twice the index of its special point, plus one for the half to smaller values.
-        place, behind = divmod(unit, 2)
-        one = self.special[place]
+        index, behind = divmod(unit, 2)
+        one = self.special[index]
         limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
         return _traced(limits, one, located(one.number), self.special).arrays()
 
@@ -88,8 +88,8 @@ class SpecialBoundaries:
 
     def unit_label(self, unit: int) -> str:
         """Text for half curve `unit` in the progress display: kind of curve, starting row, direction."""
-        place, behind = divmod(unit, 2)
-        one = self.special[place]
+        index, behind = divmod(unit, 2)
+        one = self.special[index]
         way = "down" if behind else "up"
         return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.rows.name} = {one.row:.5g} {way}"
 
@@ -114,7 +114,7 @@ class _CurvesOfKind:
 
     def next_seed(self, left: Sequence[int]) -> int:
         """Median special point among `left`, so that the two halves of its curve have similar lengths."""
-        return sorted(left, key=self._place)[len(left) // 2]
+        return sorted(left, key=self._position)[len(left) // 2]
 
     def missing_units(self, seed: int) -> list[int]:
         """Numbers of the half curves still to be followed for the curve through special point `seed`."""
@@ -131,12 +131,11 @@ class _CurvesOfKind:
         """Numbers of the half curves that may be needed later: from all special points on the rows on which
         the needed half curves start."""
         rows = {self.special[unit // 2].row for unit in search.missing_units}
-        beside = sorted((i for i in search.open_seeds if self.special[i].row in rows), key=self._place)
+        beside = sorted((i for i in search.open_seeds if self.special[i].row in rows), key=self._position)
         return [unit for i in beside for unit in self.missing_units(i)]
 
     def curve(self, seed: int) -> _TracedCurve | None:
-        """The curve through the special point `seed`, joined from two halves; None if a half could not be
-        followed."""
+        """The curve through the special point `seed`, joined from two halves; None if a half failed."""
         ahead = TracedHalfCurve.of(self.results[2 * seed])
         if ahead.half is None:
             return None
@@ -164,15 +163,16 @@ class _CurvesOfKind:
         distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
         return all(distance <= CURVE_IDENTITY.max_end_distance for distance in distances)
 
-    def _place(self, i: int) -> tuple[float, float]:
-        """Sort key of special point i: value of the rows' parameter, then value of the parameter along the
-        row."""
+    def _position(self, i: int) -> tuple[float, float]:
+        """Sort key of special point i: value of the rows' parameter, then of the parameter along the row."""
         return self.special[i].row, self.special[i].at
 
     def _ends(self, curve: CycleCurve) -> list[tuple[float, float]]:
         """Positions of both ends of a curve in the parameter plane, each as (position on the rows' axis,
         position along a row), from 0 to 1, in ascending order."""
-        return sorted((p.place, self.line.coordinate(p.at)) for p in (curve.points[0], curve.points[-1]))
+        return sorted(
+            (p.row_coordinate, self.line.coordinate(p.at)) for p in (curve.points[0], curve.points[-1])
+        )
 
     def _lies_on_extrapolation(self, curve: CycleCurve, one: RowSpecialPoint) -> bool:
         """Whether a special point lies on the extrapolation of a curve to a Hopf point."""
@@ -184,7 +184,7 @@ class _CurvesOfKind:
             x = self.line.coordinate(end.at)
             y = self.rows.coordinate(end.row)
             # On the straight chord from the Hopf point to the last cycle.
-            share = (self.rows.coordinate(one.row) - y) / (last.place - y)
+            share = (self.rows.coordinate(one.row) - y) / (last.row_coordinate - y)
             chord = x + share * (self.line.coordinate(last.at) - x)
             if (
                 0 <= share <= 1
@@ -225,14 +225,14 @@ def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: R
     """Distance along the row from special point `one` to a curve, in row lengths; inf if it is not near."""
     if limits.kind != one.kind:
         return math.inf
-    place = limits.rows.coordinate(one.row)
+    row_coordinate = limits.rows.coordinate(one.row)
     best = math.inf
     for a, b in zip(points[:-1], points[1:], strict=True):
         low, high = sorted((a.row_coordinate, b.row_coordinate))
-        if not low <= place <= high or not _near(limits, a, b, one):
+        if not low <= row_coordinate <= high or not _near(limits, a, b, one):
             continue
         try:
-            crossing = limits.on_row(a, b, place)
+            crossing = limits.on_row(a, b, row_coordinate)
         except Unsolvable:
             continue
         if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY.max_period_difference:

@@ -116,17 +116,17 @@ class SpecialCurveProblem:
         last = behind[-1]
         if len(behind) == 1:
             start = last.orbit
-            place = last.row_coordinate + self.side * length
+            at_row = last.row_coordinate + self.side * length
             across = ALONG_BRANCH
             slope = 0.0
             rates = None
         else:
-            start, place = self._predicted(behind, self._step_before_crushing(behind, length))
+            start, at_row = self._predicted(behind, self._step_before_crushing(behind, length))
             change = last.scale.components(start) - last.scale.components(last.orbit)
-            across = last.normal(np.append(change, place - last.row_coordinate))
+            across = last.normal(np.append(change, at_row - last.row_coordinate))
             slope = chord_slope(*behind[-2:])
             rates = last.normal_derivatives
-        point = self._family(last).correct_with_error(start, place, across, slope, rates, last)
+        point = self._family(last).correct_with_error(start, at_row, across, slope, rates, last)
         mesh = mesh_of(point.orbit)
         predicted = start if mesh == mesh_of(start) else mesh.interpolate(start)
         # Prediction and point can be compared only on the same mesh.
@@ -156,8 +156,8 @@ class SpecialCurveProblem:
             weights = lagrange_weights(lengths, longest)
             rod = known[-1].orbit.form.rod
             at = float(np.dot(weights, [point.parameter for point in known]))
-            place = float(np.dot(weights, [point.row_coordinate for point in known]))
-            values = {"F": rod.F, "k1": rod.k1, self.line.name: at, self.rows.name: self.rows.value(place)}
+            at_row = float(np.dot(weights, [point.row_coordinate for point in known]))
+            values = {"F": rod.F, "k1": rod.k1, self.line.name: at, self.rows.name: self.rows.value(at_row)}
             return 1 - END_SETTINGS.crushing_margin / 2 - values["F"] / values["k1"]
 
         if distance(step) >= 0 or distance(0.0) <= 0:
@@ -169,11 +169,11 @@ class SpecialCurveProblem:
     ) -> tuple[Orbit, float]:
         """(orbit, place on the rows' axis): sums of `points` with weights, (points,); raises Unsolvable."""
         values = np.dot(weights, [mesh.interpolate(point.orbit).values for point in points])
-        place = float(np.dot(weights, [point.row_coordinate for point in points]))
+        at_row = float(np.dot(weights, [point.row_coordinate for point in points]))
         at = float(np.dot(weights, [point.parameter for point in points]))
         orbit = replace(mesh.interpolate(points[-1].orbit), values=values)
-        changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
-        return orbit_with_parameters(orbit, changed), place
+        changed = {self.line.name: at, self.rows.name: self.rows.value(at_row)}
+        return orbit_with_parameters(orbit, changed), at_row
 
     def margins(self, point: SolvedPoint) -> Array:
         """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 - F/k1
@@ -229,16 +229,16 @@ class SpecialCurveProblem:
 
     def point_near_chord(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
         """Point of the curve near the fraction `share` from `one` to `other`; raises Unsolvable."""
-        start, place = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
+        start, at_row = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.normal(other.step_from(one))
-        return self._family(other).correct(start, place, across, other.normal_derivatives)
+        return self._family(other).correct(start, at_row, across, other.normal_derivatives)
 
-    def on_row(self, one: SolvedPoint, other: SolvedPoint, place: float) -> SolvedPoint:
-        """The point of the curve between two points, at `place` on the rows' axis; raises Unsolvable."""
+    def on_row(self, one: SolvedPoint, other: SolvedPoint, at_row: float) -> SolvedPoint:
+        """The point of the curve between two points, at `at_row` on the rows' axis; raises Unsolvable."""
         length = other.row_coordinate - one.row_coordinate
-        share = (place - one.row_coordinate) / length if length else 0.0
+        share = (at_row - one.row_coordinate) / length if length else 0.0
         start, _ = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
-        return self._family(other).correct(start, place, ALONG_BRANCH, other.normal_derivatives)
+        return self._family(other).correct(start, at_row, ALONG_BRANCH, other.normal_derivatives)
 
     def _why_lost(self, last: SolvedPoint) -> CurveEnd:
         """Reason why a curve was lost beyond its last point: `resonance`, or `not_followed` if unknown."""

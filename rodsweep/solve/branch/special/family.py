@@ -147,16 +147,16 @@ class _SecantState:
         self,
         family: CycleFamily,
         start: Orbit,
-        place: float,
+        row_coordinate: float,
         direction: Array,
         derivatives: NormalDerivatives | None,
         is_other_mesh: bool,
     ) -> None:
         self.family = family
-        self.row_coordinate = place
+        self.row_coordinate = row_coordinate
         self.direction = direction
         self.derivatives = derivatives
-        self.orbit = family.orbit_at_row(start, place)
+        self.orbit = family.orbit_at_row(start, row_coordinate)
         self.distance = 0.0
         self.previous: _SecantIterate | None = None
         self.length = float(family.border @ family.scale.components(start))
@@ -235,15 +235,15 @@ class _SecantState:
         family = self.family
         matrix = self.nearby.matrix
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
-        place = self.row_coordinate + (self.distance + step) * float(self.direction[1])
-        orbit = family.orbit_at_row(self._predicted_orbit(step, derivatives), place)
+        row_coordinate = self.row_coordinate + (self.distance + step) * float(self.direction[1])
+        orbit = family.orbit_at_row(self._predicted_orbit(step, derivatives), row_coordinate)
         scale = Scale.of(orbit, family.scale.name, family.scale.min_deflection_unit)
         ahead = scale.directional_derivative(orbit, tangent)
         return SolvedPoint(
             orbit=orbit,
             scale=scale,
             ahead=ahead / np.linalg.norm(ahead),
-            row_coordinate=place,
+            row_coordinate=row_coordinate,
             parameter=getattr(orbit.form.rod, scale.name),
             row_parameter=getattr(orbit.form.rod, family.rows.name),
             normal_derivatives=derivatives,

@@ -66,8 +66,8 @@ class Stretch:
         """(F, nu, c2, gamma3) of every rod, (n, 4), identical to `Rod.coefficients`."""
         columns = coefficients_of({**self.path.rod.values, self.path.name: self.values})
         table = np.empty((len(self), len(columns)))
-        for place, column in enumerate(columns):
-            table[:, place] = column
+        for number, column in enumerate(columns):
+            table[:, number] = column
         return table
 
 
@@ -79,25 +79,25 @@ def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
     n = len(stretch)
     modes = request.modes
     columns = _unsolved(n, modes)
-    place = 0
+    first = 0
     patience = 1
-    while place < n:
-        found = _followed(stretch, place, request)
-        end = place + (len(found.accepted) if found else min(patience, n - place))
+    while first < n:
+        found = _followed(stretch, first, request)
+        end = first + (len(found.accepted) if found else min(patience, n - first))
         # If no proof succeeds, for example without a bound, following is tried less and less often.
         patience = 1 if found else 2 * patience
         if found:
-            here = slice(place, end)
+            here = slice(first, end)
             columns["eigenvalues"][here] = found.w
             columns["error_estimate"][here] = errors_with_rounding(found.w, found.error, stretch.path.rod)
             columns["unstable_count"][here] = found.unstable_count
             columns["certified"][here] = True
-        for i in range(place, end):
-            if not (found and found.accepted[i - place]):
+        for i in range(first, end):
+            if not (found and found.accepted[i - first]):
                 alone = solve_spectrum(stretch.rod(i), request)
                 for name, column in columns.items():
                     column[i] = getattr(alone, name)
-        place = end
+        first = end
     return Spectrum(seconds=np.full(n, (time.perf_counter() - began) / n), **columns)
 
 
