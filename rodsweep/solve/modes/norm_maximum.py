@@ -69,8 +69,8 @@ def largest_norm(
     ceiling = best[0]
     for halving in range(NORM_MAXIMUM_SETTINGS.max_halvings + 1):
         bound = np.sqrt(_bound(h, left, right, bend, abscissa))
-        wanted = max(best[0], floor) * (1 + tolerance)
-        open_ = bound > wanted
+        enough = max(best[0], floor) * (1 + tolerance)
+        open_ = bound > enough
         given_up = (
             halving == NORM_MAXIMUM_SETTINGS.max_halvings
             or int(open_.sum()) > NORM_MAXIMUM_SETTINGS.max_open_intervals

@@ -185,12 +185,12 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     return OrbitMesh(edges, order, intervals, stages)
 
 
-def finer_mesh(mesh: OrbitMesh, wanted: OrbitMesh) -> OrbitMesh:
-    """A mesh that is at least as fine as `wanted` and finer than the present mesh `mesh`."""
-    order = max(wanted.order, mesh.order) if wanted.edges == mesh.edges else wanted.order
-    intervals = max(wanted.intervals, mesh.intervals)
-    stages = max(wanted.stages, mesh.stages)
-    finer = replace(wanted, order=order, intervals=intervals, stages=stages)
+def finer_mesh(mesh: OrbitMesh, target: OrbitMesh) -> OrbitMesh:
+    """A mesh that is at least as fine as `target` and finer than the present mesh `mesh`."""
+    order = max(target.order, mesh.order) if target.edges == mesh.edges else target.order
+    intervals = max(target.intervals, mesh.intervals)
+    stages = max(target.stages, mesh.stages)
+    finer = replace(target, order=order, intervals=intervals, stages=stages)
     if finer != mesh:
         return finer
     return replace(mesh.finer_in_space, intervals=ceil(ORBIT_MESH.more_intervals * mesh.intervals))

@@ -95,12 +95,12 @@ class CountComparison:
 
 
 def candidates_on(
-    problem: TransverseProblem, mesh: AnyMesh, wanted: int, vectors: bool, tight: bool
+    problem: TransverseProblem, mesh: AnyMesh, requested: int, vectors: bool, tight: bool
 ) -> Candidates:
     """The eigenvalues of a mesh nearest to the shift of `problem`, refined to roots of D; spurious
     eigenvalues are dropped.
 
-    wanted: number of eigenvalues requested. vectors: whether eigenvectors are returned. tight: whether the
+    requested: number of eigenvalues requested. vectors: whether eigenvectors are returned. tight: whether the
     eigenvalues of the mesh converge to rounding error before they are refined. After an error inside PETSc,
     SLEPc or LAPACK no eigenvalue is returned; the solver may succeed on another mesh.
     """
@@ -109,7 +109,7 @@ def candidates_on(
     failure = ""
     try:
         solver = problem.solver(mesh)
-        raw = solver.solve(problem.rod, problem.shift, wanted, tight)
+        raw = solver.solve(problem.rod, problem.shift, requested, tight)
         kept = solver.vectors(len(raw)) if vectors else None
     except PETSC_ERRORS as error:
         destroy_pooled_solvers()

@@ -171,8 +171,8 @@ class ShiftInvertSolver(ABC):
         """(y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve, (unknowns,
         k)."""
 
-    def solve(self, rod: Rod, shift: float, wanted: int, tight: bool = False) -> Complex:
-        """Eigenvalues of a rod nearest to the shift, complex, unsorted, (k,), in 1/tau2; k >= `wanted` if
+    def solve(self, rod: Rod, shift: float, requested: int, tight: bool = False) -> Complex:
+        """Eigenvalues of a rod nearest to the shift, complex, unsorted, (k,), in 1/tau2; k >= `requested` if
         enough eigenvalues converge.
 
         tight: whether the eigenvalues converge to rounding error on the mesh, instead of the few digits that
@@ -183,13 +183,13 @@ class ShiftInvertSolver(ABC):
         self.A.assemble()
         self.eps.setOperators(self.A, self.B)
         most = self.loaded.finite_eigenvalues
-        wanted = min(wanted, most - 1)  # a conjugate pair may add one
+        requested = min(requested, most - 1)  # a conjugate pair may add one
         spare = KRYLOV_SETTINGS.tight_spare_vectors if tight else KRYLOV_SETTINGS.loose_spare_vectors
         tolerance = KRYLOV_SETTINGS.tight_tolerance if tight else KRYLOV_SETTINGS.loose_tolerance
-        krylov = self.users_krylov or max(2 * wanted, wanted + spare)
+        krylov = self.users_krylov or max(2 * requested, requested + spare)
         self.eps.setTolerances(self.users_tolerance or tolerance, KRYLOV_SETTINGS.max_restarts)
         krylov = min(krylov, most + KRYLOV_SETTINGS.vectors_for_infinity)
-        self.eps.setDimensions(wanted, krylov, krylov)
+        self.eps.setDimensions(requested, krylov, krylov)
         self.eps.setInitialSpace(self.start)
         self.eps.solve()
         found = self.eps.getConverged()

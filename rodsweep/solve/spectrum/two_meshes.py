@@ -112,22 +112,22 @@ def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEige
     The result is empty if the mesh is too coarse for a doubled request.
     """
     solver = problem.solver(mesh)
-    wanted = modes + TWO_MESHES.spare_eigenvalues
+    requested = modes + TWO_MESHES.spare_eigenvalues
     # The solver finds the eigenvalues nearest to the shift, which need not lead: more are requested until
     # the leading eigenvalues stay the same.
     before = np.empty(0, complex)
     while True:
-        raw = solver.solve(problem.rod, problem.shift, wanted, tight=True)
+        raw = solver.solve(problem.rod, problem.shift, requested, tight=True)
         order = np.lexsort((-raw.imag, -raw.real))
         leading = raw[order[:modes]]
         complete = len(leading) == len(before) == modes
         by_rounding = TWO_MESHES.unchanged_rounding_tolerance * _scale(problem)
         if complete and np.allclose(leading, before, rtol=TWO_MESHES.unchanged_tolerance, atol=by_rounding):
             return _MeshEigenvalues(raw[order], order)
-        if 2 * wanted > mesh.unknowns // TWO_MESHES.min_unknowns_per_mode:
+        if 2 * requested > mesh.unknowns // TWO_MESHES.min_unknowns_per_mode:
             return _MeshEigenvalues(raw[:0], order[:0])
         before = leading
-        wanted = 2 * wanted
+        requested = 2 * requested
 
 
 def _worst(found: Spectrum) -> float:

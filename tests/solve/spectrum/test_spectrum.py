@@ -171,9 +171,9 @@ class Forgetful:
     def __getattr__(self, name):
         return getattr(self.solver, name)
 
-    def solve(self, rod, shift, wanted, tight=False):
-        w = self.solver.solve(rod, shift, wanted, tight)
-        if wanted >= self.remembers_from:
+    def solve(self, rod, shift, requested, tight=False):
+        w = self.solver.solve(rod, shift, requested, tight)
+        if requested >= self.remembers_from:
             return w
         return w[w.real < w.real.max() - 1e-6 * abs(w.real.max())]
 
@@ -212,11 +212,11 @@ def test_mesh_never_gives_more_eigenvalues_than_it_has(gamma3):
     """k2 = inf: two thirds of the pencil's eigenvalues are infinite, and no space is left for them."""
     rng = np.random.default_rng(1)
     for nodes in range(6, 20):
-        for wanted in range(1, nodes // 2 + 1):
+        for requested in range(1, nodes // 2 + 1):
             rod = Rod(F=float(10 ** rng.uniform(0, 2.5)), k1=np.inf, k2=np.inf, gamma3=gamma3)
             solver = uniform_solver(Resolution(1, nodes))
-            found = solver.solve(rod, 1.05 * most_amplified_wave(rod)[0], wanted, tight=True)
-            assert wanted <= len(found) <= nodes
+            found = solver.solve(rod, 1.05 * most_amplified_wave(rod)[0], requested, tight=True)
+            assert requested <= len(found) <= nodes
             assert (np.abs(found) < 1e12).all(), "an infinite one is as large as rounding lets it be"
 
 

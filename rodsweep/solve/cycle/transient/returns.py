@@ -48,8 +48,8 @@ def tip_angle_row(beam: Beam) -> Array:
     return beam.layout.vector({"m3": (beam.sqrt_compliance[2] * beam.mesh.quadrature)[:-1]})
 
 
-def until_returns(row: Array, z: Array, wanted: int) -> RunLimit:
-    """Limit that ends a run from the state z, (unknowns,), after `wanted` returns of the tip. row:
+def until_returns(row: Array, z: Array, returns: int) -> RunLimit:
+    """Limit that ends a run from the state z, (unknowns,), after `returns` returns of the tip. row:
     `tip_angle_row` of the beam, (unknowns,)."""
     count = 0
     last = float(row @ z)
@@ -59,7 +59,7 @@ def until_returns(row: Array, z: Array, wanted: int) -> RunLimit:
         angle = float(row @ state)
         count += int(last < 0 <= angle)
         last = angle
-        return count >= wanted
+        return count >= returns
 
     return RunLimit(enough, RETURN_SETTINGS.max_steps_per_run)
 

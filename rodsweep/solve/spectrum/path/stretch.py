@@ -174,7 +174,7 @@ def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | No
     """
     try:
         modes = request.modes + SWEEP_STRETCH_SETTINGS.further_modes
-        search = Search(rod, replace(request, modes=modes - 1, certify=True), wanted=modes)
+        search = Search(rod, replace(request, modes=modes - 1, certify=True), requested=modes)
         with np.errstate(all="ignore"):
             outcome = search.outcome()
     except FAILURES:
