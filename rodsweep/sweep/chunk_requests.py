@@ -152,7 +152,7 @@ class FirstRankRequests:
     def _handle_report(self, rank: int, report: RankReport) -> None:
         """Handles the report of a rank.
 
-        A request made in advance (`report.is_in_advance`) is answered immediately if enough units are left.
+        A request made in advance (`report.is_in_advance`) is answered immediately if enough items are left.
         Any other request is queued, unless the rank already has its next chunk from a request made in
         advance.
         """

@@ -153,26 +153,26 @@ class ArmProblem(TransverseProblem):
 
     def roots(self, raw: Complex, most_waves: float) -> Roots:
         """Roots of D refined from the eigenvalues `raw` of a mesh, (n,)."""
-        to_prove, largest = self._of_proof(raw)
+        in_proof, largest = self._of_proof(raw)
         return roots_of_arm(
-            np.where(to_prove, raw, np.inf), self._determinant, self._hull, most_waves, largest
+            np.where(in_proof, raw, np.inf), self._determinant, self._hull, most_waves, largest
         )
 
     def _of_proof(self, raw: Complex) -> tuple[NDArray[np.bool_], float]:
         """Returns (mask, size). mask: which of the eigenvalues `raw` the proof will need, (n,). size: largest
         |w| at which the proof needs D; 0 if unknown.
         """
-        to_prove = np.isfinite(raw)
-        if not self._to_prove or not self.has_bound or to_prove.sum() < self._to_prove:
-            return to_prove, 0.0
-        finite = np.flatnonzero(to_prove)
+        in_proof = np.isfinite(raw)
+        if not self._to_prove or not self.has_bound or in_proof.sum() < self._to_prove:
+            return in_proof, 0.0
+        finite = np.flatnonzero(in_proof)
         order = finite[np.lexsort((-raw.imag[finite], -raw.real[finite]))]
         line = min(float(raw[order[self._to_prove - 1]].real), 0.0)
         number, size = cheapest_proof(line, self._hull, raw[order], self._to_prove)
         if not number:
-            return to_prove, largest_w_of_count(line, self._determinant, self._hull)
-        to_prove[order[number:]] = False
-        return to_prove, size
+            return in_proof, largest_w_of_count(line, self._determinant, self._hull)
+        in_proof[order[number:]] = False
+        return in_proof, size
 
     def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
         known = () if found is None else (found.w, found.error)

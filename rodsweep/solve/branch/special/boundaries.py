@@ -1,7 +1,7 @@
 """Curves through the folds and torus points on all rows of a phase diagram; each curve is followed only once.
 
 `changes.diagram.boundaries` has the same task for the straight rod. A curve is followed in two halves from a
-special point of a row. Each half curve is a unit of work; its result does not depend on other half curves.
+special point of a row. Each half curve is a work item; its result does not depend on other half curves.
 """
 
 import math
@@ -38,7 +38,7 @@ class RowSpecialPoint:
 class SpecialBoundaries:
     """Curves through all folds and torus points of the rows of a parameter plane, traced as half curves.
 
-    line: axis of the parameter along a row. rows: axis of the rows' parameter. Half curve (unit) 2 i leads
+    line: axis of the parameter along a row. rows: axis of the rows' parameter. Half curve 2 i leads
     from special point i to larger values of the rows' parameter, half curve 2 i + 1 to smaller values.
     """
 
@@ -46,18 +46,18 @@ class SpecialBoundaries:
     rows: PlaneAxis
     special: Sequence[RowSpecialPoint]
 
-    def units_to_solve(self, results: Mapping[int, Arrays]) -> list[int]:
+    def items_to_solve(self, results: Mapping[int, Arrays]) -> list[int]:
         """Numbers of the half curves needed now, then of half curves that may be needed later; empty if the
         curves are complete. results: results of half curves, by number."""
         needed: list[int] = []
         likely: list[int] = []
         for curves, search in self._searches(results):
-            needed += search.missing_units
-            likely += curves.possible_units(search)
+            needed += search.missing_items
+            likely += curves.possible_items(search)
         return needed + likely if needed else []
 
     def curves(self, results: Mapping[int, Arrays]) -> Boundaries[CycleCurve]:
-        """All curves, from the results of the half curves; valid if `units_to_solve(results)` is empty."""
+        """All curves, from the results of the half curves; valid if `items_to_solve(results)` is empty."""
         found = [search.boundaries for _, search in self._searches(results)]
         curves = tuple(traced.curve for one in found for traced in one.curves)
         return Boundaries(curves, max(one.agreement for one in found), sum(one.untraced for one in found))
@@ -72,23 +72,23 @@ class SpecialBoundaries:
             yield curves, trace_boundaries(curves, seeds, CURVE_IDENTITY.max_distance)
 
     def solve(
-        self, unit: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
+        self, item: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
     ) -> Arrays:
-        """The result of half curve number `unit`, as `TracedHalfCurve.arrays`. located: function that returns
+        """The result of half curve number `item`, as `TracedHalfCurve.arrays`. located: function that returns
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
-        # A unit is twice the index of its special point, plus one for the half to smaller values.
-        index, behind = divmod(unit, 2)
+        # A item is twice the index of its special point, plus one for the half to smaller values.
+        index, behind = divmod(item, 2)
         one = self.special[index]
         limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
         return _traced(limits, one, located(one.number), self.special).arrays()
 
-    def row_of(self, unit: int) -> int:
-        """Index of the row on which the half curve number `unit` starts."""
-        return self.special[unit // 2].number
+    def row_of(self, item: int) -> int:
+        """Index of the row on which the half curve number `item` starts."""
+        return self.special[item // 2].number
 
-    def unit_label(self, unit: int) -> str:
-        """Text for half curve `unit` in the progress display: kind of curve, starting row, direction."""
-        index, behind = divmod(unit, 2)
+    def item_label(self, item: int) -> str:
+        """Text for half curve `item` in the progress display: kind of curve, starting row, direction."""
+        index, behind = divmod(item, 2)
         one = self.special[index]
         way = "down" if behind else "up"
         return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.rows.name} = {one.row:.5g} {way}"
@@ -116,23 +116,23 @@ class _CurvesOfKind:
         """Median special point among `left`, so that the two halves of its curve have similar lengths."""
         return sorted(left, key=self._position)[len(left) // 2]
 
-    def missing_units(self, seed: int) -> list[int]:
+    def missing_items(self, seed: int) -> list[int]:
         """Numbers of the half curves still to be followed for the curve through special point `seed`."""
         ahead = 2 * seed
         behind = 2 * seed + 1
         if ahead not in self.results:
-            return [unit for unit in (ahead, behind) if unit not in self.results]
+            return [item for item in (ahead, behind) if item not in self.results]
         half = TracedHalfCurve.of(self.results[ahead]).half
         # A closed curve has no second half; if the first half failed, the second is not needed.
         on = half is not None and half.end is not CurveEnd.closed
         return [behind] if on and behind not in self.results else []
 
-    def possible_units(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
+    def possible_items(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
         """Numbers of the half curves that may be needed later: from all special points on the rows on which
         the needed half curves start."""
-        rows = {self.special[unit // 2].row for unit in search.missing_units}
+        rows = {self.special[item // 2].row for item in search.missing_items}
         beside = sorted((i for i in search.open_seeds if self.special[i].row in rows), key=self._position)
-        return [unit for i in beside for unit in self.missing_units(i)]
+        return [item for i in beside for item in self.missing_items(i)]
 
     def curve(self, seed: int) -> _TracedCurve | None:
         """The curve through the special point `seed`, joined from two halves; None if a half failed."""

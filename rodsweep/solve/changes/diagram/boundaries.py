@@ -76,7 +76,7 @@ class _ChangeBoundaries:
         curve."""
         return left[0]
 
-    def missing_units(self, seed: int) -> list[int]:
+    def missing_items(self, seed: int) -> list[int]:
         """No work items: a curve is traced in milliseconds, at once."""
         return []
 
