@@ -1,4 +1,4 @@
-"""The loop of every rank: claim a chunk, solve its items, store the points, return unsolved items."""
+"""The loop of every rank: get a chunk, solve its items, store the points, return unsolved items."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -82,15 +82,15 @@ def sweep(team: Team, queue: ChunkQueue, loop: Loop, progress: ProgressSink, sto
     An exception on any rank ends all ranks. After a stop request to any rank, each rank ends after the
     current point, or abandons the point after GRACE_SECONDS (see `stop`).
     """
-    claims = (
+    requests = (
         FirstRankRequests(team, queue, stop, progress.show_position)
         if team.first
         else OtherRankRequests(team, stop)
     )
-    with suppress(SolveStopped), reporting_to(RankListener(claims, stop)):
+    with suppress(SolveStopped), reporting_to(RankListener(requests, stop)):
         loop.prepare()
     progress(0)
-    return _RankLoop(team, claims, loop, progress, stop).solve_chunks()
+    return _RankLoop(team, requests, loop, progress, stop).solve_chunks()
 
 
 class _RankLoop:
